@@ -1172,7 +1172,7 @@ private:
             return place;
         };
         for (auto& step : steps_) step.to = placed(step.to), step.a = placed(step.a), step.b = placed(step.b);
-        return {std::move(steps_), std::move(registers), motion, used, states};
+        return {std::move(steps_), std::move(registers), motion, used, states, arguments_.timeless};
     }
 
     lua_State* L_;

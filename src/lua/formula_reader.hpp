@@ -27,11 +27,12 @@ struct OutsideValue {
 };
 
 /// What a function is called with: the first `count` of t, theta, velocity and the table of these states, with
-/// `of_speed` behind a speed. If there are bodies, theta and velocity are tables of them. The speed, the angles and
-/// velocities of the bodies and the states are the states of its formula, in this order.
+/// `of_speed` behind a speed; with `timeless` a speed is in the place of t. If there are bodies, theta and velocity are
+/// tables of them. The speed, the angles and velocities of the bodies and the states are the states of its formula, in
+/// this order.
 struct Arguments {
     int count = 1;
-    bool of_speed = false;
+    bool of_speed = false, timeless = false;
     std::vector<std::string> bodies = {}, states = {};
     bool operator==(const Arguments&) const = default;
     [[nodiscard]] std::size_t state_count() const { return (of_speed ? 1 : 0) + 2 * bodies.size() + states.size(); }

@@ -443,7 +443,9 @@ bool LuaFunction::is_allowed(double result) const {
 
 /// What it is called with in a run.
 Arguments LuaFunction::arguments_in(const CallState& call) const {
-    Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1, .of_speed = role_.of_speed};
+    Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1,
+                    .of_speed = role_.of_speed,
+                    .timeless = is_law() && !role_.of_speed};
     if (feedback_) given.bodies = call.body_names_, given.states = call.state_names_;
     return given;
 }
@@ -556,7 +558,7 @@ double LuaFunction::next_break(double t) {
 bool LuaFunction::has_pieces() {
     if (current == nullptr || current->failed_) return false;
     const model::Formula* read = formula(*current, many);
-    return read != nullptr && read->has_conditions_of_motion() && !read->gave_up();
+    return read != nullptr && (is_law() || read->has_conditions_of_motion()) && !read->gave_up();
 }
 
 void LuaFunction::decide(model::terms::Piece& piece, double t, const model::State& state,
@@ -574,13 +576,19 @@ double LuaFunction::value_on(const model::terms::Piece& piece, double t, const m
                              std::span<const double> states, std::vector<double>* margins) {
     double M = failure;
     if (piece.owner == reading_ && reading_->formula && fits(states)) {
-        const std::size_t count = reading_->arguments.state_count();
-        M = reading_->formula->value_on(piece, t, state, states.first(count), margins);
+        const std::span<const double> own = states.first(reading_->arguments.state_count());
+        M = piece.conditions.empty() ? reading_->formula->value(t, state, own)
+                                     : reading_->formula->value_on(piece, t, state, own, margins);
     } else if (margins != nullptr) {
         margins->clear();
     }
     if (margins != nullptr) margins->resize(piece.conditions.size(), model::never);
-    return std::isfinite(M) ? M : value_with(t, state, states);
+    if (!is_law()) return std::isfinite(M) ? M : value_with(t, state, states);
+    // Below speed 0 it goes on as its formula does, or nobody knows how. Above, a piece may be negative beyond its end.
+    const double speed = role_.of_speed ? states.front() : t;
+    if (speed < 0 || is_allowed(M)) return M;
+    const double own = value_with(t, state, states);
+    return std::isfinite(M) && std::isfinite(own) ? M : own;
 }
 
 // Not after Ctrl-C, which means all of it.

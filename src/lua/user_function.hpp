@@ -145,6 +145,8 @@ private:
     [[nodiscard]] Arguments arguments_in(const CallState& call) const;
     /// The states are those of its formula.
     [[nodiscard]] bool fits(std::span<const double> states) const;
+    /// It is a law of friction, which is smooth between its conditions, and of which Lua sees no negative speed.
+    [[nodiscard]] bool is_law() const { return !role_.may_be_negative; }
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
     std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
     [[nodiscard]] bool is_allowed(double result) const;

@@ -195,12 +195,13 @@ double decision_of(Op op, double a, double b, double result) {
 }
 
 Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
-                 std::size_t state_count)
+                 std::size_t state_count, bool timeless)
     : steps_(std::move(steps)),
       registers_(std::move(registers)),
       motion_(motion),
       states_(states),
       state_count_(state_count),
+      timeless_(timeless),
       has_conditions_(std::any_of(steps_.begin(), steps_.end(),
                                   [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })),
       of_motion_(has_conditions_ && compares_the_motion()) {}
@@ -211,12 +212,18 @@ void Formula::start(double t, const State& state, std::span<const double> states
     std::copy(states.begin(), states.end(), registers_.begin() + static_cast<std::ptrdiff_t>(states_));
 }
 
-double Formula::value(double t, const State& state, std::span<const double> states) {
-    start(t, state, states);
-    double* const r = registers_.data();
-    const Step* const first = steps_.data();
-    for (const Step* s = first;;) {
+namespace {
+
+/// Runs the program. `held`, called with a step and its operands, may do the step itself, and returns the next one
+/// then.
+template <class Held>
+double run(const Formula::Step* first, double* r, const Held& held) {
+    for (const Formula::Step* s = first;;) {
         const double a = r[s->a], b = r[s->b];
+        if (const Formula::Step* next = held(s, a, b)) {
+            s = next;
+            continue;
+        }
         switch (s->op) {
             case Op::less:
                 s = first + (a < b ? s->yes : s->no);
@@ -242,6 +249,13 @@ double Formula::value(double t, const State& state, std::span<const double> stat
                 ++s;
         }
     }
+}
+
+}  // namespace
+
+double Formula::value(double t, const State& state, std::span<const double> states) {
+    start(t, state, states);
+    return run(steps_.data(), registers_.data(), [](const Step*, double, double) -> const Step* { return nullptr; });
 }
 
 // ---- conditions of the motion
@@ -305,6 +319,7 @@ std::pair<double, double> margins_of(Op op, double a, double b, double decision)
 std::vector<std::uint64_t> Formula::sources() const {
     std::vector<std::uint64_t> of(registers_.size());
     std::uint64_t bit = 1;
+    if (timeless_) of[0] = std::uint64_t{1} << 63U;
     if (motion_) of[1] = 1, of[2] = 2, bit = 4;
     for (std::size_t k = 0; k < state_count_; ++k, bit = std::max(bit, bit << 1U)) of[states_ + k] = bit;
     return of;
@@ -382,35 +397,22 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
 double Formula::value_on(const terms::Piece& piece, double t, const State& state, std::span<const double> states,
                          std::vector<double>* margins) {
     start(t, state, states);
-    double* const r = registers_.data();
     if (margins != nullptr) margins->clear();
-    for (std::size_t at = 0;;) {
-        const Step& s = steps_[at];
-        const double a = r[s.a], b = r[s.b], decision = piece.decisions[at];
-        const bool decided = decision == decision;
-        if (decided && margins != nullptr) {
-            const auto [below, above] = margins_of(s.op, a, b, decision);
-            const int conditions = conditions_of(s.op, decision);
+    const Step* const first = steps_.data();
+    double* const r = registers_.data();
+    return run(first, r, [&](const Step* s, double a, double b) -> const Step* {
+        const double decision = piece.decisions[static_cast<std::size_t>(s - first)];
+        if (decision != decision) return nullptr;
+        if (margins != nullptr) {
+            const auto [below, above] = margins_of(s->op, a, b, decision);
+            const int conditions = conditions_of(s->op, decision);
             if (conditions > 0) margins->push_back(below);
             if (conditions > 1) margins->push_back(above);
         }
-        if (is_comparison(s.op)) {
-            at = (decided ? decision != 0 : holds(s.op, a, b)) ? s.yes : s.no;
-        } else if (decided) {
-            r[s.to] = result_on(s.op, a, b, decision);
-            ++at;
-        } else if (s.op == Op::jump) {
-            at = s.yes;
-        } else if (s.op == Op::give) {
-            return a;
-        } else if (s.op == Op::give_whole) {
-            return static_cast<double>(to_whole(a));
-        } else if (operate(s.op, a, b, r[s.to])) {
-            ++at;
-        } else {
-            return failure;
-        }
-    }
+        if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
+        r[s->to] = result_on(s->op, a, b, decision);
+        return s + 1;
+    });
 }
 
 // ---- conditions of t

@@ -93,13 +93,15 @@ public:
     };
     /// Registers at the start: t comes into the first, with `motion` theta and velocity into the next two, and so many
     /// states from `states` on.
+    /// `timeless`: t is a speed.
     Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
-            std::size_t state_count);
+            std::size_t state_count, bool timeless = false);
 
     /// NaN where the function must be asked.
     [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
 
-    /// See terms::UserFunction. Bits stand for theta and velocity, with `motion`, and then the states.
+    /// See terms::UserFunction. Bits stand for theta and velocity, with `motion`, and then the states; the last one for
+    /// a speed.
     void decide(terms::Piece& piece, double t, const State& state, std::span<const double> states, std::uint64_t again);
     [[nodiscard]] double value_on(const terms::Piece& piece, double t, const State& state,
                                   std::span<const double> states, std::vector<double>* margins);
@@ -139,7 +141,7 @@ private:
     std::vector<double> registers_;
     bool motion_;
     std::size_t states_, state_count_;
-    bool has_conditions_, of_motion_, gave_up_ = false;
+    bool timeless_, has_conditions_, of_motion_, gave_up_ = false;
     std::map<double, double> known_;  ///< from a time to the next break
     int unfinished_ = 0;              ///< searches that ended before they found one
     double span_ = 1, greatest_ = 0;  ///< value at some times

@@ -90,6 +90,12 @@ namespace {
 
 /// Where it switched without end, and what would not.
 std::string chatter_text(const Trajectory& run) {
+    if (run.rough) {
+        return fmt::format(
+            "switched endlessly at one time: {} jumps to and fro and drives it back each time; a steep "
+            "line or tanh in its place would not",
+            run.rough->who);
+    }
     if (!run.events.empty() && run.events.back().t == run.t_stop) {
         if (run.events.back().kind == model::EventKind::user) {
             return "events follow each other endlessly at one time; bounces made by act never come to rest, those of "

@@ -103,8 +103,57 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     -- A jump in the rate of a state, which these two terms of M do not cure.
     run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 5, dt = 1,
         states = { x = { start = 1, rate = function(t, theta, velocity, z) return z.x > 0 and -1 or 1 end } } }
-    assert(run.outcome:find("the rate of a state chatters; a steep line or tanh in its place would not", 1, true), run.outcome)
+    assert(run.outcome:find("the rate of x jumps to and fro and drives it back each time; a steep line or tanh in its place would not", 1, true), run.outcome)
     assert(not run.outcome:find("sampled", 1, true), run.outcome)
+end)
+
+test("a law in Lua moves a mass as the native law with the same numbers does", function()
+    local function stribeck_of(v) return 2 + 2*math.exp(-(v/0.5)^2) end
+    local speeds, torques = { 0, 1, 3, 10 }, { 2, 1.5, 1.8, 4 }
+    local function lines_of(v)
+        if v < 1 then return 2 - 0.5*v elseif v < 3 then return 1.5 + 0.15*(v - 1) end
+        return 1.8 + 2.2/7*(v - 3)
+    end
+    local pairs_of_laws = {
+        { friction.stribeck { Rd = 2, Re = 4, speed = 0.5 }, friction.law(stribeck_of) },
+        { friction.stribeck { Rd = 2, Re = 4, speed = 0.5 }, friction.law(function(v) return stribeck_of(math.abs(v)) end) },
+        -- No formula: it is called, at speeds that are not negative.
+        { friction.stribeck { Rd = 2, Re = 4, speed = 0.5 },
+            friction.law(function(v) assert(v >= 0) return tonumber(string.format("%.17g", stribeck_of(v))) end) },
+        { friction.table { speed = speeds, torque = torques, Re = 2.5 }, friction.law(lines_of, { Re = 2.5 }) },
+    }
+    for i, laws in ipairs(pairs_of_laws) do
+        for _, load in ipairs {
+            { M = excitation.harmonic { amplitude = 20, frequency = 0.7 } }, { belt = 0.3 },
+            { M = function(t, theta) return 20*math.sin(4*t) - theta end,
+                states = { x = { start = 1, rate = function(t, theta, velocity, z) return velocity - z.x end } } },
+        } do
+            load.t_end, load.dt = 12, 0.5
+            local runs = {}
+            for n, law in ipairs(laws) do
+                runs[n] = system { I = 1, k = 4*math.pi^2, C = 0.1, friction = law }:simulate(load)
+            end
+            local native, own = runs[1], runs[2]
+            equal(#own, #native)
+            for row = 1, #own do near(own.theta[row], native.theta[row], 1e-10) end
+            equal(#own.events, #native.events)
+            for e = 1, #own.events do
+                equal(own.events[e].kind, native.events[e].kind)
+                near(own.events[e].t, native.events[e].t, 1e-10)
+            end
+            if not load.belt and i == 4 then assert(#own.events > 10) end
+        end
+    end
+end)
+
+test("a law in Lua agrees with rk4 of small steps", function()
+    local sys = system { I = 1, k = 4*math.pi^2, C = 0.1,
+        friction = friction.law(function(v) return 1 + math.exp(-v/0.5) + (v < 2 and 0 or 0.3*(v - 2)) end) }
+    local M = excitation.harmonic { amplitude = 20, frequency = 0.7 }
+    local run = sys:simulate { M = M, t_end = 5, dt = 0.5 }
+    local rough = sys:simulate { M = M, t_end = 5, dt = 0.5, integrator = integrator.rk4 { h = 1e-4 } }
+    for row = 1, #run do near(run.theta[row], rough.theta[row], 1e-8) end
+    equal(#run.events, #rough.events)
 end)
 
 -- Both homes of a law, with a belt that stands still and without one.

@@ -87,7 +87,14 @@ public:
         // What an impact has put on the other side, farther than roundings of time do, has passed zero on the way.
         constexpr double clearly = 1e-9;
         if (from == -1 && half * values_[0] < -std::max(floor_, clearly * size_)) return from;
-        return smooth_ ? of_series(half, from, at_zero) : of_values(half, from);
+        if (!at_zero) return smooth_ ? of_series(half, from) : of_values(half, from);
+        // Outwards from within the rounding, until it is clear which way it goes.
+        double d = 0x1p-46;
+        while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
+        const double start = std::min(1.0, from + d);
+        const auto is_beyond = [&](double x) { return half_of(exact_(x), half) != half; };
+        if (!is_beyond(start)) return smooth_ ? of_series(half, start) : of_values(half, start);
+        return smooth_ ? from : first_true(is_beyond, start);  // it may have stood at zero for long
     }
 
     /// Whether it is beyond rounding in this half somewhere before x: at a node, or half way to x.
@@ -104,18 +111,11 @@ private:
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
     /// The series says where to look, and is right to some digits less than the value itself, which says what is there.
-    [[nodiscard]] std::optional<double> of_series(Half half, double from, bool at_zero) const {
+    [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         Bounded<points> curve(half, series_, derivative(series_));
         curve.raise_floor(rounded_);
         const auto no = [](double) { return false; };
-        double start = from;
-        if (at_zero) {  // outwards from within the rounding, until it is clear which way it goes
-            double d = 0x1p-46;
-            while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
-            start = std::min(1.0, from + d);
-            if (half_of(exact_(start), half) != half) return from;
-        }
         double near = 1e-7;
         while (start < 1) {
             const auto x = first_below(curve, start, LeftEnd::anywhere, no);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "algebra/decompositions.hpp"
+#include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
 
 namespace dinal::motion::engine {
@@ -197,9 +198,16 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         contact.varies |= !friction.is_constant();
         nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
                       friction.law.depends_on_speed() || !joint.spring.none();
+        const auto* user = friction.law.as<laws::UserLaw>();
+        const auto slip = [this, j](const Moment& at) { return velocity(j, at.y) - belt(j, at.t, at.side); };
+        if (friction.function != nullptr) {
+            contact.law.emplace(&asking, friction.function.get(), Piecewise::Law{false, slip});
+        } else if (user != nullptr && user->function->has_pieces()) {
+            contact.law.emplace(&asking, user->function.get(), Piecewise::Law{true, slip});
+        }
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
-        contact.native = friction.is_constant();
+        contact.native = friction.is_constant() && !contact.law;
         all_linear_ = all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none();
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
@@ -268,14 +276,11 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
     const double speed = model::sign_of(how.way) * slip;
     const Signal& own = contact.sliding[side_of(how.way)];
     double torque = 0;
-    if (friction.function != nullptr) {
-        const auto asked = [&](double of_speed) {
-            std::vector<double> with_speed(1, of_speed);
-            const std::size_t from = asking_.named ? 0 : 2;
-            with_speed.insert(with_speed.end(), at.y.begin() + static_cast<std::ptrdiff_t>(from), at.y.end());
-            return friction.function->value_with(towards(at.t, at.side), asking_.state(at.y), with_speed);
-        };
-        torque = speed < 0 ? 2 * asked(0) - asked(-speed) : asked(speed);  // with the slope that it has at 0
+    if (contact.law) {
+        const Piecewise& law = *contact.law;
+        const double smooth = speed >= 0 || law.is_held() ? law.value(at, speed) : model::never;
+        // Where nothing tells how it goes on below 0, with the slope that it has there.
+        torque = speed >= 0 || std::isfinite(smooth) ? smooth : 2 * law.value(at, 0) - law.value(at, -speed);
     } else if (!own.none()) {
         torque = own.value(at);
     } else if (friction.law.ranges() > 0) {
@@ -434,6 +439,7 @@ void Mechanics::each_function(const std::function<void(model::UserFunction&)>& c
     for (const model::OwnState& state : drive_.states) call(*state.rate);
     for (const Joint& joint : system_.joints) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) call(*spring->function);
+        if (const auto* law = joint.friction.law.as<laws::UserLaw>()) call(*law->function);
         if (joint.friction.function != nullptr) call(*joint.friction.function);
     }
 }

@@ -193,6 +193,16 @@ public:
         for (Piecewise& rate : rates_) {
             if (rate.has_pieces()) f(rate);
         }
+        for (Contact& contact : contacts_) {
+            if (contact.law && contact.law->has_pieces()) f(*contact.law);
+        }
+    }
+    /// From now on users' laws of friction act as the mode says.
+    void let_laws_act(const Mode& mode) {
+        for (std::size_t j = 0; j < contacts_.size(); ++j) {
+            const Slipping& how = mode.friction[j];
+            if (contacts_[j].law) contacts_[j].law->act(how.riding ? 0 : model::sign_of(how.way));
+        }
     }
     /// One of them has no pieces that are known.
     [[nodiscard]] bool samples_the_motion() const {
@@ -208,6 +218,7 @@ private:
         std::array<Signal, 2> sliding, holding;
         Signal normal;
         const model::laws::Bristle* bristle = nullptr;
+        std::optional<Piecewise> law = {};  ///< the user's function
         bool varies = false, native = false;
     };
     template <class Self, class F>

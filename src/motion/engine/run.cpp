@@ -81,6 +81,7 @@ private:
     [[nodiscard]] bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
     bool get_nowhere(Outcome outcome);
+    std::string state_driven_back();
     bool end_at(double x);
     bool ask_after_break();
     void foresee_break();
@@ -219,7 +220,7 @@ private:
     std::vector<BeltSlope> slopes_;  ///< of the belts, now
     bool after_break_ = false, has_walls_ = false;
     bool has_pieces_ = false;  ///< of a function of the motion whose conditions are known
-    bool samples_ = false;     ///< another function of the motion, whose conditions are not
+    bool samples_ = false;     ///< another function of the motion, which may jump anywhere
     bool has_jumped_ = true;   ///< all conditions are to be decided anew
     struct {
         const Piecewise* function = nullptr;
@@ -1151,7 +1152,7 @@ void Engine::again(Collocation::Attempt attempt) {
     }
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
-    h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
+    h_ = segment_.h * std::clamp(factor, 0.2, 0.9);
 }
 
 bool Engine::a_belt_jumps_at(double t) const {
@@ -1183,6 +1184,26 @@ bool Engine::belt_jump_found() {
     breaks_.insert(place, *first);
     mechanics_.jumps_at(*first);
     return true;
+}
+
+/// The name of a state that has come to where its rate jumps, and drives it back from both sides; empty where none has.
+std::string Engine::state_driven_back() {
+    constexpr double near = 1e-9, steep = 1e6;
+    mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
+    std::vector<double> y = y_, rates(mechanics_.states());
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        const auto rate = [&](double by) {
+            y[2 * n() + k] = y_[2 * n() + k] + by;
+            mechanics_.rates({now_.hi, side(), y}, rates.data());
+            return rates[k];
+        };
+        const double own = std::max(std::fabs(rate(0)), std::fabs(rate(near * std::fabs(y_[2 * n() + k]))));
+        const double d = near * std::max(own * pace_, std::fabs(y_[2 * n() + k])) + std::numeric_limits<double>::min();
+        const double least = std::min(-rate(d), rate(-d));
+        y[2 * n() + k] = y_[2 * n() + k];
+        if (least * pace_ > steep * d) return problem_.drive.states[k].name;
+    }
+    return {};
 }
 
 /// Ends the run, which got nowhere: if something that acts in it is rough on every scale, that is why.
@@ -1225,7 +1246,10 @@ bool Engine::get_nowhere(Outcome outcome) {
         result_.rough = Rough{source.name, look.most, part};
         outcome = Outcome::unresolved;
     }
-    return fail(outcome);
+    const std::string state = result_.rough ? "" : state_driven_back();
+    if (state.empty()) return fail(outcome);
+    result_.rough = Rough{"the rate of " + state};
+    return fail(Outcome::chattering);
 }
 
 bool Engine::advance() {
@@ -1787,6 +1811,7 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
         if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
         standing_[i] = now;
     }
+    mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide(at, again); });
     has_jumped_ = false;
 }
@@ -1850,8 +1875,8 @@ bool Engine::ends_before(double x) {
     return true;
 }
 
-/// Conditions that M drives back each time are let go: M is sampled from there on, and the run ends if that chatters.
 /// Jumps that are next to nothing, one after the other, are digits that somebody has cut off: noise, and no events.
+/// Then the conditions are let go, and M is sampled from there on.
 bool Engine::cross(const Ending& ending) {
     constexpr double small = 1e-5, nothing = 1e-13;
     constexpr int most_small = 30, most_to_and_fro = 200;
@@ -1871,7 +1896,9 @@ bool Engine::cross(const Ending& ending) {
         all_small = all_small && jump > nothing * greatest_crossed_ && jump < small * greatest_crossed_;
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
-    if (!too_often() && to_and_fro_ < most_to_and_fro && small_in_a_row_ < most_small) return true;
+    const bool endless = too_often() || to_and_fro_ >= most_to_and_fro;
+    if (!endless && small_in_a_row_ < most_small) return true;
+    if (endless && !problem_.only_located) return get_nowhere(Outcome::chattering);
     mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
     has_pieces_ = false;
     return !problem_.only_located || fail(Outcome::unresolved);

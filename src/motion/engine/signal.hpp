@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -56,32 +57,79 @@ public:
     Piecewise(const Asking* asking, model::UserFunction* function, double delay)
         : asking_(asking), function_(function), delay_(delay), has_pieces_(function->has_pieces()) {}
 
+    /// Of a law of friction, which is called with a speed, alone or before all else. It acts one way at a time.
+    struct Law {
+        bool alone;
+        std::function<double(const Moment&)> slip;
+        double way = 0;  ///< 0: its joint does not slide
+    };
+    Piecewise(const Asking* asking, model::UserFunction* function, Law law) : Piecewise(asking, function, 0) {
+        law_ = std::move(law);
+    }
+    /// From now on it acts this way.
+    void act(double way) {
+        if (law_->way != way) let_go();
+        law_->way = way;
+    }
+
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
+    [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
     [[nodiscard]] double value(const Moment& at) const {
         if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
+    /// Of a law, at this speed. At 0 it is what the function gives, whichever piece it is held to.
+    [[nodiscard]] double value(const Moment& at, double speed) const {
+        return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
+            return is_held() && speed != 0 ? function_->value_on(piece_, t, state, states, nullptr)
+                                           : function_->value_with(t, state, states);
+        });
+    }
     /// Decides the conditions at this moment; decisions stay, except those that depend on what `again` has bits for.
     void decide(const Moment& at, std::uint64_t again) {
-        if (!has_pieces_) return;
-        function_->decide(piece_, time(at), asking_->state(at.y), asking_->states(at.y), again);
+        if (!has_pieces_ || (law_ && law_->way == 0)) return;
+        const bool stays = std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
+                                        [again](const auto& condition) { return (condition.of & again) != 0; });
+        if (is_held() && stays && !crossed_) return;
+        crossed_ = false;
+        // What sets off is on its way already.
+        const double speed = law_ ? std::max(law_->way * law_->slip(at), std::numeric_limits<double>::min()) : 0;
+        called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
+            function_->decide(piece_, t, state, states, again);
+        });
     }
     [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const { return piece_.conditions; }
     /// Positive as long as each condition stays as it was decided.
     void margins(const Moment& at, std::vector<double>& out) const {
-        function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), &out);
+        const double speed = law_ ? law_->way * law_->slip(at) : 0;
+        called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
+            function_->value_on(piece_, t, state, states, &out);
+        });
     }
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
-    void cross(std::size_t condition) { piece_.cross(condition); }
+    void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
     void let_go() { piece_ = {}; }
 
 private:
     [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
+    /// Calls it with the arguments of the function: t, or the speed alone; the state; the states.
+    template <class F>
+    std::invoke_result_t<F, double, const model::State&, std::span<const double>> called(const Moment& at, double speed,
+                                                                                         F call) const {
+        if (!law_) return call(time(at), asking_->state(at.y), asking_->states(at.y));
+        if (law_->alone) return call(speed, model::State{}, std::span<const double>());
+        thread_local std::vector<double> with_speed;
+        with_speed.assign(1, speed);
+        const auto states = asking_->states(at.y);
+        with_speed.insert(with_speed.end(), states.begin(), states.end());
+        return call(time(at), asking_->state(at.y), std::span<const double>(with_speed));
+    }
 
     const Asking* asking_;
     model::UserFunction* function_;
     double delay_;
-    bool has_pieces_;
+    bool has_pieces_, crossed_ = false;
+    std::optional<Law> law_ = {};
     model::terms::Piece piece_ = {};
 };
 

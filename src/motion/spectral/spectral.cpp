@@ -2,12 +2,17 @@
 
 #include <algorithm>
 
+#include "model/laws/user_law.hpp"
 #include "motion/engine/one_body.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal::motion::spectral {
 
 namespace {
+
+bool has_users_law(const model::Oscillator& system) {
+    return system.friction().as<model::laws::UserLaw>() != nullptr;
+}
 
 /// Conditions of the motion that are known are located there.
 bool compares_the_motion(const model::Excitation& excitation) {
@@ -39,6 +44,7 @@ double Spectral::longest(const Problem& problem) const {
 }
 
 Trajectory Spectral::run(const Problem& problem) const {
+    if (has_users_law(problem.system)) return run_more(problem);
     if (problem.extras != nullptr && compares_the_motion(problem.excitation)) {
         Trajectory located =
             engine::run(problem, {.tolerance = tolerance, .longest = longest(problem), .only_located = true});
