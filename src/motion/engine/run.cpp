@@ -219,9 +219,10 @@ private:
     std::vector<Half> came_from_;    ///< the events of the user that were told last
     std::vector<BeltSlope> slopes_;  ///< of the belts, now
     bool after_break_ = false, has_walls_ = false;
-    bool has_pieces_ = false;  ///< of a function of the motion whose conditions are known
-    bool samples_ = false;     ///< another function of the motion, which may jump anywhere
-    bool has_jumped_ = true;   ///< all conditions are to be decided anew
+    bool has_pieces_ = false;             ///< of a function of the motion whose conditions are known
+    bool samples_ = false;                ///< another function of the motion, which may jump anywhere
+    bool has_jumped_ = true;              ///< all conditions are to be decided anew
+    double crossing_at_ = -model::never;  ///< a break where a condition passes zero, and is not decided by rounding
     struct {
         const Piecewise* function = nullptr;
         std::size_t step = 0;
@@ -1152,7 +1153,7 @@ void Engine::again(Collocation::Attempt attempt) {
     }
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
-    h_ = segment_.h * std::clamp(factor, 0.2, 0.9);
+    h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
 }
 
 bool Engine::a_belt_jumps_at(double t) const {
@@ -1300,7 +1301,7 @@ bool Engine::end_at(double x) {
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break && now_.hi < problem_.window.end;
-    has_jumped_ = has_jumped_ || after_break_;
+    has_jumped_ = has_jumped_ || (after_break_ && now_.hi != crossing_at_);
     mechanics_.forget_jumps(now_.hi);
     if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
     const std::size_t ahead = breaks_.size();
@@ -1870,8 +1871,10 @@ void Engine::watch_conditions(Ending& ending) {
 bool Engine::ends_before(double x) {
     constexpr double beside_end = 1e-6;
     if (!samples_ || 1 + x < beside_end || 1 - x < beside_end) return false;
-    const double t = segment_.time(x);
+    const double t = segment_.time(x), nothing = 64 * rounding * std::fabs(t);
+    if (t - now_.hi <= nothing || segment_.end - t <= nothing) return false;
     breaks_.insert(std::lower_bound(breaks_.begin(), breaks_.end(), t), t);
+    crossing_at_ = t;
     return true;
 }
 
