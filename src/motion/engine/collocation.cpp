@@ -776,13 +776,18 @@ double Collocation::blurred_by_belts(const Segment& s) const {
 /// Right before a body turns, where it is farthest: a spring or a law of friction may act there for a short while.
 void Collocation::add_turns(const Segment& s, std::vector<double>& places) const {
     constexpr double before = 1e-9;
-    for (const model::Joint& joint : mechanics_.system().joints) {
-        if (joint.spring.none() && joint.friction.function == nullptr) continue;
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
+        const model::Joint& joint = mechanics_.system().joints[i];
+        const model::Friction& law = joint.friction.law;
+        const bool users = joint.friction.function != nullptr ||
+                           (joint.friction.bristle() == nullptr && law.depends_on_speed() && law.ranges() == 0);
+        if (joint.spring.none() && !users) continue;
         const Nodes& a = s.y[n_ + index(joint.first)];
         Nodes velocity = a;
         for (std::size_t j = 0; joint.second >= 0 && j < node_count; ++j) {
             velocity[j] -= s.y[n_ + index(joint.second)][j];
         }
+        for (std::size_t j = 0; users && j < node_count; ++j) velocity[j] -= s.belts[i][j];
         const Series series = cheb::fit(velocity);
         for (std::size_t j = 0; j + 1 < node_count; ++j) {
             if (!(velocity[j] * velocity[j + 1] < 0)) continue;
