@@ -1879,12 +1879,12 @@ bool Engine::ends_before(double x) {
 }
 
 /// Jumps that are next to nothing, one after the other, are digits that somebody has cut off: noise, and no events.
-/// Then the conditions are let go, and M is sampled from there on.
+/// Then the conditions are let go, and M is sampled from there on; so it is beside a kink that rounding turns over.
 bool Engine::cross(const Ending& ending) {
     constexpr double small = 1e-5, nothing = 1e-13;
     constexpr int most_small = 30, most_to_and_fro = 200;
     constexpr double soon = 1e-6;
-    bool all_small = true;
+    bool all_small = true, jumps = false;
     for (const auto& [function, condition] : ending.conditions) {
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool back = crossed_last_.function == function && crossed_last_.step == step &&
@@ -1895,13 +1895,15 @@ bool Engine::cross(const Ending& ending) {
         function->cross(condition);
         const double jump = std::fabs(function->value(here()) - before);
         greatest_crossed_ = std::max({greatest_crossed_, std::fabs(before), jump});
-        if (jump > nothing * greatest_crossed_) ++result_.jumps;
-        all_small = all_small && jump > nothing * greatest_crossed_ && jump < small * greatest_crossed_;
+        const bool clear = jump > nothing * greatest_crossed_;
+        jumps = jumps || clear;
+        if (clear && !function->is_law()) ++result_.jumps;
+        all_small = all_small && clear && jump < small * greatest_crossed_;
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
     const bool endless = too_often() || to_and_fro_ >= most_to_and_fro;
     if (!endless && small_in_a_row_ < most_small) return true;
-    if (endless && !problem_.only_located) return get_nowhere(Outcome::chattering);
+    if (endless && jumps && !problem_.only_located) return get_nowhere(Outcome::chattering);
     mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
     has_pieces_ = false;
     return !problem_.only_located || fail(Outcome::unresolved);

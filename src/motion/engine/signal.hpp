@@ -73,8 +73,10 @@ public:
     }
 
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
+    [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
     [[nodiscard]] double value(const Moment& at) const {
+        if (law_) return value(at, law_->way * law_->slip(at));
         if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
