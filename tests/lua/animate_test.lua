@@ -91,13 +91,15 @@ end)
 
 test("what cannot be shown is said", function()
     raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
-    raises_here(function() run:animate{ file = "run.mp4" } end, "'run.mp4' must end in .svg")
-    raises_here(function() run:animate{ file = "x.svg", speed = 0 } end, "speed", "positive")
-    raises_here(function() run:animate{ file = "x.svg", speed = 1e-6 } end, "give a greater speed")
-    raises_here(function() run:animate{ file = "x.svg", from = 3, to = 2 } end, "from = 3 and to = 2")
-    raises_here(function() run:animate{ file = "x.svg", to = 11 } end, "goes from 0 to 10")
-    raises_here(function() run:animate{ sped = 1 } end, "did you mean 'speed'?")
-    raises_here(function() run:animate{ file = "/nowhere/x.svg" } end, "/nowhere/x.svg")
+    support.refuses(function(o) run:animate(o) end, {
+        { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
+        { { file = "x.svg", speed = 0 }, "speed", "positive" },
+        { { file = "x.svg", speed = 1e-6 }, "give a greater speed" },
+        { { file = "x.svg", from = 3, to = 2 }, "from = 3 and to = 2" },
+        { { file = "x.svg", to = 11 }, "goes from 0 to 10" },
+        { { sped = 1 }, "did you mean 'speed'?" },
+        { { file = "/nowhere/x.svg" }, "/nowhere/x.svg" },
+    })
 end)
 
 support.finish()

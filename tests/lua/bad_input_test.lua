@@ -4,19 +4,25 @@ local support = require "support"
 local test, equal, raises_here = support.test, support.equal, support.raises_here
 
 test("a system that cannot exist is refused with the parameter and its value", function()
-    raises_here(function() system { I = 0, k = 1 } end, "system: I = 0 must be positive")
-    raises_here(function() system { I = -1, k = 1 } end, "I = -1 must be positive")
+    support.refuses(system, {
+        { { I = 0, k = 1 }, "system: I = 0 must be positive" },
+        { { I = -1, k = 1 }, "I = -1 must be positive" },
+    })
     equal(system { I = 1, k = 0 }.T0, nil)
-    raises_here(function() system { I = 1, k = -2 } end, "k = -2 must not be negative")
-    raises_here(function() system { I = 1, k = 1, C = -0.1 } end, "C = -0.1 must not be negative")
-    raises_here(function() system { I = 1, k = 1, Rd = -1 } end, "Rd = -1 must not be negative")
-    raises_here(function() system { I = 1, k = 1, Rd = 2, Re = 1 } end, "Re = 1 must be at least Rd = 2")
-    raises_here(function() system { I = 1e-300, k = 1e300 } end, "too far apart")
+    support.refuses(system, {
+        { { I = 1, k = -2 }, "k = -2 must not be negative" },
+        { { I = 1, k = 1, C = -0.1 }, "C = -0.1 must not be negative" },
+        { { I = 1, k = 1, Rd = -1 }, "Rd = -1 must not be negative" },
+        { { I = 1, k = 1, Rd = 2, Re = 1 }, "Re = 1 must be at least Rd = 2" },
+        { { I = 1e-300, k = 1e300 }, "too far apart" },
+    })
 end)
 
 test("a missing parameter is named, with an example", function()
-    raises_here(function() system { I = 1 } end, "system needs k, for example system{ I = 1, k = 39.5")
-    raises_here(function() system {} end, "system needs I")
+    support.refuses(system, {
+        { { I = 1 }, "system needs k, for example system{ I = 1, k = 39.5" },
+        { {}, "system needs I" },
+    })
     raises_here(function() system() end, "system takes one table of named options, for example system{")
     raises_here(function() system(1, 2) end, "one table of named options")
     raises_here(function() system { 1, 2 } end, "named options only")
@@ -24,17 +30,23 @@ test("a missing parameter is named, with an example", function()
 end)
 
 test("a misspelt parameter gets a suggestion and the list", function()
-    raises_here(function() system { i = 1, k = 1 } end, "system has no option 'i' among I, k, C, Rd, Re, friction, normal, spring, walls, bodies, links and units; did you mean 'I'?")
-    raises_here(function() system { I = 1, k = 1, xyzzy = 1 } end, "no option 'xyzzy' among I, k, C")
-    raises_here(function() nondimensional { zetta = 1 } end, "did you mean 'zeta'?")
-    raises_here(function() nondimensional { friction = 1 } end, "did you mean 'friction_ratio'?")
+    support.refuses(system, {
+        { { i = 1, k = 1 }, "system has no option 'i' among I, k, C, Rd, Re, friction, normal, spring, walls, bodies, links and units; did you mean 'I'?" },
+        { { I = 1, k = 1, xyzzy = 1 }, "no option 'xyzzy' among I, k, C" },
+    })
+    support.refuses(nondimensional, {
+        { { zetta = 1 }, "did you mean 'zeta'?" },
+        { { friction = 1 }, "did you mean 'friction_ratio'?" },
+    })
 end)
 
 test("the ratios of the nondimensional system are refused in its own words", function()
-    raises_here(function() nondimensional { zeta = -1 } end, "nondimensional: zeta = -1 must not be negative")
-    raises_here(function() nondimensional { friction_ratio = -1 } end, "friction_ratio = -1 must not be negative")
-    raises_here(function() nondimensional { friction_ratio = 0.5, breakaway_ratio = 0.4 } end, "breakaway_ratio = 0.4 must be at least friction_ratio = 0.5")
-    raises_here(function() nondimensional { zeta = "0.1" } end, "zeta must be a finite number")
+    support.refuses(nondimensional, {
+        { { zeta = -1 }, "nondimensional: zeta = -1 must not be negative" },
+        { { friction_ratio = -1 }, "friction_ratio = -1 must not be negative" },
+        { { friction_ratio = 0.5, breakaway_ratio = 0.4 }, "breakaway_ratio = 0.4 must be at least friction_ratio = 0.5" },
+        { { zeta = "0.1" }, "zeta must be a finite number" },
+    })
 end)
 
 test("a table of options may have a metatable, but options hidden in it do not count", function()

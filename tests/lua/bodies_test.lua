@@ -29,11 +29,7 @@ test("a clutch locks up: its time, the common speed, and the torque that it hold
     near(run.clutch.torque[500], 1, 1e-13)
 end)
 
-test("a clutch that closes: the normal load scales what it takes", function()
-    local run = clutch { Rd = 2, normal = function(t) return math.min(t, 1) end }
-        :simulate { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }
-    -- the difference of speeds is 3 - (8/3) t^2/2 until t = 1, and then falls by 8/3 in a unit of time
-    near(first(run, "stick", "clutch").t, 1 + (3 - 4 / 3) / (8 / 3), 1e-12)
+test("a constant normal load scales Rd and Re", function()
     local sys = { I = 1, k = 4, Rd = 0.3, Re = 0.4 }
     local M = excitation.harmonic { amplitude = 1, omega = 1.3 }
     local plain = system(sys):simulate { M = M, theta0 = 1, t_end = 20, dt = 0.5 }
@@ -274,26 +270,6 @@ test("a sweep takes a rig along, its functions too", function()
     end
 end)
 
-test("what is wrong is one sentence with the name of the body, the link and the option", function()
-    raises_here(function() system { bodies = { a = { I = 1, q = 3 } } } end, "bodies.a has no option 'q'")
-    raises_here(function() system { bodies = { a = { k = 3 } } } end, "bodies.a needs I")
-    raises_here(function() system { bodies = { a = { I = 1 } }, links = { x = { "a", "bb" } } } end, "links.x: there is no body 'bb'; there is a")
-    raises_here(function() system { bodies = { a = { I = 1 } }, I = 1 } end, "I is an option of a body")
-    raises_here(function() system { bodies = { a = { I = 1 } }, links = { a = { "a", "a" } } } end, "'a' is the name of a body already")
-    raises_here(function() system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { x = { "a", "a" } } } end, "two different bodies")
-    local rig = system { bodies = { load = { I = 1, Rd = 0.1 } } }
-    raises_here(function() rig:simulate { M = { laod = 1 }, t_end = 1 } end, "M: there is no body 'laod'; there is load", "did you mean 'load'?")
-    raises_here(function() rig:simulate { M = 3, t_end = 1 } end, "M must be a table by body")
-    raises_here(function() rig:simulate { theta0 = { load = "x" }, t_end = 1 } end, "theta0.load must be a finite number")
-    raises_here(function() return rig:simulate { t_end = 1 }.laod end, "this run has no 'laod'", "did you mean 'load'?")
-    support.raises(function() rig:simulate { M = { load = function(t, theta) return theta.laod end }, t_end = 1 } end,
-        "there is no body 'laod'; there is load")
-    support.raises(function() rig:simulate { M = { load = function() return "x" end }, t_end = 1 } end, "M.load returned the string")
-    local count = 0
-    local run = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
-    assert(run.outcome:find("evaluated again", 1, true), run.outcome)
-end)
-
 test("an M with a delay is the same without the motion between the rows", function()
     local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 1 } } }
     local function last(dense)
@@ -309,7 +285,18 @@ test("mistakes are named with the body or link, and the nearest name", function(
     local function relay(of)
         return function() rig:simulate { M = { motor = excitation.relay { on = -0.1, off = 0.1, amplitude = 1, of = of } }, t_end = 1 } end
     end
+    local count = 0
+    local memory = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
+    assert(memory.outcome:find("evaluated again", 1, true), memory.outcome)
     for _, case in ipairs {
+        { function() system { bodies = { a = { I = 1, q = 3 } } } end, "bodies.a has no option 'q'" },
+        { function() system { bodies = { a = { k = 3 } } } end, "bodies.a needs I" },
+        { function() system { bodies = bodies, I = 1 } end, "I is an option of a body" },
+        { function() system { bodies = bodies, links = { load = { "motor", "load" } } } end, "'load' is the name of a body already" },
+        { function() rig:simulate { M = 3, t_end = 1 } end, "M must be a table by body" },
+        { function() rig:simulate { theta0 = { load = "x" }, t_end = 1 } end, "theta0.load must be a finite number" },
+        { function() return rig:simulate { t_end = 1 }.laod end, "this run has no 'laod'", "did you mean 'load'?" },
+        { function() rig:simulate { M = { load = function(t, theta) return theta.laod end }, t_end = 1 } end, "there is no body 'laod'; there is load" },
         { function() system { bodies = { motor = 3 } } end, "bodies.motor must be a table such as { I = 1, Rd = 0.4 }, got 3" },
         { function() system { bodies = { motor = { I = 0 } } } end, "bodies.motor: I = 0 must be positive" },
         { function() system { bodies = bodies, links = { x = "motor" } } end, "links.x must be a table such as" },
@@ -428,7 +415,7 @@ test("a body that creeps beside one that swings changes nothing of its motion or
         local run = system { bodies = { b = swings, [name] = creeps } }:simulate { M = { b = M }, theta0 = { [name] = 1.5 }, t_end = 60, dt = 1 }
         equal(#run.b.events, #alone.b.events)
         for i = 1, #alone.b.events do near(run.b.events[i].t, alone.b.events[i].t, 1e-12) end
-        near((run.b.theta - alone.b.theta):abs():max(), 0, 1e-12)
+        near(run.b.theta, alone.b.theta, 1e-12)
         equal(#run[name].events, 1)
     end
 end)

@@ -80,7 +80,7 @@ test("a run inside a coroutine works, and M may use coroutines of its own", func
     local source = coroutine.wrap(function(t)
         while true do t = coroutine.yield(math.sin(t)) end
     end)
-    near((simulate(source).theta - expected.theta):abs():max(), 0, 1e-13) -- a function that is no formula is sampled
+    near(simulate(source).theta, expected.theta, 1e-13) -- a function that is no formula is sampled
     -- M belongs to a coroutine that is dead when the run is asked again
     local later
     coroutine.wrap(function() later = simulate(function(t) return math.sin(t) end) end)()

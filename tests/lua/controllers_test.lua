@@ -19,12 +19,8 @@ test("between the instants of a sampled controller arcs say what panels say, at 
         end
         local arcs, panels = run(), run{ idle = { rate = function() return 0 end } }
         equal(arcs.outcome, panels.outcome, name)
-        equal(#arcs.events, #panels.events, name)
-        for i, event in ipairs(arcs.events) do
-            equal(event.kind, panels.events[i].kind, name)
-            near(event.t, panels.events[i].t, 1e-9)
-        end
-        near((arcs.theta - panels.theta):abs():max(), 0, 1e-11)
+        support.same_events(panels, arcs, 1e-9, name)
+        near(arcs.theta, panels.theta, 1e-11)
     end
 end)
 

@@ -108,12 +108,14 @@ test("a picture of columns", function()
 end)
 
 test("what is no data is told in a sentence", function()
-    raises_here(function() data{} end, "there is no column")
-    raises_here(function() data{ a = 3 } end, "a must be a vector, or a table of numbers or of strings, got 3")
-    raises_here(function() data{ a = { 1, 2 }, b = { 1 } } end, "a has 2 and b has 1")
-    raises_here(function() data{ a = { 1, {} } } end, "a[2] must be a number")
-    raises_here(function() data{ a = { 1, x = 2 } } end, "data: a must be a list such as { 1, 2, 3 }, but it has x")
-    raises_here(function() data{ { "a", { 1 } }, a = { 2 } } end, "two columns 'a'")
+    support.refuses(data, {
+        { {}, "there is no column" },
+        { { a = 3 }, "a must be a vector, or a table of numbers or of strings, got 3" },
+        { { a = { 1, 2 }, b = { 1 } }, "a has 2 and b has 1" },
+        { { a = { 1, {} } }, "a[2] must be a number" },
+        { { a = { 1, x = 2 } }, "data: a must be a list such as { 1, 2, 3 }, but it has x" },
+        { { { "a", { 1 } }, a = { 2 } }, "two columns 'a'" },
+    })
     raises_here(function() data{ a = { 1 } }.a = 2 end, "be changed")
     raises_here(function() return data{ a = { 1 } }[-1] end, "rows are counted from 1")
     raises_here(function() data{ a = { 1 } }:select() end, "needs the name")

@@ -110,14 +110,16 @@ end)
 
 test("what cannot be fitted is told", function()
     local record = { t = run.t, theta = run.theta }
-    raises_here(function() identify { data = record, measured = "velocity" } end, "measured (the string \"velocity\") needs a guess: system = system{ ... }")
-    raises_here(function() identify { data = record, system = guess, free = { "friction.speed" } } end, "free has 'friction.speed', which is no number of the system")
-    raises_here(function() identify { data = record, system = guess, free = { "q.x" } } end, "free has 'q.x'")
-    raises_here(function() identify { data = record, system = guess } end, "free must be a list")
-    raises_here(function() identify { data = record, system = guess, free = { "k" }, k = 3 } end, "k is part of the first guess, system")
-    raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "speed" } end, "measured must be \"theta\"")
-    raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "velocity" } end, "the record has no column 'velocity'")
-    raises_here(function() identify { data = record, system = guess, free = { "k" }, M = function() error "broken" end } end, "broken")
+    support.refuses(identify, {
+        { { data = record, measured = "velocity" }, "measured (the string \"velocity\") needs a guess: system = system{ ... }" },
+        { { data = record, system = guess, free = { "friction.speed" } }, "free has 'friction.speed', which is no number of the system" },
+        { { data = record, system = guess, free = { "q.x" } }, "free has 'q.x'" },
+        { { data = record, system = guess }, "free must be a list" },
+        { { data = record, system = guess, free = { "k" }, k = 3 }, "k is part of the first guess, system" },
+        { { data = record, system = guess, free = { "k" }, measured = "speed" }, "measured must be \"theta\"" },
+        { { data = record, system = guess, free = { "k" }, measured = "velocity" }, "the record has no column 'velocity'" },
+        { { data = record, system = guess, free = { "k" }, M = function() error "broken" end }, "broken" },
+    })
 end)
 
 support.finish()

@@ -145,8 +145,10 @@ test("no search flies away: swings that no sample shows are none", function()
     run = system{ I = 1, k = 40, C = 0.6, Rd = 1.2, Re = 2.2 }:simulate{ M = two, theta0 = -0.0041871951484979, t_end = 12,
         dt = 0.03 }
     near(identify{ data = { t = run.t, theta = noisy(run, 11, 0.006) + 0.1 }, M = two }.k, 40, 0.4)  -- it did not end
-    raises_here(function() identify{ data = decay, theta0 = -1e308 } end, "no motion of such a system comes near this record")
-    raises_here(function() identify{ data = decay, I = 1, Rd = 1.2, Re = 0.8 } end, "Re = 0.8 must be at least Rd = 1.2")
+    support.refuses(identify, {
+        { { data = decay, theta0 = -1e308 }, "no motion of such a system comes near this record" },
+        { { data = decay, I = 1, Rd = 1.2, Re = 0.8 }, "Re = 0.8 must be at least Rd = 1.2" },
+    })
 end)
 
 test("a record in other units is the same record", function()

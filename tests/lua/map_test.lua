@@ -197,16 +197,20 @@ end)
 
 test("what is wrong with a bifurcation is told", function()
     local function at() return { system = nondimensional {}, M = 1 } end
-    raises_here(function() bifurcation { over = { a = { 1 } }, at = at } end, "bifurcation needs period")
-    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, keep = 0, at = at } end, "keep = 0 must be")
-    raises_here(function() bifurcation { period = 1, at = at } end, "bifurcation: there is no parameter")
-    raises_here(function() bifurcation { over = { theta = { 1 } }, period = 1, at = at } end, "is a column of the result")
+    support.refuses(bifurcation, {
+        { { over = { a = { 1 } }, at = at }, "bifurcation needs period" },
+        { { over = { a = { 1 } }, period = 1, keep = 0, at = at }, "keep = 0 must be" },
+        { { period = 1, at = at }, "bifurcation: there is no parameter" },
+        { { over = { theta = { 1 } }, period = 1, at = at }, "is a column of the result" },
+    })
     raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, at = function() return 1 end } end,
         "at must return a table such as { system = sys, M = M }, got 1")
     raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, at = function() return { M = 1 } end } end,
         "at must return a table with system = ..., got nil there")
-    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, run = at } end, "instead of run give at = function(p)")
-    raises_here(function() bifurcation { a = { 1 }, period = 1, at = at } end, "over = { a = values }")
+    support.refuses(bifurcation, {
+        { { over = { a = { 1 } }, period = 1, run = at }, "instead of run give at = function(p)" },
+        { { a = { 1 }, period = 1, at = at }, "over = { a = values }" },
+    })
     raises_here(function() bifurcation { over = { a = { 1 } }, at = function() return { system = nondimensional {}, omega = -1 } end } end,
         "at returned omega = -1")
     for _, given in ipairs { { period = 0.5 }, { frequency = 2 }, { omega = 4 * math.pi } } do

@@ -37,14 +37,16 @@ end)
 
 test("what is wrong with the call is told", function()
     local function run() return 1 end
-    raises_here(function() minimise{ run = run } end, "minimise needs over")
-    raises_here(function() minimise{ over = { x = { 1, 2 } } } end, "minimise needs run")
-    raises_here(function() minimise{ over = { x = { 1 } }, run = run } end, "over.x must be the two limits of x")
-    raises_here(function() minimise{ over = { x = { 2, 1 } }, run = run } end, "over.x must be the two limits of x")
-    raises_here(function() minimise{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = run } end, "more than two parameters")
-    raises_here(function() minimise{ over = { value = { 1, 2 } }, run = run } end, "'value' is a field of the result")
-    raises_here(function() minimise{ over = { x = { 1, 2 } }, run = function() end } end, "run returned nil at x = 1")
-    raises_here(function() minimise{ over = { x = { 1, 2 } }, run = function() return 0 / 0 end } end, "run returned")
+    support.refuses(minimise, {
+        { { run = run }, "minimise needs over" },
+        { { over = { x = { 1, 2 } } }, "minimise needs run" },
+        { { over = { x = { 1 } }, run = run }, "over.x must be the two limits of x" },
+        { { over = { x = { 2, 1 } }, run = run }, "over.x must be the two limits of x" },
+        { { over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = run }, "more than two parameters" },
+        { { over = { value = { 1, 2 } }, run = run }, "'value' is a field of the result" },
+        { { over = { x = { 1, 2 } }, run = function() end }, "run returned nil at x = 1" },
+        { { over = { x = { 1, 2 } }, run = function() return 0 / 0 end }, "run returned" },
+    })
     equal(pcall(minimise, { over = { x = { 1, 2 } }, run = function() error("mine") end }), false)
 end)
 

@@ -42,13 +42,15 @@ test("x and y choose columns by name or number, torques over k as in the record 
     has(text(run, "plot", { x = "theta", y = "friction" }), "friction", "theta, rad")
     has(text(run, "plot", { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")
     has(text(run, "plot", { x = 1, y = { 2, 4 } }), "theta, rad", "M")
-    raises_here(function() run:plot { y = "frction" } end, "frction", "did you mean 'friction'?")
-    raises_here(function() run:plot { y = "M/kk" } end, "M/kk")
-    raises_here(function() run:plot { y = "thta/k" } end, "did you mean 'theta'?")
-    raises_here(function() run:plot { x = 9 } end, "9")
-    raises_here(function() run:plot { y = {} } end, "y must name a column")
-    raises_here(function() run:plot { y = true } end, "y must be the name or the number of a column, got true")
-    raises_here(function() run:plot { x = { "t", "theta" } } end, "x must be one column")
+    support.refuses(function(o) run:plot(o) end, {
+        { { y = "frction" }, "frction", "did you mean 'friction'?" },
+        { { y = "M/kk" }, "M/kk" },
+        { { y = "thta/k" }, "did you mean 'theta'?" },
+        { { x = 9 }, "9" },
+        { { y = {} }, "y must name a column" },
+        { { y = true }, "y must be the name or the number of a column, got true" },
+        { { x = { "t", "theta" } }, "x must be one column" },
+    })
 end)
 
 test("the phase plane has its start, its end and the dead zone", function()
@@ -140,9 +142,11 @@ end)
 test("logarithmic axes", function()
     has(vectors { { { 1, 10, 100 }, { 1e-9, 1e-6, 1e-3 } }, xlog = true, ylog = true }, "10", "1e-9")
     has(vectors { { { 1, 10, 100 }, { 0, -1, 5 } }, ylog = true }, "5") -- what is not positive has no place
-    raises_here(function() plot { line, xlog = true, xlim = { 0, 1 } } end, "xlim", "must be positive")
-    raises_here(function() plot { line, xlog = true, xticks = 2 } end, "xticks must be a list")
-    raises_here(function() plot { line, xlog = true, equal = true } end, "equal = true needs linear axes")
+    support.refuses(plot, {
+        { { line, xlog = true, xlim = { 0, 1 } }, "xlim", "must be positive" },
+        { { line, xlog = true, xticks = 2 }, "xticks must be a list" },
+        { { line, xlog = true, equal = true }, "equal = true needs linear axes" },
+    })
 end)
 
 test("show = false returns a picture, that can be printed and set beside another one", function()
@@ -169,20 +173,22 @@ test("a picture outlives its run", function()
 end)
 
 test("wrong curves are told by their number", function()
-    raises_here(function() plot {} end, "plot needs a curve")
-    raises_here(function() plot { xlabel = "x" } end, "plot needs a curve")
-    raises_here(function() plot { run.t, run.theta } end, "item 1 must be a curve { x, y }, a run or a picture, got a vector")
-    raises_here(function() plot { { 0, 1 }, { 0, 1 } } end, "item 1 must be a curve { x, y }")
-    raises_here(function() plot { line, { { 1, 2 } } } end, "plot: curve 2: y must be a vector or a table of numbers, got nil")
-    raises_here(function() plot { { { 1, 2 }, { 1 } } } end, "plot: curve 1: x has 2 numbers, but y has 1")
-    raises_here(function() plot { { { 1, 2 }, { 1, "2" } } } end, "plot: curve 1: y[2] must be a number, got the string \"2\"")
-    raises_here(function() plot { { { 1 }, { 1 }, lable = "x" } } end, "plot: curve 1 has no option 'lable'", "did you mean 'label'?")
-    raises_here(function() plot { { { 1 }, { 1 }, { 1 } } } end, "plot: curve 1 takes named options only", "{ x, y, label")
-    raises_here(function() plot { { { 1 }, { 1 }, style = "dots" } } end, "style must be 'line', 'points' or 'fill'")
-    raises_here(function() plot { { { 1 }, { 1 }, dashes = "dahsed" } } end, "did you mean 'dashed'?")
-    raises_here(function() plot { { { 1 }, { 1 }, base = { 0 } } } end, "base is the second edge of a filled area")
-    raises_here(function() plot { { { 1 }, { 1 }, base = { 0, 1 }, style = "fill" } } end, "but base has 2")
-    raises_here(function() plot { line, [5] = line } end, "named options only")
+    support.refuses(plot, {
+        { {}, "plot needs a curve" },
+        { { xlabel = "x" }, "plot needs a curve" },
+        { { run.t, run.theta }, "item 1 must be a curve { x, y }, a run or a picture, got a vector" },
+        { { { 0, 1 }, { 0, 1 } }, "item 1 must be a curve { x, y }" },
+        { { line, { { 1, 2 } } }, "plot: curve 2: y must be a vector or a table of numbers, got nil" },
+        { { { { 1, 2 }, { 1 } } }, "plot: curve 1: x has 2 numbers, but y has 1" },
+        { { { { 1, 2 }, { 1, "2" } } }, "plot: curve 1: y[2] must be a number, got the string \"2\"" },
+        { { { { 1 }, { 1 }, lable = "x" } }, "plot: curve 1 has no option 'lable'", "did you mean 'label'?" },
+        { { { { 1 }, { 1 }, { 1 } } }, "plot: curve 1 takes named options only", "{ x, y, label" },
+        { { { { 1 }, { 1 }, style = "dots" } }, "style must be 'line', 'points' or 'fill'" },
+        { { { { 1 }, { 1 }, dashes = "dahsed" } }, "did you mean 'dashed'?" },
+        { { { { 1 }, { 1 }, base = { 0 } } }, "base is the second edge of a filled area" },
+        { { { { 1 }, { 1 }, base = { 0, 1 }, style = "fill" } }, "but base has 2" },
+        { { line, [5] = line }, "named options only" },
+    })
     local many = {}
     for i = 1, 1001 do many[i] = line end
     raises_here(function() plot(many) end, "1001 curves are too many, 1000 can be drawn")
@@ -191,21 +197,23 @@ end)
 test("wrong options are told with their limits", function()
     raises_here(function() run:plot("x.svg") end, "named options")
     raises_here(function() run.plot() end, "use a colon: run:plot()")
-    raises_here(function() run:plot { title = 1 } end, "title must be a string")
-    raises_here(function() run:plot { xlim = { 1, 0 } } end, "xlim must be two increasing numbers")
-    raises_here(function() run:plot { xlim = { 1 } } end, "xlim must be two increasing numbers")
-    raises_here(function() run:plot { xlim = { 1, 1 + 1e-15 } } end, "xlim", "1e-13")
-    raises_here(function() run:plot { ylim = { -1e308, 1e308 } } end, "ylim", "1e300")
-    raises_here(function() run:plot { xticks = 1e-9 } end, "xticks makes 5e+09 ticks", "more than 200")
-    raises_here(function() run:plot { xticks = "many" } end, "xticks")
-    raises_here(function() run:plot { size = { 8, 6 } } end, "size is for files")
-    raises_here(function() run:plot { file = "x.svg", size = { 1, 6 } } end, "size must be width and height in cm")
-    raises_here(function() run:plot { file = "x.svg", show = false } end, "file and show = false exclude each other")
-    raises_here(function() run:plot { file = "x.jpg" } end, "'x.jpg' must end in .svg, .png, .pdf, .gp", ".txt")
-    raises_here(function() run:plot { file = "x" } end, "'x' must end in .svg")
-    raises_here(function() run:plot { file = 7 } end, "file must be a string")
-    raises_here(function() run:plot { file = "/nowhere/at/all.svg" } end, "there is no folder '/nowhere/at'")
-    raises_here(function() run:plot { file = "x\0.svg" } end, "NUL")
+    support.refuses(function(o) run:plot(o) end, {
+        { { title = 1 }, "title must be a string" },
+        { { xlim = { 1, 0 } }, "xlim must be two increasing numbers" },
+        { { xlim = { 1 } }, "xlim must be two increasing numbers" },
+        { { xlim = { 1, 1 + 1e-15 } }, "xlim", "1e-13" },
+        { { ylim = { -1e308, 1e308 } }, "ylim", "1e300" },
+        { { xticks = 1e-9 }, "xticks makes 5e+09 ticks", "more than 200" },
+        { { xticks = "many" }, "xticks" },
+        { { size = { 8, 6 } }, "size is for files" },
+        { { file = "x.svg", size = { 1, 6 } }, "size must be width and height in cm" },
+        { { file = "x.svg", show = false }, "file and show = false exclude each other" },
+        { { file = "x.jpg" }, "'x.jpg' must end in .svg, .png, .pdf, .gp", ".txt" },
+        { { file = "x" }, "'x' must end in .svg" },
+        { { file = 7 }, "file must be a string" },
+        { { file = "/nowhere/at/all.svg" }, "there is no folder '/nowhere/at'" },
+        { { file = "x\0.svg" }, "NUL" },
+    })
 end)
 
 test("files begin as files of their kind begin, and an old one is replaced as a whole", function()

@@ -42,34 +42,38 @@ test("M may be a function of the frequency, and the amplitude another one", func
     end
     local one = { amplitude = { 1, 2 } }
     local function empty() return {} end
-    raises_here(function() sys:response{} end, "needs over")
-    raises_here(function() sys:response{ over = 3 } end, "over must be a name and its values")
-    raises_here(function() sys:response{ over = { 1, 2 } } end, "over[1] must be a name and its values")
-    raises_here(function() sys:response{ over = {} } end, "over must be a name and its values")
-    raises_here(function() sys:response{ over = { frequency = { "a" } } } end, "over.frequency must be a list of numbers")
-    raises_here(function() sys:response{ over = { frequency = {} } } end, "frequency has no values")
-    raises_here(function() sys:response{ over = { frequency = 3 } } end, "over.frequency must be a vector or a table")
-    raises_here(function() sys:response{ over = { frequency = { 1, -1 } } } end, "frequency = -1 must be positive")
-    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 }, c = { 1 } } } end, "varies one or two", "sweep")
-    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 } } } end, "over.a needs at")
-    raises_here(function() sys:response{ over = { { "a", { 1 } }, { "a", { 2 } } }, at = empty } end, "two parameters 'a'")
-    raises_here(function() sys:response{ over = { omega = { 1 }, period = { 1 } } } end, "exclude each other")
-    raises_here(function() sys:response{ over = { amplitude = { 1 }, omega = { 1 } }, frequency = 1 } end, "omega is varied")
-    raises_here(function() sys:response{ over = { a = { 1 } } } end, "over.a needs at")
-    raises_here(function() sys:response{ over = { lag = { 1 } }, at = empty } end, "'lag' is a column of the result")
-    raises_here(function() sys:response{ over = one } end, "give one of frequency, omega and period")
-    raises_here(function() sys:response{ over = one, frequency = 1, period = 1 } end, "give one of frequency")
-    raises_here(function() sys:response{ over = { omega = { 1 } }, frequency = 1 } end, "omega is varied")
-    raises_here(function() sys:response{ over = { a = { 1 } }, at = 3 } end, "at must be a function of a point")
-    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return 3 end } end, "at returned 3 for a = 1")
-    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return { m = 3 } end } end, "no option 'm'")
-    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return { M = "x" } end } end, "at: M")
+    support.refuses(function(o) sys:response(o) end, {
+        { {}, "needs over" },
+        { { over = 3 }, "over must be a name and its values" },
+        { { over = { 1, 2 } }, "over[1] must be a name and its values" },
+        { { over = {} }, "over must be a name and its values" },
+        { { over = { frequency = { "a" } } }, "over.frequency must be a list of numbers" },
+        { { over = { frequency = {} } }, "frequency has no values" },
+        { { over = { frequency = 3 } }, "over.frequency must be a vector or a table" },
+        { { over = { frequency = { 1, -1 } } }, "frequency = -1 must be positive" },
+        { { over = { a = { 1 }, b = { 1 }, c = { 1 } } }, "varies one or two", "sweep" },
+        { { over = { a = { 1 }, b = { 1 } } }, "over.a needs at" },
+        { { over = { { "a", { 1 } }, { "a", { 2 } } }, at = empty }, "two parameters 'a'" },
+        { { over = { omega = { 1 }, period = { 1 } } }, "exclude each other" },
+        { { over = { amplitude = { 1 }, omega = { 1 } }, frequency = 1 }, "omega is varied" },
+        { { over = { a = { 1 } } }, "over.a needs at" },
+        { { over = { lag = { 1 } }, at = empty }, "'lag' is a column of the result" },
+        { { over = one }, "give one of frequency, omega and period" },
+        { { over = one, frequency = 1, period = 1 }, "give one of frequency" },
+        { { over = { omega = { 1 } }, frequency = 1 }, "omega is varied" },
+        { { over = { a = { 1 } }, at = 3 }, "at must be a function of a point" },
+        { { over = { a = { 1 } }, at = function() return 3 end }, "at returned 3 for a = 1" },
+        { { over = { a = { 1 } }, at = function() return { m = 3 } end }, "no option 'm'" },
+        { { over = { a = { 1 } }, at = function() return { M = "x" } end }, "at: M" },
+    })
     -- The forms of before name the new ones.
-    raises_here(function() sys:response{ frequency = { 1, 2 } } end, "over = { frequency = values }", "vector.linspace")
-    raises_here(function() sys:response{ amplitude = { 1, 2, 3 }, frequency = 1 } end, "over = { amplitude = values }")
-    raises_here(function() sys:response{ M = math.sin, over = { 1, 2 } } end, "at = function(p) return { M = ... } end")
-    raises_here(function() sys:response{ over = { frequency = { 1 } }, points = 4 } end, "there is no points", "vector.linspace")
-    raises_here(function() sys:response{ over = { frequency = { 1 } }, name = "f" } end, "there is no name")
+    support.refuses(function(o) sys:response(o) end, {
+        { { frequency = { 1, 2 } }, "over = { frequency = values }", "vector.linspace" },
+        { { amplitude = { 1, 2, 3 }, frequency = 1 }, "over = { amplitude = values }" },
+        { { M = math.sin, over = { 1, 2 } }, "at = function(p) return { M = ... } end" },
+        { { over = { frequency = { 1 } }, points = 4 }, "there is no points", "vector.linspace" },
+        { { over = { frequency = { 1 } }, name = "f" }, "there is no name" },
+    })
 end)
 
 test("folds, jumps and unstable sides are rows, and a picture of pieces", function()

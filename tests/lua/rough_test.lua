@@ -46,7 +46,7 @@ for who, options in pairs(noisy) do
             end
             assert(#found == #clean, ("%g: %s"):format(size, found.outcome))
             -- what the noise, or the tolerance that takes it for nothing, does to a motion of size 1
-            near((found.theta - clean.theta):abs():max(), 0, 100 * size)
+            near(found.theta, clean.theta, 100 * size)
         end
         assert(sentences >= 1, sentences)
     end)

@@ -97,11 +97,13 @@ test("t_start shifts the window, and nothing is recorded as an event there", fun
 end)
 
 test("missing, superfluous and misspelt options are errors that show the way", function()
-    raises_here(function() nd:simulate { dt = 1 } end, "t_end")
-    raises_here(function() nd:simulate { dt = 0.1 } end, "sys:simulate needs t_end, for example")
-    raises_here(function() nd:simulate { times = {} } end, "needs t_end")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, times = { 1 } } end, "exclude each other")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, m = 1 } end, "did you mean 'M'?")
+    support.refuses(function(o) nd:simulate(o) end, {
+        { { dt = 1 }, "t_end" },
+        { { dt = 0.1 }, "sys:simulate needs t_end, for example" },
+        { { times = {} }, "needs t_end" },
+        { { t_end = 1, dt = 0.1, times = { 1 } }, "exclude each other" },
+        { { t_end = 1, dt = 0.1, m = 1 }, "did you mean 'M'?" },
+    })
     raises_here(function() nd:simulate() end, "one table of named options", "sys:simulate{")
     raises_here(function() nd:simulate(1, 2) end, "one table of named options")
     raises_here(function() nd:simulate { 1, 2 } end, "named options only")
@@ -110,34 +112,40 @@ test("missing, superfluous and misspelt options are errors that show the way", f
 end)
 
 test("values of a wrong kind are errors that name the option and the value", function()
-    raises_here(function() nd:simulate { t_end = "1", dt = 0.1 } end, "t_end must be a finite number", 'the string "1"')
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, theta0 = {} } end, "theta0 must be a finite number, got a table")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, velocity0 = 0 / 0 } end, "velocity0 must be a finite number", "nan")
-    raises_here(function() nd:simulate { t_end = math.huge, dt = 0.1 } end, "t_end must be a finite number", "inf")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, M = "sin" } end, "M must be a function, a number or an excitation", '"sin"')
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, M = 0 / 0 } end, "M must be finite")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = "rk4" } end, "integrator.rk4{ h = 0.001 }", '"rk4"')
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 } end, "integrator must be an integrator")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = nd } end, "got a system")
+    support.refuses(function(o) nd:simulate(o) end, {
+        { { t_end = "1", dt = 0.1 }, "t_end must be a finite number", 'the string "1"' },
+        { { t_end = 1, dt = 0.1, theta0 = {} }, "theta0 must be a finite number, got a table" },
+        { { t_end = 1, dt = 0.1, velocity0 = 0 / 0 }, "velocity0 must be a finite number", "nan" },
+        { { t_end = math.huge, dt = 0.1 }, "t_end must be a finite number", "inf" },
+        { { t_end = 1, dt = 0.1, M = "sin" }, "M must be a function, a number or an excitation", '"sin"' },
+        { { t_end = 1, dt = 0.1, M = 0 / 0 }, "M must be finite" },
+        { { t_end = 1, dt = 0.1, integrator = "rk4" }, "integrator.rk4{ h = 0.001 }", '"rk4"' },
+        { { t_end = 1, dt = 0.1, integrator = integrator.rk4 }, "integrator must be an integrator" },
+        { { t_end = 1, dt = 0.1, integrator = nd }, "got a system" },
+    })
 end)
 
 test("windows and grids that cannot be are errors with their values", function()
-    raises_here(function() nd:simulate { t_end = 0, dt = 0.1 } end, "t_end = 0 must be after t_start = 0")
-    raises_here(function() nd:simulate { t_start = 2, t_end = 1, dt = 0.1 } end, "t_end = 1 must be after t_start = 2")
-    raises_here(function() nd:simulate { times = { 0, 2, 1 } } end, "times[3] = 1", "must increase")
-    raises_here(function() nd:simulate { times = { 0, 1, 1 } } end, "times[3] = 1", "must increase")
-    raises_here(function() nd:simulate { times = { -1, 1 } } end, "times[1] = -1", "outside")
-    raises_here(function() nd:simulate { times = { 0, 3 }, t_end = 2 } end, "times[2] = 3", "outside")
-    raises_here(function() nd:simulate { times = { 0, "1" } } end, "times")
-    raises_here(function() nd:simulate { times = 3 } end, "times")
+    support.refuses(function(o) nd:simulate(o) end, {
+        { { t_end = 0, dt = 0.1 }, "t_end = 0 must be after t_start = 0" },
+        { { t_start = 2, t_end = 1, dt = 0.1 }, "t_end = 1 must be after t_start = 2" },
+        { { times = { 0, 2, 1 } }, "times[3] = 1", "must increase" },
+        { { times = { 0, 1, 1 } }, "times[3] = 1", "must increase" },
+        { { times = { -1, 1 } }, "times[1] = -1", "outside" },
+        { { times = { 0, 3 }, t_end = 2 }, "times[2] = 3", "outside" },
+        { { times = { 0, "1" } }, "times" },
+        { { times = 3 }, "times" },
+    })
 end)
 
 test("a step above the stability limit is refused with the limit", function()
     raises_here(function() nondimensional {}:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.5 } } end,
         "h = 0.5 exceeds the stability limit 0.45", "use h <=")
     raises_here(function() integrator.rk4 {} end, "integrator.rk4 needs h, for example integrator.rk4{ h = 0.001 }")
-    raises_here(function() integrator.dinal1989 { h = 0.1, stop = "txt" } end, "stop must be 'listing' or 'text'", "did you mean 'text'?")
-    raises_here(function() integrator.dinal1989 { h = 0.1, slip = 1 } end, "slip must be true or false, got 1")
+    support.refuses(integrator.dinal1989, {
+        { { h = 0.1, stop = "txt" }, "stop must be 'listing' or 'text'", "did you mean 'text'?" },
+        { { h = 0.1, slip = 1 }, "slip must be true or false, got 1" },
+    })
 end)
 
 test("more rows than memory allows are refused with their size and the cure, before anything is computed", function()

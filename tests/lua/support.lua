@@ -29,9 +29,20 @@ function support.equal(found, wanted, what)
     end
 end
 
+--- Of two vectors, their elements.
 function support.near(found, wanted, tolerance)
+    if type(found) == "userdata" then found, wanted = (found - wanted):abs():max(), 0 end
     if not (type(found) == "number" and math.abs(found - wanted) <= tolerance) then
         error(("wanted %.17g within %g, found %s"):format(wanted, tolerance, tostring(found)), 2)
+    end
+end
+
+--- The same events in both runs, at the same times.
+function support.same_events(a, b, tolerance, what)
+    support.equal(#a.events, #b.events, what)
+    for i, event in ipairs(b.events) do
+        support.equal(a.events[i].kind, event.kind, what)
+        support.near(a.events[i].t, event.t, tolerance)
     end
 end
 
@@ -52,15 +63,28 @@ function support.raises(body, ...)
     return message
 end
 
---- As raises(), and the message must begin with the file and line of the caller's function: the user's own line.
-function support.raises_here(body, ...)
-    local about = debug.getinfo(body, "S")
+local function raises_in(own, body, ...)
+    local about = debug.getinfo(own, "S")
     local message = support.raises(body, ...)
     local line = message:match("^" .. about.short_src:gsub("%p", "%%%0") .. ":(%d+): ")
     if not line or tonumber(line) < about.linedefined or tonumber(line) > about.lastlinedefined then
-        error("the message does not begin with the user's line: " .. message, 2)
+        error("the message does not begin with the user's line: " .. message, 3)
     end
     return message
+end
+
+--- As raises(), and the message must begin with the file and line of the caller's function: the user's own line.
+function support.raises_here(body, ...)
+    return raises_in(body, body, ...)
+end
+
+--- The call must refuse the options that each row begins with, as raises_here() does, with the pieces behind them.
+function support.refuses(call, rows)
+    local of_lua = type(call) == "function" and debug.getinfo(call, "S").what ~= "C"
+    local own = of_lua and call or function(options) call(options) end
+    for _, row in ipairs(rows) do
+        raises_in(own, function() own(row[1]) end, table.unpack(row, 2))
+    end
 end
 
 --- The same function, which is sampled: it calls what cannot be read.

@@ -294,24 +294,28 @@ end)
 
 test("what is wrong with the call is told at the user's line", function()
     local function run() return {} end
-    raises_here(function() sweep { over = { x = {} }, run = run } end, "sweep: x has no values")
-    raises_here(function() sweep { over = { x = vector {} }, run = run } end, "sweep: x has no values")
-    raises_here(function() sweep { over = { x = { 0 / 0 } }, run = run } end, "sweep: x[1] = nan must be finite")
-    raises_here(function() sweep { over = { x = { 1, y = 2 } }, run = run } end, "sweep: x must be a list", "it has y")
-    raises_here(function() sweep { over = { x = { "a", y = 2 } }, run = run } end, "sweep: x must be a list", "it has y")
-    raises_here(function() sweep { over = { x = { 1, "a" } }, run = run } end, "sweep: x[2] must be a finite number")
-    raises_here(function() sweep { over = { x = { "a", 1 } }, run = run } end, "sweep: x[2] must be a string")
-    raises_here(function() sweep { over = { x = { 1 } } } end, "sweep needs run")
-    raises_here(function() sweep { over = { x = { 1 } }, run = 3 } end, "run must be a function of a point")
-    raises_here(function() sweep { run = run } end, "there is no parameter")
-    raises_here(function() sweep { over = { x = 3 }, run = run } end, "over.x must be a vector or a table of values, got 3")
-    raises_here(function() sweep { x = { 1 }, run = run } end, "parameters and their values stand in over = { x = values }")
+    support.refuses(sweep, {
+        { { over = { x = {} }, run = run }, "sweep: x has no values" },
+        { { over = { x = vector {} }, run = run }, "sweep: x has no values" },
+        { { over = { x = { 0 / 0 } }, run = run }, "sweep: x[1] = nan must be finite" },
+        { { over = { x = { 1, y = 2 } }, run = run }, "sweep: x must be a list", "it has y" },
+        { { over = { x = { "a", y = 2 } }, run = run }, "sweep: x must be a list", "it has y" },
+        { { over = { x = { 1, "a" } }, run = run }, "sweep: x[2] must be a finite number" },
+        { { over = { x = { "a", 1 } }, run = run }, "sweep: x[2] must be a string" },
+        { { over = { x = { 1 } } }, "sweep needs run" },
+        { { over = { x = { 1 } }, run = 3 }, "run must be a function of a point" },
+        { { run = run }, "there is no parameter" },
+        { { over = { x = 3 }, run = run }, "over.x must be a vector or a table of values, got 3" },
+        { { x = { 1 }, run = run }, "parameters and their values stand in over = { x = values }" },
+    })
     equal(#sweep { over = { seed = { 1, 2 }, file = { "a", "b" } }, run = function(p) return { y = p.seed } end }, 4) -- any name
     raises_here(function() sweep { over = { x = { 1 } }, run = run, worker = 2 } end, "sweep has no option 'worker' among over, run, workers, seed,",
         "did you mean 'workers'?")
-    raises_here(function() sweep { over = { 1 }, run = run } end, "over[1] must be a name and its values")
-    raises_here(function() sweep { over = { { "x", { 1 } }, x = { 2 } }, run = run } end, "two parameters 'x'")
-    raises_here(function() sweep { over = { error = { 1 } }, run = run } end, "the column of messages")
+    support.refuses(sweep, {
+        { { over = { 1 }, run = run }, "over[1] must be a name and its values" },
+        { { over = { { "x", { 1 } }, x = { 2 } }, run = run }, "two parameters 'x'" },
+        { { over = { error = { 1 } }, run = run }, "the column of messages" },
+    })
     raises_here(function() sweep { over = { x = vector.linspace(0, 1, 1e5), y = vector.linspace(0, 1, 1e5) }, run = run } end,
         "1e+10 points are more")
 end)

@@ -124,8 +124,10 @@ test("extremes stop at rest, at count, or ask for it", function()
         "theory.extremes: count is needed, because this motion never comes to rest")
     raises_here(function() theory.extremes { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 } end,
         "count is needed, because there are 5e+11 extremes until rest")
-    raises_here(function() theory.extremes { theta0 = 1 } end, "theory.extremes needs system, for example")
-    raises_here(function() theory.extremes { system = 3 } end, "system must be a system such as", "got 3")
+    support.refuses(theory.extremes, {
+        { { theta0 = 1 }, "theory.extremes needs system, for example" },
+        { { system = 3 }, "system must be a system such as", "got 3" },
+    })
 end)
 
 test("half_cycle takes a system, too, and stops in the dead zone", function()
@@ -146,9 +148,11 @@ test("the three step limits", function()
     near(theory.step_limit { system = sys, rule = "report", velocity0 = 6.283311, Mc = 39.48 }, 0.0265778, 1e-6)
     near(theory.step_limit { system = sys, rule = "corrected", velocity0 = 6.283311 }, 0.167 / 6.283311, 1e-9)
     near(theory.step_limit { system = sys }, 0.4502 * sys.T0, 1e-4)
-    raises_here(function() theory.step_limit { system = sys, rule = "euler" } end, "rule must be 'rk4', 'report' or 'corrected', got")
-    raises_here(function() theory.step_limit { system = sys, rule = "reprot" } end, "did you mean 'report'?")
-    raises_here(function() theory.step_limit { system = sys, rule = "report" } end, "theta0 or velocity0 is needed")
+    support.refuses(theory.step_limit, {
+        { { system = sys, rule = "euler" }, "rule must be 'rk4', 'report' or 'corrected', got" },
+        { { system = sys, rule = "reprot" }, "did you mean 'report'?" },
+        { { system = sys, rule = "report" }, "theta0 or velocity0 is needed" },
+    })
     raises_here(function() theory.step_limit { system = sys, rule = "report", theta0 = 1, Mc = 0 } end,
         "Mc = 0 must not be zero")
 end)
@@ -159,16 +163,20 @@ test("wrong values are refused with the option, the element and the limit", func
         "r and zeta have 2 and 3 numbers; they must be equally long")
     raises_here(function() theory.magnification { r = "1" } end,
         'r must be a finite number or a vector, got the string "1"')
-    raises_here(function() theory.magnification { r = 0 / 0 } end, "r must be a finite number, got", "nan")
-    raises_here(function() theory.magnification { r = { 1, "2" } } end, 'r[2] must be a finite number, got the string "2"')
-    raises_here(function() theory.magnification {} end, "theory.magnification needs r, for example")
+    support.refuses(theory.magnification, {
+        { { r = 0 / 0 }, "r must be a finite number, got", "nan" },
+        { { r = { 1, "2" } }, 'r[2] must be a finite number, got the string "2"' },
+        { {}, "theory.magnification needs r, for example" },
+    })
     raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
         "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")
     raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end,
         "r = 1e-05 must be 0 or from 0.0001 to 1e6")
     raises_here(function() theory.stop_boundary { r = 0.5, Re_over_Rd = 0.9 } end, "Re_over_Rd = 0.9 must be at least 1")
-    raises_here(function() theory.free_response { t = 1, theta0 = 1 } end, "theory.free_response needs system, or omega0")
-    raises_here(function() theory.free_response { t = 1, system = nd, omega0 = 1 } end, "system excludes omega0 and zeta")
+    support.refuses(theory.free_response, {
+        { { t = 1, theta0 = 1 }, "theory.free_response needs system, or omega0" },
+        { { t = 1, system = nd, omega0 = 1 }, "system excludes omega0 and zeta" },
+    })
     raises_here(function() theory.free_response { t = { 1, -1 }, system = nd, theta0 = 1 } end,
         "t[2] = -1 must not be negative")
     raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")

@@ -161,11 +161,13 @@ test("a nondimensional system has the units of its numbers, unless others are gi
 end)
 
 test("wrong units are said", function()
-    raises_here(function() system{ I = 1, k = 4, units = "m" } end, 'units must be a table such as { theta = "m"')
-    raises_here(function() system{ I = 1, k = 4, units = { theta = 1 } } end, "theta must be a string")
-    raises_here(function() system{ I = 1, k = 4, units = { time = "s" } } end, "'time'")
-    raises_here(function() system{ I = 1, k = 4, units = { velocity = "m/s" } } end, "'velocity'")
-    raises_here(function() system{ I = 1, k = 4, units = { "m", "s" } } end, "units")
+    support.refuses(system, {
+        { { I = 1, k = 4, units = "m" }, 'units must be a table such as { theta = "m"' },
+        { { I = 1, k = 4, units = { theta = 1 } }, "theta must be a string" },
+        { { I = 1, k = 4, units = { time = "s" } }, "'time'" },
+        { { I = 1, k = 4, units = { velocity = "m/s" } }, "'velocity'" },
+        { { I = 1, k = 4, units = { "m", "s" } }, "units" },
+    })
     raises_here(function() plain:with{ units = { t = "s\27[2J" } } end, "the unit of t must be a short word")
     raises_here(function() plain:with{ units = { t = "a, b" } } end, "without quotes and commas")
     raises_here(function() plain:simulate(asked{ units = { M = ("N"):rep(25) } }) end, "the unit of M must be a short word")

@@ -1,26 +1,21 @@
 """run:animate() on a terminal. Usage: animate_test.py PROGRAM"""
 
-import os
 import re
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from screen import CTRL_C, Terminal
+from home import AtHome
+from screen import CTRL_C
 
-PROGRAM = ""
 RUN = ("run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5, walls = { lower = -0.6 } }:simulate"
        "{ theta0 = 1, t_end = 20, times = {} }")
 
 
-class Animation(unittest.TestCase):
+class Animation(AtHome):
     def start(self, **options):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        terminal = Terminal(PROGRAM, folder.name, **options)
-        self.addCleanup(terminal.close)
+        terminal = self.terminal(**options)
         terminal.enter(RUN)
         return terminal
 
@@ -59,5 +54,4 @@ class Animation(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

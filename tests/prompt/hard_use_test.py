@@ -1,42 +1,30 @@
 """Hard use: signals, full pipes and disks, strangers' control sequences, Ctrl-C in a script. Usage: hard_use_test.py PROGRAM"""
 
 import os
-import pathlib
 import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import PATIENCE, PROMPT, Session
+from home import PROGRAM, AtHome
+from session import PATIENCE, PROMPT
 
-PROGRAM = ""
 LONG_FILE = ("local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } print('running') "
              "io.stdout:flush() while true do run:save 'run.csv' end")
 SMALL_RUN = "nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-2 }"
 
 
-class HardUse(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
-
+class HardUse(AtHome):
     def start(self, *arguments, **options):
         process = subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    cwd=self.home, **options)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
-
-    def session(self, *arguments, **variables):
-        session = Session(PROGRAM, self.home, arguments, **variables)
-        self.addCleanup(session.child.close, True)
-        return session
 
     def files(self):
         return sorted(entry.name for entry in self.home.iterdir())
@@ -179,5 +167,4 @@ class Interrupted(HardUse):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

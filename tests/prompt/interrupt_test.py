@@ -10,9 +10,9 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
+from home import PROGRAM
 from session import AT_ONCE, PATIENCE, processor_time, time_until_end
 
-PROGRAM = ""
 
 SIMULATE = "nondimensional{{ zeta = 0.01, friction_ratio = 0.1 }}:simulate{{ M = {}, t_end = 1e7, dt = 1e4 }}"
 LONG = {
@@ -132,5 +132,4 @@ class Interrupts(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -9,18 +9,15 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import CTRL_C, PATIENCE, Session
+from home import AtHome
+from session import CTRL_C, PATIENCE
 
-PROGRAM = ""
 RUN = "run = nondimensional{ zeta = 0.1 }:simulate{ M = 3, theta0 = 1, t_end = 3, dt = 0.01 }"
 
 
-class PlotTest(unittest.TestCase):
+class PlotTest(AtHome):
     def start(self, **variables):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        session = Session(PROGRAM, pathlib.Path(folder.name), **variables)
-        self.addCleanup(session.child.close, True)
+        session = self.session(**variables)
         session.enter(RUN)
         return session
 
@@ -72,5 +69,4 @@ class PlotTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -1,7 +1,5 @@
 """The progress line and Ctrl-C in long runs, as a terminal shows them. Usage: progress_test.py PROGRAM"""
 
-import os
-import pathlib
 import re
 import subprocess
 import sys
@@ -11,6 +9,7 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
+from home import PROGRAM
 from session import AT_ONCE, CTRL_C, PATIENCE, environment, processor_time
 
 import pexpect
@@ -20,7 +19,6 @@ try:
 except ImportError:
     sys.exit("the tests of the progress line need pyte: apt-get install python3-pyte")
 
-PROGRAM = ""
 # Longer than any test waits; a native excitation, so that nothing but the stepping loop runs.
 LONG = "nondimensional{ zeta = 0.1 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 1e9, times = {} }"
 LINE = re.compile(r" *\d+% ")
@@ -220,5 +218,4 @@ class AtThePrompt(TerminalTest):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -1,33 +1,18 @@
 """What a user sees at the prompt. Usage: prompt_test.py PROGRAM [unittest arguments]"""
 
-import os
-import pathlib
 import stat
-import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import AT_ONCE, CONTINUATION, CTRL_C, CTRL_D, ENTER, UP, Session, end, processor_time
-
-PROGRAM = ""
-HAS_READLINE = True
+from home import HAS_READLINE, AtHome
+from session import AT_ONCE, CONTINUATION, CTRL_C, CTRL_D, ENTER, UP, end, processor_time
 
 
-class SessionTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
 
-    def start(self, *arguments, **options):
-        session = Session(PROGRAM, self.home, arguments, **options)
-        self.addCleanup(session.child.close, True)
-        return session
-
+class SessionTest(AtHome):
     def run_on(self, session, code):
         """Types code that runs for long, and waits until it does: until it has called busy()."""
         session.enter("function busy() io.write('run', 'ning', '\\n') io.flush() busy = os.time end")
@@ -55,10 +40,10 @@ class PromptTest(SessionTest):
 
 class Values(PromptTest):
     def test_the_first_line_names_the_version_and_the_way_out(self):
-        self.assertRegex(self.start().greeting, r"dinal \d+\.\d+\.\d+ \(Lua 5\.4\.\d+\): help\(\) for help, Ctrl-D to")
+        self.assertRegex(self.session().greeting, r"dinal \d+\.\d+\.\d+ \(Lua 5\.4\.\d+\): help\(\) for help, Ctrl-D to")
 
     def test_expressions_are_shown_without_print_and_kept_in_ans(self):
-        session = self.start()
+        session = self.session()
         self.assertEqual(session.enter("1 + 1"), "2")
         self.assertEqual(session.enter("ans * 1.5"), "3.0")
         self.assertEqual(session.enter("'a\"b'"), r'"a\"b"')
@@ -74,32 +59,32 @@ class Values(PromptTest):
         self.assertEqual(session.enter("y = 1; print(y)"), "1")
 
     def test_an_error_is_told_and_the_session_goes_on(self):
-        session = self.start()
+        session = self.session()
         self.assertEqual(session.enter("error('oh')"), "input:1: oh")
         self.assertIn("syntax error near 'b'", session.enter("a b"))
         self.assertEqual(session.enter("1"), "1")
 
     def test_os_exit_at_the_prompt_gives_its_code(self):
-        session = self.start()
+        session = self.session()
         session.press("os.exit(3)" + ENTER)
         self.assertEqual(session.exit_code(), 3)
 
     def test_lua_code_reads_the_next_line_that_is_typed(self):
-        session = self.start()
+        session = self.session()
         self.run_on(session, "busy() name = io.read()")
         session.enter("Coulomb")
         self.assertEqual(session.enter("name"), '"Coulomb"')
 
     def test_a_script_with_i_is_followed_by_the_prompt(self):
         (self.home / "lab.lua").write_text("w = 42 print(...)\n")
-        session = self.start("-i", "lab.lua", "here")
+        session = self.session("-i", "lab.lua", "here")
         self.assertIn("here", session.greeting)
         self.assertEqual(session.enter("w"), "42")
 
 
 class Lines(PromptTest):
     def test_a_chunk_may_take_several_lines(self):
-        session = self.start()
+        session = self.session()
         self.assertEqual(session.enter("function f(x)", CONTINUATION), "")
         self.assertEqual(session.enter("return 2*x", CONTINUATION), "")
         self.assertEqual(session.enter("end"), "")
@@ -107,13 +92,13 @@ class Lines(PromptTest):
         self.assertEqual(session.enter("21)"), "42")
 
     def test_a_pasted_block_runs_once_and_shows_its_last_value(self):
-        session = self.start()
+        session = self.session()
         session.press("\x1b[200~n = (n or 0) + 1\nfor i = 1, 2 do\n\tprint('line', i)\nend\nn * 10\x1b[201~")
         shown = session.enter("")
         self.assertRegex(shown, r"line\s+1\nline\s+2\n10$")
 
     def test_ctrl_d_in_a_continuation_drops_it_and_ctrl_d_at_the_prompt_leaves(self):
-        session = self.start()
+        session = self.session()
         session.enter("f(", CONTINUATION)
         session.press(CTRL_D)
         self.assertIn("near <eof>", session.until_prompt())
@@ -122,14 +107,14 @@ class Lines(PromptTest):
         self.assertTrue(session.child.before.endswith("\r\n"))
 
     def test_a_dumb_terminal_gets_no_escape_sequences(self):
-        session = self.start(prompt="> ", TERM="dumb")
+        session = self.session(prompt="> ", TERM="dumb")
         session.press("{ 1, 'two' }" + ENTER)
         session.child.expect_exact('{ 1, "two" }\r\n> ')
         self.assertEqual(session.leave(), 0)
         self.assertNotIn("\x1b", session.greeting + session.child.before)
 
     def test_prompts_can_be_set_as_in_lua(self):
-        session = self.start()
+        session = self.session()
         session.press("_PROMPT = 'lab> '" + ENTER)
         session.until_prompt("lab> ")
         session.press("_G = setmetatable(_G, { __index = function(_, k) error(k) end }) _PROMPT = nil" + ENTER)
@@ -138,18 +123,18 @@ class Lines(PromptTest):
 
 class History(PromptTest):
     def test_entries_of_several_lines_come_back_whole_in_the_next_session(self):
-        first = self.start()
+        first = self.session()
         first.enter("for i = 1, 2 do", CONTINUATION)
         first.enter("  print(i)", CONTINUATION)
         first.enter("end")
         first.enter("'later'")
         self.assertEqual(first.leave(), 0)
-        second = self.start()
+        second = self.session()
         second.press(UP + UP)
         self.assertTrue(second.enter("").endswith("1\n2"))
 
     def test_the_up_arrow_moves_within_a_block(self):
-        session = self.start()
+        session = self.session()
         session.enter("do", CONTINUATION)
         session.enter("  x = 1", CONTINUATION)
         session.enter("end")
@@ -158,7 +143,7 @@ class History(PromptTest):
         self.assertEqual(session.enter("xy"), "1")
 
     def test_the_file_is_for_its_user_only(self):
-        session = self.start(XDG_STATE_HOME=str(self.home / "some" / "state"))
+        session = self.session(XDG_STATE_HOME=str(self.home / "some" / "state"))
         session.enter("1")
         folder = self.home / "some" / "state" / "dinal"
         self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
@@ -166,17 +151,17 @@ class History(PromptTest):
         self.assertIn("\n1\n", (folder / "history").read_text())
 
     def test_a_session_that_ends_by_os_exit_is_kept(self):
-        session = self.start()
+        session = self.session()
         session.press("os.exit()" + ENTER)
         session.exit_code()
         self.assertIn("os.exit()", (self.home / ".local/state/dinal/history").read_text())
 
     def test_the_prompt_works_where_no_history_can_be_written(self):
-        session = self.start(XDG_STATE_HOME="/dev/null")
+        session = self.session(XDG_STATE_HOME="/dev/null")
         self.assertEqual(session.enter("1 + 1"), "2")
 
     def test_blank_and_repeated_lines_are_not_kept(self):
-        session = self.start()
+        session = self.session()
         for line in ["'a'", "", "'b'", "'b'"]:
             session.enter(line)
         session.press(UP + UP)
@@ -185,7 +170,7 @@ class History(PromptTest):
 
 class Interrupts(PromptTest):
     def test_ctrl_c_clears_the_line_and_drops_a_continuation(self):
-        session = self.start()
+        session = self.session()
         session.press("x = 1 -- never")
         session.press(CTRL_C)
         session.until_prompt()
@@ -197,7 +182,7 @@ class Interrupts(PromptTest):
         self.assertEqual(session.enter("x"), "nil")
 
     def test_ctrl_c_stops_lua_code_and_keeps_the_session(self):
-        session = self.start()
+        session = self.session()
         for line in ["busy() while true do end", "coroutine.wrap(function() busy() while true do end end)()",
                      "while true do pcall(function() busy() while true do end end) end",
                      "return setmetatable({}, { __tostring = function() busy() while true do end end })",
@@ -206,7 +191,7 @@ class Interrupts(PromptTest):
             self.assertEqual(session.enter("1 + 1"), "2")
 
     def test_a_second_ctrl_c_ends_c_code_that_never_returns(self):
-        session = self.start()
+        session = self.session()
         self.run_on(session, "busy() return ('a'):rep(40):find(('a-'):rep(40) .. 'b')")
         while session.child.isalive():  # two that come at the same time, to a machine that does other work, are one
             session.press(CTRL_C)
@@ -214,7 +199,7 @@ class Interrupts(PromptTest):
         self.assertEqual(session.exit_code(), 130)
 
     def test_the_rows_of_an_interrupted_run_are_kept_in_ans(self):
-        session = self.start()
+        session = self.session()
         session.enter("nd = nondimensional{ zeta = 0.01 }")
         # busy() when there are rows already; a native M is asked for its value by nobody, but its terms may be scripted
         for M in ["function(t) if t > 9 then busy() end return math.sin(t) end",
@@ -226,14 +211,14 @@ class Interrupts(PromptTest):
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
     def test_a_run_that_is_stopped_within_M_is_marked_interrupted(self):
-        session = self.start()
+        session = self.session()
         session.enter("function M(t) if t > 9 then busy() while true do end end return 1 end")
         self.interrupted(session, "nondimensional{}:simulate{ M = M, t_end = 20, dt = 1 }")
         self.assertEqual(session.enter("ans.outcome"), '"interrupted"')
 
     def test_ctrl_c_is_not_lost_while_keys_are_read(self):
         # The terminal throws away what was typed before: readline must not wait for a key that is gone.
-        session = self.start()
+        session = self.session()
         for i in range(200):
             session.press("x = 1 -- never")
             session.press(CTRL_C)
@@ -241,7 +226,7 @@ class Interrupts(PromptTest):
         self.assertEqual(session.enter("x"), "nil")
 
     def test_an_interrupted_run_goes_on_as_if_it_had_not_been(self):
-        session = self.start()
+        session = self.session()
         session.enter("nd = nondimensional{ zeta = 0.01, friction_ratio = 0.3 }")
         session.enter("function go(t_end) return nd:simulate{ M = M, t_end = t_end, dt = 1 } end")
         session.enter("function M(t) if t > enough then busy() end return math.sin(t) end enough = 9")
@@ -259,7 +244,7 @@ class Interrupts(PromptTest):
         self.assertEqual(session.enter("ans.t_end > part.t_end"), "true")
 
     def test_the_rows_of_a_run_whose_excitation_failed_are_kept_in_ans(self):
-        session = self.start()
+        session = self.session()
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
         shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
         self.assertIn("input:1: broken", shown)
@@ -268,18 +253,18 @@ class Interrupts(PromptTest):
         self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
 
     def test_a_closed_terminal_ends_the_program(self):
-        session = self.start()
+        session = self.session()
         self.assertTrue(end(session.child))
 
 
 class PlainLines(SessionTest):
     """What a build without readline does at a terminal; one with readline does it, too, on a dumb one."""
 
-    def start(self, *arguments):
-        return super().start(*arguments, prompt="\n> ", TERM="dumb")
+    def session(self, *arguments):
+        return super().session(*arguments, prompt="\n> ", TERM="dumb")
 
     def test_lines_continuations_and_both_control_keys(self):
-        session = self.start()
+        session = self.session()
         session.enter("1")
         session.press("x = (" + ENTER)
         session.until_prompt("\n>> ")
@@ -297,6 +282,4 @@ class PlainLines(SessionTest):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
-    HAS_READLINE = "edited with GNU Readline" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
     unittest.main()

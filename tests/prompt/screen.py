@@ -1,6 +1,5 @@
 """A session of dinal on a terminal whose screen can be looked at (needs the Debian packages python3-pexpect, -pyte)."""
 
-import sys
 import time
 
 import pexpect

@@ -13,10 +13,11 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
+from home import PROGRAM, AtHome
+
 # No clock decides how long anything may take: a process has so much processor time, and ends by a signal beyond it.
 MOST_SECONDS = 120
 
-PROGRAM = ""
 POINTS = 600  # in chunks of three
 SCRIPT = """
 local map = sweep{{ over = {{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 20) }}, file = "map.csv", workers = {workers},
@@ -37,11 +38,9 @@ print(#map, string.format("%.17g", sum))
 LAUNCHERS = ("DINAL_", "OMPI_", "PMI_", "SLURM_")
 
 
-class SweepFiles(unittest.TestCase):
+class SweepFiles(AtHome):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
+        super().setUp()
         self.parts = self.home / "map.csv.parts"
         self.write(workers=2)
 
@@ -319,5 +318,4 @@ class SweepFiles(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

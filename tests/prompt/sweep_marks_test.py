@@ -1,17 +1,15 @@
 """Which sweep a file belongs to: another one is refused, the same one is read, in whatever process. Usage: sweep_marks_test.py PROGRAM"""
 
 import os
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
+from home import PROGRAM, AtHome
 from session import PATIENCE
 
-PROGRAM = ""
 LAUNCHERS = ("DINAL_", "OMPI_", "PMI_", "SLURM_")
 LONG = "local t = {} for i = 1, 1000 do t[i] = i end t[500] = VALUE"
 # What a function uses, and how. VALUE is 1, and then 2.
@@ -68,12 +66,7 @@ SAME = {
 }
 
 
-class SweepMarks(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
-
+class SweepMarks(AtHome):
     def swept(self, before, y):
         """The mark in the file, and what was said when it is not this sweep's."""
         script = f'{before}\nsweep{{ over = {{ a = {{ 1, 2 }} }}, file = "map.csv", run = function(p) return {{ y = {y} }} end }}\n'
@@ -103,5 +96,4 @@ class SweepMarks(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()

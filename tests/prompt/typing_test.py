@@ -1,33 +1,21 @@
 """What is seen while a line is typed: completion, hints, history, paste. Usage: typing_test.py PROGRAM"""
 
-import os
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from screen import CTRL_C, CTRL_R, ENTER, LEFT, TAB, UP, Terminal
+from home import HAS_READLINE, AtHome
+from screen import CTRL_C, CTRL_R, ENTER, LEFT, TAB, UP
 
-PROGRAM = ""
-HAS_READLINE = True
 SYSTEM = "sys = system{ I = 1, k = 40, Rd = 2 }"
 
 
-class Typing(unittest.TestCase):
+class Typing(AtHome):
     def setUp(self):
         if not HAS_READLINE:
             self.skipTest("built without readline")
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
-
-    def start(self, *arguments, **options):
-        terminal = Terminal(PROGRAM, self.home, *arguments, **options)
-        self.addCleanup(terminal.close)
-        return terminal
+        super().setUp()
 
     def completes(self, terminal, typed, whole):
         terminal.type(typed + TAB)
@@ -49,7 +37,7 @@ class Typing(unittest.TestCase):
 
 class Completion(Typing):
     def test_globals_fields_methods_and_keywords(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter(SYSTEM)
         terminal.enter("run = sys:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
         terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2, ['by hand'] = sys }")
@@ -67,7 +55,7 @@ class Completion(Typing):
             self.completes(terminal, typed, whole)
 
     def test_columns_values_of_a_fit_and_their_errors(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter("d = data{ radius = { 1 }, ['no name'] = { 2 } }")
         terminal.enter("run = system{ I = 1, k = 40, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }")
         terminal.enter("fit = identify{ data = run, velocity0 = 0 }")
@@ -80,7 +68,7 @@ class Completion(Typing):
 
     def test_laws_are_offered_for_friction_and_no_files_where_a_text_is_no_file(self):
         (self.home / "record.csv").write_text("")
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         self.completes(terminal, "system{ friction = ", "system{ friction = friction.")
         terminal.type('check("re' + TAB + "x")
         terminal.wait(lambda: 'check("rex' in terminal.text())
@@ -89,7 +77,7 @@ class Completion(Typing):
         self.completes(terminal, 'plot{ file = "re', 'plot{ file = "record.csv"')
 
     def test_options_inside_the_braces_of_a_known_call_without_those_that_are_there(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter(SYSTEM)
         self.completes(terminal, "sys:simulate{ th", "sys:simulate{ theta0 = ")
         self.completes(terminal, "sys:simulate{ theta0 = 1, ve", "sys:simulate{ theta0 = 1, velocity0 = ")
@@ -107,7 +95,7 @@ class Completion(Typing):
         self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
 
     def test_fields_of_tables_within_options(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter(SYSTEM)
         seen = self.offers(terminal, "system{ I = 1, walls = { lower = -1, ", ["upper", "restitution"])
         self.assertEqual(seen.count("lower"), 2)  # the line, twice on the screen; not in the list
@@ -128,7 +116,7 @@ class Completion(Typing):
             self.assertNotIn("upper", self.offers(terminal, typed, ["print"]))
 
     def test_options_on_a_later_line_and_the_key_that_indents(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter(SYSTEM)
         terminal.enter("sys:simulate{", prompt=">>")
         terminal.type(TAB + "th" + TAB)
@@ -136,7 +124,7 @@ class Completion(Typing):
 
     def test_names_of_files_inside_quotes_and_of_entries_after_help(self):
         (self.home / "record.csv").write_text("")
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         self.completes(terminal, "load('rec", "load('record.csv'")
         self.completes(terminal, 'help "excitation.har', 'help "excitation.harmonic"')
         self.completes(terminal, "?sys.dead", "?sys.dead_zone")
@@ -145,7 +133,7 @@ class Completion(Typing):
         self.completes(terminal, "help(excitation.har", "help(excitation.harmonic")
 
     def test_it_never_runs_code_of_the_user(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.enter("t = setmetatable({}, { __index = function() ran = true return { deep = 1 } end })")
         terminal.enter("setmetatable(_G, { __index = function() ran = true end })")
         terminal.type("t.x." + TAB + TAB + "nowhere." + TAB + TAB)
@@ -154,7 +142,7 @@ class Completion(Typing):
         self.assertEqual(terminal.enter("rawget(_G, 'ran')"), "nil")
 
     def test_nothing_is_offered_in_comments_and_numbers(self):
-        terminal = self.start(TERM="dumb")
+        terminal = self.terminal(TERM="dumb")
         terminal.type("-- pri" + TAB + TAB + "x" + ENTER)
         terminal.wait(lambda: "> -- prix" in terminal.text())
         terminal.type("0xpri" + TAB)
@@ -163,7 +151,7 @@ class Completion(Typing):
 
 class Hints(Typing):
     def test_a_hint_names_the_options_that_are_missing_and_goes_away(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         terminal.type("sys:simulate{")
         terminal.shows("sys:simulate{  M = 0, theta0 = 0")
@@ -175,7 +163,7 @@ class Hints(Typing):
         self.assertIn("> sys:simulate{ M = 2, t_end = 1, dt = 0.5 };", terminal.lines())
 
     def test_enter_and_ctrl_c_leave_no_hint_behind(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.type("system{")
         terminal.shows("system{  I, k")
         terminal.type(CTRL_C)
@@ -188,7 +176,7 @@ class Hints(Typing):
         self.assertNotIn("I, k", terminal.text())
 
     def test_a_hint_goes_away_when_the_line_becomes_another_one(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter("do", prompt=">>")
         terminal.enter("end")
         for keys in (UP, " I = 1, k = 40, C = 1, Rd = 2, Re = 3 } -- a remark that leaves no room for any hint"):
@@ -200,7 +188,7 @@ class Hints(Typing):
             self.assertNotIn("I, k", terminal.text())
 
     def test_a_window_that_changes_its_width_shows_the_line_once(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.type("system{")
         terminal.shows("system{  I, k")
         for width in (40, 60, 30):
@@ -215,19 +203,19 @@ class Hints(Typing):
         self.assertEqual(terminal.enter("ans.Re"), "3.0")
 
     def test_the_cursor_moves_within_a_painted_line(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.type("print('ac')" + LEFT * 3 + "b" + ENTER)
         terminal.wait(lambda: "abc" in terminal.lines())
 
     def test_wide_letters_and_long_lines_stay_whole(self):
-        terminal = self.start(width=40)
+        terminal = self.terminal(width=40)
         terminal.type("print('θ漢字' .. 'x')" + LEFT * 3 + "y" + ENTER)
         terminal.wait(lambda: "θ漢字yx" in terminal.text().replace(" ", "") and terminal.row() == ">")
         self.assertEqual(terminal.enter("('12345678901234567890' .. '12345678901234567890'):len()").splitlines()[-1], "40")
 
     def test_no_colours_where_they_are_not_wanted(self):
         for variables in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
-            terminal = self.start(**variables)
+            terminal = self.terminal(**variables)
             terminal.enter("x = 'text' + nowhere.field")
             self.assertNotIn(b"\x1b[3", terminal.raw)
             self.assertNotIn(b"\x1b[9", terminal.raw)
@@ -235,12 +223,12 @@ class Hints(Typing):
 
 class Lines(Typing):
     def test_ctrl_r_finds_an_entry_of_several_lines_of_an_earlier_session(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter("for i = 1, 2 do", prompt=">>")
         terminal.enter("  print('again', i)", prompt=">>")
         terminal.enter("end")
         terminal.close()
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.type(CTRL_R + "again")
         terminal.shows("print('again', i)")
         terminal.type(ENTER)
@@ -248,20 +236,18 @@ class Lines(Typing):
         self.assertIn("again   2", terminal.text())
 
     def test_a_command_is_in_the_history(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(":who")
         terminal.screen.reset()
         terminal.type(UP + ENTER)
         terminal.shows("no variables of your own")
 
     def test_a_pasted_block_runs_once_as_one(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.type("\x1b[200~n = (n or 0) + 1\nfor i = 1, 2 do\n\tn = n + 10\nend\nn\x1b[201~" + ENTER)
         terminal.shows("\n21")
         self.assertEqual(terminal.enter("n"), "21")
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
-    HAS_READLINE = "edited with GNU Readline" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
     unittest.main()

@@ -2,39 +2,24 @@
 readline. Usage: values_test.py PROGRAM"""
 
 import os
-import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
 import pexpect
 
-from screen import Terminal
+from home import PROGRAM, AtHome
 
-PROGRAM = ""
 SYSTEM = "sys = system{ I = 1, k = 40, Rd = 2 }"
 RUN = "run = sys:simulate{ theta0 = 1, t_end = 5, dt = 0.01 }"
 
 
-class PromptTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.home = pathlib.Path(folder.name)
-
-    def start(self, *arguments, **options):
-        terminal = Terminal(PROGRAM, self.home, *arguments, **options)
-        self.addCleanup(terminal.close)
-        return terminal
-
-
-class Values(PromptTest):
+class Values(AtHome):
     def test_a_system_is_a_card(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         card = terminal.enter("sys")
         for piece in ["I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", "omega0     6.32456    natural frequency",
@@ -42,7 +27,7 @@ class Values(PromptTest):
             self.assertIn(piece, card)
 
     def test_a_card_says_the_units_and_what_follows_from_them(self):
-        terminal = self.start(width=100)
+        terminal = self.terminal(width=100)
         terminal.enter('block = system{ I = 2, k = 800, C = 3, Rd = 3, units = { theta = "m", t = "s", M = "N" } }')
         card = terminal.enter("block")
         for piece in ["I          2          inertia, N s^2/m", "stiffness, N/m", "viscous damping, N s/m", "while sliding, N",
@@ -55,7 +40,7 @@ class Values(PromptTest):
         self.assertIn("steady: period 1 s", terminal.enter("block:steady{ M = excitation.harmonic{ amplitude = 9, frequency = 1 } }"))
 
     def test_an_excitation_is_a_formula_and_its_breaks(self):
-        terminal = self.start()
+        terminal = self.terminal()
         shown = terminal.enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")
         self.assertEqual(shown.splitlines(), ["excitation  M(t) =", "    3 for 1.5 <= t < 1.7", "  - sin(2 t)",
                                               "  jumps or kinks at t = 1.5, 1.7"])
@@ -63,7 +48,7 @@ class Values(PromptTest):
         self.assertIn("    function(t) return 2*t end", terminal.enter("excitation.scripted(function(t) return 2*t end)"))
 
     def test_a_run_its_columns_and_events(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         terminal.enter(RUN)
         self.assertRegex(terminal.enter("run"), r"^501 rows, t 0 … 5; \d+ events? \(.*rest\).*; by\s+exact$")
@@ -74,14 +59,14 @@ class Values(PromptTest):
         self.assertRegex(terminal.enter("integrator.spectral{}"), r"(?s)^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
 
     def test_functions_show_their_text_or_how_they_are_called(self):
-        terminal = self.start()
+        terminal = self.terminal()
         self.assertEqual(terminal.enter("function(t) return 3*t end"), "function(t) return 3*t end")
         self.assertEqual(terminal.enter("math.sin"), "function math.sin of Lua")
         self.assertEqual(terminal.enter("nondimensional").split("{")[0], "function nondimensional")
         self.assertTrue(terminal.enter("excitation").startswith("excitation: constant, harmonic,"))
 
     def test_everything_fits_in_forty_columns(self):
-        terminal = self.start(width=40, height=50)
+        terminal = self.terminal(width=40, height=50)
         terminal.enter("s = nondimensional{ zeta = 0.1 }")
         terminal.enter("r = s:simulate{ theta0=1,", prompt=">>")
         terminal.enter("t_end = 9, dt = 0.01 }")
@@ -94,7 +79,7 @@ class Values(PromptTest):
             self.assertTrue(all(len(line) < 40 for line in shown.splitlines()), shown)
 
     def test_ascii_where_the_locale_has_nothing_else(self):
-        terminal = self.start(LC_ALL="C")
+        terminal = self.terminal(LC_ALL="C")
         terminal.enter(SYSTEM)
         terminal.enter(RUN)
         for text in ["sys", "run", "'\\u{3b8}'", "help(sys.dead_zone)", "excitation.scripted(function(t, x) return 1 end)"]:
@@ -103,16 +88,16 @@ class Values(PromptTest):
         self.assertIn("theta''", terminal.enter("sys"))
 
     def test_a_semicolon_keeps_quiet_and_ans_is_kept(self):
-        terminal = self.start()
+        terminal = self.terminal()
         self.assertEqual(terminal.enter("6 * 7;"), "")
         self.assertEqual(terminal.enter("ans"), "42")
         self.assertEqual(terminal.enter("6 * 8 ; -- remark"), "")
         self.assertEqual(terminal.enter("return ans"), "48")
 
 
-class Notices(PromptTest):
+class Notices(AtHome):
     def test_what_is_no_error_but_hardly_meant_is_noticed(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         terminal.enter("M = math.sin")
         terminal.enter("given = { theta0 = 1 }")
@@ -130,7 +115,7 @@ class Notices(PromptTest):
             self.assertEqual(terminal.enter(typed), "", typed)
 
     def test_a_local_variable_that_is_lost_is_noticed_each_time(self):
-        terminal = self.start()
+        terminal = self.terminal()
         notice = "(local variables end with the input: {} gone. To keep {}, leave out the word local)"
         for typed, words in [("local x = 3", ("x is", "it")), ("local given = lab.given", ("given is", "it")),
                              ("local a, b = 1, {}", ("a, b are", "them"))]:
@@ -140,7 +125,7 @@ class Notices(PromptTest):
         self.assertEqual(terminal.enter(":load script.lua").replace("\n", " "), notice.format("sys is", "it"))
 
     def test_history_and_edit(self):
-        terminal = self.start(EDITOR="sed -i s/1/5/")
+        terminal = self.terminal(EDITOR="sed -i s/1/5/")
         terminal.enter("x = 1")
         terminal.enter("y = 2")
         self.assertEqual(terminal.enter(":history").split(), ["1", "x", "=", "1", "2", "y", "=", "2"])
@@ -150,19 +135,19 @@ class Notices(PromptTest):
         self.assertIn("from 1 to", terminal.enter(":edit 17"))
 
     def test_a_local_variable_that_is_used_is_not(self):
-        terminal = self.start()
+        terminal = self.terminal()
         self.assertEqual(terminal.enter("local x = 3 print(x)"), "3")
         self.assertEqual(terminal.enter("for i = 1, 2 do local z = i end"), "")
 
     def test_a_misspelt_variable_is_nil_with_a_word(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter("velocity = 3")
         self.assertEqual(terminal.enter("velocty"), "nil\n(there is no variable 'velocty'; did you mean 'velocity'?)")
         self.assertEqual(terminal.enter("xyzzy"), "nil")
         self.assertIn(":quit", terminal.enter("exit"))
 
     def test_a_colon_without_a_call_does_not_wait_for_more(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         terminal.enter(RUN)
         self.assertIn("write it with a point, run.events", terminal.enter("run:events"))
@@ -170,16 +155,16 @@ class Notices(PromptTest):
         self.assertIn("help() starts a tour", terminal.enter("help"))
 
     def test_a_run_that_failed_before_its_first_row_is_not_announced(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         shown = terminal.enter("sys:simulate{ M = function(t) return tt + 1 end, t_end = 1, dt = 0.1 }")
         self.assertIn("in M at t = 0", shown)
         self.assertNotIn("is in ans", shown)
 
 
-class Help(PromptTest):
+class Help(AtHome):
     def test_question_marks_before_and_behind(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(SYSTEM)
         entry = terminal.enter("help(sys.simulate)")
         self.assertIn("See also:", entry)
@@ -190,7 +175,7 @@ class Help(PromptTest):
         self.assertIn("now 3", terminal.enter("x = 3") + terminal.enter("x?"))
 
     def test_the_tour_can_be_typed(self):
-        terminal = self.start(height=40)
+        terminal = self.terminal(height=40)
         pages = 0
         page = terminal.enter("?")
         while page:
@@ -216,9 +201,9 @@ class Help(PromptTest):
         self.assertIn("2001 rows", done.stdout)
 
 
-class Commands(PromptTest):
+class Commands(AtHome):
     def test_a_recorded_session_runs_again(self):
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(":record lab.lua")
         for line in [SYSTEM, "sys.T0", "local lost = 1", "nowhere.field", "sys:friction_ratio(4);", "ans * 2 -- twice",
                      "x = 7;", "=x", "print('printed')", "1, 2", ":who", "nothing", "goto done ::done::", ":load lab.lua"]:
@@ -232,7 +217,7 @@ class Commands(PromptTest):
 
     def test_files_of_others_are_not_overwritten(self):
         (self.home / "mine.lua").write_text("precious")
-        terminal = self.start()
+        terminal = self.terminal()
         for command in (":record mine.lua", ":save mine.lua", ":save 'mine.lua'"):
             self.assertIn("is there already", terminal.enter(command))
         self.assertEqual((self.home / "mine.lua").read_text(), "precious")
@@ -247,7 +232,7 @@ class Commands(PromptTest):
     def test_load_who_reset_and_time(self):
         (self.home / "lab.lua").write_text("w = 42\nfunction twice(x) return 2*x end\n")
         (self.home / "wrong.lua").write_text("x = = 1\n")
-        terminal = self.start()
+        terminal = self.terminal()
         terminal.enter(":load lab.lua")
         self.assertRegex(terminal.enter(":who"), r"^  twice +function\n  w +42$")
         self.assertIn("wrong.lua:1: unexpected symbol", terminal.enter(":load wrong.lua"))
@@ -259,7 +244,7 @@ class Commands(PromptTest):
         self.assertRegex(terminal.enter(":time 6 * 7"), r"^42\n[0-9.e-]+ s$")
 
     def test_names_may_be_short_and_wrong_ones_are_told(self):
-        terminal = self.start()
+        terminal = self.terminal()
         self.assertIn(":record file", terminal.enter(":he"))
         self.assertIn("did you mean 'quit'?", terminal.enter(":qiut"))
         self.assertIn(":help lists them", terminal.enter(":re"))
@@ -273,13 +258,13 @@ class Commands(PromptTest):
     def test_the_init_file_is_for_the_prompt_only(self):
         (self.home / ".config/dinal").mkdir(parents=True)
         (self.home / ".config/dinal/init.lua").write_text("g = 9.81\nif wrong then error('never') end\n")
-        self.assertEqual(self.start().enter("g"), "9.81")
-        self.assertEqual(self.start("--no-init").enter("g"), "nil")
+        self.assertEqual(self.terminal().enter("g"), "9.81")
+        self.assertEqual(self.terminal("--no-init").enter("g"), "nil")
         environment = {"HOME": str(self.home), "PATH": "/usr/bin:/bin"}
         done = subprocess.run([PROGRAM, "-e", "print(g)"], env=environment, capture_output=True, text=True)
         self.assertEqual(done.stdout, "nil\n")
         (self.home / ".config/dinal/init.lua").write_text("x = 1\nerror('broken')\n")
-        self.assertEqual(self.start().enter("x"), "1")
+        self.assertEqual(self.terminal().enter("x"), "1")
 
     def test_a_safe_prompt_loads_no_bytecode_and_nothing_from_outside(self):
         (self.home / "lab").mkdir()
@@ -305,5 +290,4 @@ class Commands(PromptTest):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main()
