@@ -15,8 +15,7 @@
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/worker_state.hpp"
-#include "plots/animation/animated_svg.hpp"
-#include "plots/animation/text_frame.hpp"
+#include "plots/animation/scene.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
 
@@ -71,9 +70,7 @@ animation::Scene asked_scene(lua_State* L, const lua::Options& options, const Ru
     const plots::RunData data{run, &run->trajectory, system_of(*run), units};
     lua::CallState call(L);  // between rows the integrator asks the excitation again
     auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);
     }

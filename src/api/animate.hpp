@@ -5,7 +5,7 @@
 #include <string>
 
 #include "api/picture.hpp"
-#include "api/units_option.hpp"
+#include "api/run.hpp"
 #include "lua/bind.hpp"
 #include "text/option.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "api/animate.hpp"
@@ -13,11 +14,9 @@
 #include "api/data.hpp"
 #include "api/extras_options.hpp"
 #include "api/picture.hpp"
-#include "api/plot_options.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
-#include "api/units_option.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
@@ -56,10 +55,6 @@ constexpr text::Option joint_options[] = {
 constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
 constexpr auto link_options = text::joined(joint_options, friction_options);
 
-std::string name_of_joint(const model::Assembly& system, std::size_t joint) {
-    return system.joints[joint].name;
-}
-
 std::vector<std::string> body_names(const model::Assembly& system) {
     std::vector<std::string> names;
     for (const model::Body& body : system.bodies) names.push_back(body.name);
@@ -70,10 +65,10 @@ std::vector<std::string> body_names(const model::Assembly& system) {
 
 /// The names in the table on the top, in their order: a table has none of its own.
 std::vector<std::string> sorted_names(lua_State* L, const lua::Options& options, const char* option) {
-    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, options.row(option).wanted);
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
     std::vector<std::string> names;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        if (lua_type(L, -2) != LUA_TSTRING) options.wrong(option, options.row(option).wanted);
+        if (lua_type(L, -2) != LUA_TSTRING) options.wrong(option);
         if (lua_type(L, -1) != LUA_TTABLE) {
             const std::string name = fmt::format("{}.{}", option, lua_tostring(L, -2));
             options.fail(
@@ -123,7 +118,6 @@ int body_index(const lua::Options& options, const model::Assembly& system, const
         if (system.bodies[i].name == name) return static_cast<int>(i);
     }
     const std::vector<std::string> names = body_names(system);
-    const std::vector<std::string_view> known(names.begin(), names.end());
     options.fail({.sentence = name.empty() ? fmt::format("links.{} must begin with the names of two bodies, such as "
                                                          "{{ \"{}\", \"{}\", k = 90 }}",
                                                          link, names.front(), names.back())
@@ -131,18 +125,7 @@ int body_index(const lua::Options& options, const model::Assembly& system, const
                                                          fmt::join(names, ", ")),
                   .option = "links",
                   .culprit = name,
-                  .cure = name.empty() ? "" : text::did_you_mean(name, known)});
-}
-
-/// The named fields of the table on the top, without its list, in a table of their own.
-void push_named_fields(lua_State* L) {
-    lua_newtable(L);
-    for (lua_pushnil(L); lua_next(L, -3) != 0; lua_pop(L, 1)) {
-        if (lua_type(L, -2) != LUA_TSTRING) continue;
-        lua_pushvalue(L, -2);
-        lua_pushvalue(L, -2);
-        lua_rawset(L, -5);
-    }
+                  .cure = name.empty() ? "" : text::did_you_mean(name, names)});
 }
 
 }  // namespace
@@ -150,7 +133,7 @@ void push_named_fields(lua_State* L) {
 int push_bodies(lua_State* L, const lua::Options& options) {
     options.push("bodies");
     const std::vector<std::string> names = sorted_names(L, options, "bodies");
-    if (names.empty()) options.wrong("bodies", options.row("bodies").wanted);
+    if (names.empty()) options.wrong("bodies");
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
         options.fail(alone, fmt::format("{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
@@ -190,7 +173,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
                 options.fail("links",
                              fmt::format("links.{} is between two bodies, and names {}", name, lua_rawlen(L, -1)));
             }
-            push_named_fields(L);
+            lua::push_copy(L, -1, 2);
             BodyNumbers numbers;
             model::Joint joint = read_joint(L, "system: links." + name, link_options, numbers);
             joint.name = name, joint.first = ends[0], joint.second = ends[1];
@@ -289,7 +272,7 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
         lua_pop(L, 1);
         return;
     }
-    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, options.row(option).wanted);
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
     std::vector<std::string> known;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         if (links_too || !system.is_link(j)) known.push_back(system.joints[j].name);
@@ -298,12 +281,11 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
         const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : lua::written(L, -2);
         const auto found = std::find(known.begin(), known.end(), name);
         if (found == known.end()) {
-            const std::vector<std::string_view> names(known.begin(), known.end());
             options.fail({.sentence = fmt::format("{}: there is no body{} '{}'; there is {}", option,
                                                   links_too ? " or link" : "", name, fmt::join(known, ", ")),
                           .option = option,
                           .culprit = name,
-                          .cure = text::did_you_mean(name, names)});
+                          .cure = text::did_you_mean(name, known)});
         }
         f(static_cast<std::size_t>(found - known.begin()));
     }
@@ -327,13 +309,12 @@ void check_relays_of(const lua::Options& options, const model::Assembly& system,
         if (relay == nullptr || relay->of == Of::function) continue;
         const std::string of = relay->of == Of::theta ? "theta" : relay->of == Of::velocity ? "velocity" : relay->state;
         if (std::find(known.begin(), known.end(), of) != known.end()) continue;
-        const std::vector<std::string_view> names(known.begin(), known.end());
         options.fail(
             {.sentence = fmt::format("M{}{}: the relay looks at '{}'; in this run it may look at {}",
                                      system.named ? "." : "", system.bodies[body].name, of, fmt::join(known, ", ")),
              .option = "M",
              .culprit = of,
-             .cure = text::did_you_mean(of, names)});
+             .cure = text::did_you_mean(of, known)});
     }
 }
 
@@ -524,6 +505,11 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
 
 }  // namespace
 
+lua::Vector table_column(const BodiesRunHandle& run, std::size_t column) {
+    const bool empty = run->run.table.size() == 0;
+    return view_of(run, empty ? std::span<const double>() : run->run.table.column(column));
+}
+
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     run->parts.resize(run->system->joints.size());
     if (RunHandle known = run->parts[joint].lock()) return known;
@@ -631,27 +617,13 @@ int simulate_bodies(lua_State* L) {
 
 // ---- rig
 
-const model::Assembly& rig_self(lua_State* L, const char* call) {
-    return *lua::self<AssemblyHandle>(L, 1, call);
-}
-
-int push_names(lua_State* L, const model::Assembly& system, bool links) {
-    lua_newtable(L);
-    lua_Integer count = 0;
+template <bool links>
+std::vector<std::string> joint_names(const model::Assembly& system) {
+    std::vector<std::string> names;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        if (system.is_link(j) != links) continue;
-        lua::push_text(L, system.joints[j].name);
-        lua_rawseti(L, -2, ++count);
+        if (system.is_link(j) == links) names.push_back(system.joints[j].name);
     }
-    return 1;
-}
-
-int rig_bodies(lua_State* L) {
-    return push_names(L, rig_self(L, "rig.bodies"), false);
-}
-
-int rig_links(lua_State* L) {
-    return push_names(L, rig_self(L, "rig.links"), true);
+    return names;
 }
 
 std::string text_of_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
@@ -690,20 +662,16 @@ std::string text_of_joint(lua_State* L, const model::Assembly& system, std::size
     return fmt::format("{{ {} }}", fmt::join(parts, ", "));
 }
 
-int rig_text(lua_State* L) {
-    const model::Assembly& system = rig_self(L, "tostring(rig)");
-    if (!system.named) {
-        const std::string own = text_of_joint(L, system, 0);
-        return lua::push_text(L, "system" + own);
-    }
+std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
+    if (!rig->named) return "system" + text_of_joint(L, *rig, 0);
     std::vector<std::string> bodies, links;
-    for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        (system.is_link(j) ? links : bodies)
-            .push_back(fmt::format("{} = {}", name_of_joint(system, j), text_of_joint(L, system, j)));
+    for (std::size_t j = 0; j < rig->joints.size(); ++j) {
+        (rig->is_link(j) ? links : bodies)
+            .push_back(fmt::format("{} = {}", rig->joints[j].name, text_of_joint(L, *rig, j)));
     }
     std::string text = fmt::format("system{{ bodies = {{ {} }}", fmt::join(bodies, ", "));
     if (!links.empty()) text += fmt::format(", links = {{ {} }}", fmt::join(links, ", "));
-    return lua::push_text(L, text + " }");
+    return text + " }";
 }
 
 // ---- their run
@@ -731,49 +699,32 @@ int part_by_name(lua_State* L) {
     return 1;
 }
 
-int run_times(lua_State* L) {
-    const BodiesRunHandle& run = bodies_run_self(L, "run.t");
-    const auto t = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(0);
-    lua::push(L, lua::Vector(run, t.data(), t.size()));
-    return 1;
+std::map<std::string, lua::Vector> states_of_bodies(lua_State*, const BodiesRunHandle& run) {
+    std::map<std::string, lua::Vector> states;
+    for (std::size_t k = 0; k < run->drive.states.size(); ++k) {
+        states.emplace(run->drive.states[k].name, table_column(run, first_state_column(*run) + k));
+    }
+    return states;
 }
 
-int run_states_table(lua_State* L) {
-    const BodiesRunHandle& run = bodies_run_self(L, "run.states");
-    const std::size_t count = run->drive.states.size();
-    lua_createtable(L, 0, static_cast<int>(count));
-    for (std::size_t k = 0; k < count; ++k) {
-        const auto values = run->run.table.column(first_state_column(*run) + k);
-        lua::push(L, lua::Vector(run, values.data(), values.size()));
-        lua_setfield(L, -2, run->drive.states[k].name.c_str());
-    }
-    return 1;
-}
-
-int events_of_bodies(lua_State* L) {
-    const BodiesRun& run = *bodies_run_self(L, "run.events");
-    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
-    std::vector<double> t, theta, velocity, M;
-    std::vector<std::string> kind, where, name;
-    for (const engine::JointEvent& e : run.run.events) {
-        t.push_back(e.t), theta.push_back(e.theta), velocity.push_back(e.velocity), M.push_back(e.M);
-        kind.emplace_back(model::name(e.kind));
-        where.push_back(e.where < 0 ? "" : run.system->joints[static_cast<std::size_t>(e.where)].name);
-        name.push_back(e.user < 0 ? "" : run.drive.events[static_cast<std::size_t>(e.user)].name);
-    }
-    Data data;
-    const ColumnUnits in(run.system->units);
-    data.columns = {column_of("t", std::move(t), in.t),
-                    column_of("kind", std::move(kind)),
-                    column_of("where", std::move(where)),
-                    column_of("theta", std::move(theta), in.theta),
-                    column_of("velocity", std::move(velocity), in.speed),
-                    column_of("M", std::move(M), in.M)};
-    if (!run.drive.events.empty()) data.columns.push_back(column_of("name", std::move(name)));
+lua::Pushed events_of_bodies(lua_State* L, const BodiesRunHandle& run) {
+    const ColumnUnits in(run->system->units);
+    using Event = engine::JointEvent;
+    Data data =
+        table_of(run->run.events, ListColumn{"t", &Event::t, in.t},
+                 ListColumn{"kind", [](const Event& e) { return model::name(e.kind); }},
+                 ListColumn{"where",
+                            [&](const Event& e) {
+                                return e.where < 0 ? "" : run->system->joints[static_cast<std::size_t>(e.where)].name;
+                            }},
+                 ListColumn{"theta", &Event::theta, in.theta}, ListColumn{"velocity", &Event::velocity, in.speed},
+                 ListColumn{"M", &Event::M, in.M});
+    const ListColumn names{"name", [&](const Event& e) {
+                               return e.user < 0 ? "" : run->drive.events[static_cast<std::size_t>(e.user)].name;
+                           }};
+    if (!run->drive.events.empty()) data.columns.push_back(names.of(run->run.events));
     push_data(L, std::move(data));
-    lua_pushvalue(L, -1);
-    lua_setiuservalue(L, 1, 1);
-    return 1;
+    return {};
 }
 
 /// All columns with their names: "load.theta".
@@ -783,9 +734,7 @@ int rows_of_bodies(lua_State* L) {
     const ColumnUnits in(system.units);
     Data data;
     const auto add = [&](std::string name, std::string_view kind, std::size_t column) {
-        const auto values = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(column);
-        data.columns.push_back(
-            {std::move(name), lua::Vector(run, values.data(), values.size()), in.of(kind == "torque" ? "M" : kind)});
+        data.columns.push_back({std::move(name), table_column(run, column), in.of(kind == "torque" ? "M" : kind)});
     };
     add("t", "t", 0);
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -802,8 +751,7 @@ int rows_of_bodies(lua_State* L) {
     for (std::size_t k = 0; k < count; ++k) {
         add(run->drive.states[k].name, "", first_state_column(*run) + k);
     }
-    push_data(L, std::move(data));
-    return 1;
+    return push_data(L, std::move(data));
 }
 
 int at_of_bodies(lua_State* L) {
@@ -818,15 +766,14 @@ int at_of_bodies(lua_State* L) {
     }
     const std::vector<double> y = run->run.history->at(t);
     const std::size_t n = run->system->bodies.size();
-    for (const std::size_t from : {std::size_t{0}, n}) {
-        lua_createtable(L, 0, static_cast<int>(n));
-        for (std::size_t i = 0; i < n; ++i) lua::set_number(L, run->system->bodies[i].name.c_str(), y[from + i]);
-    }
+    const auto push_part = [&](const auto& named, std::size_t from) {
+        lua_createtable(L, 0, static_cast<int>(named.size()));
+        for (std::size_t i = 0; i < named.size(); ++i) lua::set_value(L, named[i].name.c_str(), y[from + i]);
+    };
+    push_part(run->system->bodies, 0);
+    push_part(run->system->bodies, n);
     if (run->drive.states.empty()) return 2;
-    lua_createtable(L, 0, static_cast<int>(run->drive.states.size()));
-    for (std::size_t k = 0; k < run->drive.states.size(); ++k) {
-        lua::set_number(L, run->drive.states[k].name.c_str(), y[2 * n + k]);
-    }
+    push_part(run->drive.states, 2 * n);
     return 3;
 }
 
@@ -842,7 +789,7 @@ int save_bodies(lua_State* L) {
         lua_pushcfunction(L, lua::guarded<data_functions::select>);
         lua_pushvalue(L, 1);
         options.push("columns");
-        if (!lua_istable(L, -1)) options.wrong("columns", options.row("columns").wanted);
+        if (!lua_istable(L, -1)) options.wrong("columns");
         const int list = lua_gettop(L), count = static_cast<int>(lua_rawlen(L, list));
         luaL_checkstack(L, count, "too many columns");
         for (int i = 1; i <= count; ++i) lua_rawgeti(L, list, i);
@@ -852,18 +799,6 @@ int save_bodies(lua_State* L) {
     }
     lua_settop(L, 2);
     return data_functions::save(L);
-}
-
-int explain_bodies(lua_State* L) {
-    return lua::push_text(L, story_of_bodies(L, bodies_run_self(L, "run:explain()")));
-}
-
-int energy_bodies(lua_State* L) {
-    return energy_of_bodies(L, bodies_run_self(L, "run:energy()"));
-}
-
-int status_of_bodies(lua_State* L) {
-    return lua::push_text(L, status_word(bodies_run_self(L, "run.status")->run.outcome));
 }
 
 constexpr text::Call bodies_plot_call{"rig_run:plot", "rig_run:plot{ file = \"run.svg\" }", plot_options, true};
@@ -887,39 +822,17 @@ int plot_bodies(lua_State* L) {
     return deliver(L, options, std::move(figures));
 }
 
-int outcome_of_bodies(lua_State* L) {
-    return lua::push_text(L, motion::outcome_text(part_of(bodies_run_self(L, "run.outcome"), 0)->trajectory));
-}
-
-template <double engine::AssemblyRun::*time>
-int time_of_bodies(lua_State* L) {
-    lua_pushnumber(L, bodies_run_self(L, "run.t_end")->run.*time);
-    return 1;
-}
-
-int system_of_run(lua_State* L) {
-    lua::push<AssemblyHandle>(L, bodies_run_self(L, "run.system")->system);
-    return 1;
-}
-
-int length_of_run(lua_State* L) {
-    lua_pushinteger(L, static_cast<lua_Integer>(bodies_run_self(L, "#run")->run.table.size()));
-    return 1;
-}
-
-int text_of_run(lua_State* L) {
-    const BodiesRunHandle handle = bodies_run_self(L, "tostring(run)");
+std::string text_of_run(lua_State*, const BodiesRunHandle& handle) {
     const BodiesRun& run = *handle;
     std::size_t sticks = 0, slips = 0;
     for (const engine::JointEvent& e : run.run.events) {
         sticks += model::is_stop(e.kind) ? 1 : 0;
         slips += e.kind == model::EventKind::slip ? 1 : 0;
     }
-    return lua::push_text(
-        L, fmt::format("{} bodies, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}", run.system->bodies.size(),
+    return fmt::format("{} bodies, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}", run.system->bodies.size(),
                        run.run.table.size(), run.run.t_start, run.run.t_stop,
                        text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
-                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory)));
+                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory));
 }
 
 constexpr text::Option bodies_continue_rows[] = {continue_options[0]};
@@ -1009,12 +922,12 @@ constexpr lua::Member rig_members[] = {
       "end }\n"
       "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
       {&rig_response_call}}},
-    {lua::a_field<rig_bodies>,
+    {lua::a_value<AssemblyHandle, joint_names<false>>,
      {"rig.bodies -> table", "The names of the bodies, in alphabetical order.",
       DINAL_RIG "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
-    {lua::a_field<rig_links>,
+    {lua::a_value<AssemblyHandle, joint_names<true>>,
      {"rig.links -> table", "The names of the links, in alphabetical order.", DINAL_RIG "print(#rig.links)  --> 1"}},
-    {lua::a_metamethod<rig_text>("__tostring"),
+    {lua::a_text<AssemblyHandle, rig_text>,
      {"tostring(rig) -> string", "The system as Lua text.",
       "print(system{ bodies = { a = { I = 1 }, b = { I = 2, k = 4 } } })  --> system{ bodies = { a = { I = 1 }, b "
       "= { I "
@@ -1032,11 +945,11 @@ constexpr lua::Member bodies_run_members[] = {
      {"rig_run:data() -> data",
       "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
       DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
-    {lua::a_method<explain_bodies>,
+    {lua::a_question<BodiesRunHandle, story_of_bodies>,
      {"rig_run:explain() -> string",
       "Describes the run: the motion of each body and link, when they stuck, where the energy went, how it ended.",
       DINAL_RIG_RUN "print((run:explain():match(\"clutch links[^.]*\")))  --> clutch links motor and load"}},
-    {lua::a_method<energy_bodies>,
+    {lua::a_question<BodiesRunHandle, energy_of_bodies>,
      {"rig_run:energy() -> energy",
       "The energy balance: the work of M on each body, and the losses by each damping, friction and impact. The "
       "run is repeated to compute it.",
@@ -1061,7 +974,7 @@ constexpr lua::Member bodies_run_members[] = {
       DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
                     "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)",
       {&bodies_save_call}}},
-    {lua::a_field<status_of_bodies>,
+    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return status_word(run.run.outcome); }>,
      {"rig_run.status -> string", "How the run ended, in one word, as for one body.",
       DINAL_RIG_RUN "print(run.status)  --> end"}},
     {lua::a_method<continue_bodies>,
@@ -1069,27 +982,31 @@ constexpr lua::Member bodies_run_members[] = {
       "A new run that continues this one from its end.",
       DINAL_RIG_RUN "print(run:continue{ t_end = 12 }.t_end)  --> 12.0",
       {&bodies_continue_call}}},
-    {lua::a_field<run_times>, {"rig_run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
-    {lua::a_field<events_of_bodies>,
+    {lua::a_value<BodiesRunHandle, [](lua_State*, const BodiesRunHandle& run) { return table_column(run, 0); }>,
+     {"rig_run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
+    {lua::a_kept_value<BodiesRunHandle, events_of_bodies>,
      {"rig_run.events -> data",
       "The events in order of time: t, kind, where (the body or link), theta, velocity (relative, for a link) and "
       "M (on its first body); name for your own events.",
       DINAL_RIG_RUN "print(run.events.kind[1], run.events.where[1])  --> stick\tclutch"}},
-    {lua::a_field<run_states_table>,
+    {lua::a_value<BodiesRunHandle, states_of_bodies>,
      {"rig_run.states -> table", "The columns of the states by name: vectors.",
       DINAL_RIG_RUN "print(next(run.states))  --> nil"}},
-    {lua::a_field<outcome_of_bodies>,
+    {lua::a_value<BodiesRunHandle,
+                  [](lua_State*, const BodiesRunHandle& run) {
+                      return motion::outcome_text(part_of(run, 0)->trajectory);
+                  }>,
      {"rig_run.outcome -> string", "How the run ended, as a sentence.",
       DINAL_RIG_RUN "print(run.outcome)  --> reached the end"}},
-    {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_start>>,
+    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return run.run.t_start; }>,
      {"rig_run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},
-    {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_stop>>,
+    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return run.run.t_stop; }>,
      {"rig_run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
-    {lua::a_field<system_of_run>,
+    {lua::a_value<BodiesRunHandle, &BodiesRun::system>,
      {"rig_run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
-    {lua::a_metamethod<length_of_run>("__len"),
+    {lua::a_length<BodiesRunHandle, [](const BodiesRun& run) { return run.run.table.size(); }>,
      {"#rig_run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
-    {lua::a_metamethod<text_of_run>("__tostring"),
+    {lua::a_text<BodiesRunHandle, text_of_run>,
      {"tostring(rig_run) -> string", "A summary in one line.",
       DINAL_RIG_RUN "print((tostring(run):match(\"^%d+ bodies\")))  --> 2 bodies"}},
 };

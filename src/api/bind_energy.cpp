@@ -6,7 +6,6 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/run.hpp"
-#include "api/units_option.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
@@ -30,112 +29,85 @@ bool is_part(const RunEnergy& energy) {
     return energy.energy.whose != analysis::Whose::all;
 }
 
-EnergyHandle& energy_self(lua_State* L, const char* call) {
-    return lua::self<EnergyHandle>(L, 1, call);
-}
-
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
 void make_columns(lua_State* L, RunEnergy& energy) {
     if (energy.has_columns) return;
     lua::CallState call(L);  // a law of friction may be a user's function
     Eigen::MatrixXd columns = analysis::energy_columns(energy.run->trajectory, energy.energy.whose);
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     if (is_part(energy)) columns.col(error_column) *= -1;  // then it is the work of the others
     energy.columns = std::move(columns);
     energy.has_columns = true;
     lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
 }
 
-int push_energy_column(lua_State* L, const EnergyHandle& handle, Eigen::Index which) {
+lua::Vector energy_column(lua_State* L, const EnergyHandle& handle, Eigen::Index which) {
     make_columns(L, *handle);
-    const auto column = handle->columns.col(which);
-    lua::push(L, lua::Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
-    return 1;
+    return view_of(handle, handle->columns.col(which));
 }
 
 template <analysis::EnergyColumn which>
-int column_field(lua_State* L) {
-    return push_energy_column(L, energy_self(L, "energy.input"), static_cast<Eigen::Index>(which));
+lua::Vector column_of_energy(lua_State* L, const EnergyHandle& handle) {
+    return energy_column(L, handle, static_cast<Eigen::Index>(which));
 }
 
 /// What does not add up of a whole run, and the work of the others of one of several; nil of the other kind.
 template <bool of_part>
-int rest_field(lua_State* L) {
-    const EnergyHandle& handle = energy_self(L, "energy.error");
-    if (is_part(*handle) == of_part) return push_energy_column(L, handle, error_column);
-    lua_pushnil(L);
-    return 1;
+std::optional<lua::Vector> rest_of_energy(lua_State* L, const EnergyHandle& handle) {
+    if (is_part(*handle) != of_part) return {};
+    return energy_column(L, handle, error_column);
 }
 
-int times(lua_State* L) {
-    const RunHandle& run = energy_self(L, "energy.t")->run;
-    const auto t = run->trajectory.column(motion::Column::t);
-    lua::push(L, lua::Vector(run, t.data(), static_cast<std::size_t>(t.size())));
-    return 1;
+lua::Vector times(const RunEnergy& energy) {
+    return view_of(energy.run, energy.run->trajectory.column(motion::Column::t));
 }
 
-using lua::set_number;
+using lua::NamedNumbers;
 
-void set_balance(lua_State* L, const analysis::Balance& balance, bool part) {
-    set_number(L, "input", balance.work.input);
-    set_number(L, "kinetic", balance.change.kinetic);
-    set_number(L, "spring", balance.change.spring);
-    set_number(L, "viscous", balance.work.viscous);
-    set_number(L, "dry", balance.work.dry);
-    part ? set_number(L, "others", -balance.error()) : set_number(L, "error", balance.error());
-    set_number(L, "belt", balance.work.belt);
-    set_number(L, "base", balance.work.base);
-    set_number(L, "acts", balance.work.acts);
-    set_number(L, "impacts", balance.work.impacts);
+void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool part) {
+    const motion::Work& work = balance.work;
+    numbers.insert(numbers.end(), {{"input", work.input},
+                                   {"kinetic", balance.change.kinetic},
+                                   {"spring", balance.change.spring},
+                                   {"viscous", work.viscous},
+                                   {"dry", work.dry},
+                                   {part ? "others" : "error", part ? -balance.error() : balance.error()},
+                                   {"belt", work.belt},
+                                   {"base", work.base},
+                                   {"acts", work.acts},
+                                   {"impacts", work.impacts}});
 }
 
-int total(lua_State* L) {
-    const RunEnergy& own = *energy_self(L, "energy.total");
-    lua_createtable(L, 0, 12);
-    set_balance(L, own.energy.total, is_part(own));
-    if (is_part(own)) return 1;
-    set_number(L, "flow", own.energy.flow);
-    set_number(L, "closure", own.energy.closure());
-    return 1;
+NamedNumbers total(const RunEnergy& own) {
+    NamedNumbers numbers;
+    add_balance(numbers, own.energy.total, is_part(own));
+    if (!is_part(own)) {
+        numbers.insert(numbers.end(), {{"flow", own.energy.flow}, {"closure", own.energy.closure()}});
+    }
+    return numbers;
 }
 
 template <auto member>
-int stored_field(lua_State* L) {
-    const analysis::Energy& energy = energy_self(L, "energy.start")->energy;
-    lua::push_numbers(L, {{"kinetic", (energy.*member).kinetic}, {"spring", (energy.*member).spring}});
-    return 1;
+NamedNumbers stored(const RunEnergy& own) {
+    const auto& energy = own.energy.*member;
+    return {{"kinetic", energy.kinetic}, {"spring", energy.spring}};
 }
 
-// Made when first asked for and then kept, so that a loop over energy.half_cycles[i] is no trap.
-int half_cycles(lua_State* L) {
-    const RunEnergy& own = *energy_self(L, "energy.half_cycles");
-    const auto& list = own.energy.half_cycles;
-    if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
-        return 1;
+std::vector<NamedNumbers> half_cycles(const RunEnergy& own) {
+    std::vector<NamedNumbers> list;
+    for (const auto& half : own.energy.half_cycles) {
+        list.push_back({{"t_start", half.t_start},
+                        {"t_end", half.t_end},
+                        {"theta_start", half.theta_start},
+                        {"theta_end", half.theta_end}});
+        add_balance(list.back(), half.balance, is_part(own));
     }
-    lua_createtable(L, static_cast<int>(list.size()), 0);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        lua::push_numbers(L, {{"t_start", list[i].t_start},
-                              {"t_end", list[i].t_end},
-                              {"theta_start", list[i].theta_start},
-                              {"theta_end", list[i].theta_end}});
-        set_balance(L, list[i].balance, is_part(own));
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    lua_pushvalue(L, -1);
-    lua_setiuservalue(L, 1, 1);
-    return 1;
+    return list;
 }
 
 std::string text_of_energy(const RunEnergy& energy) {
     return analysis::text(energy.energy, units_of(*energy.run));
-}
-
-int energy_text(lua_State* L) {
-    return lua::push_text(L, text_of_energy(*energy_self(L, "tostring(energy)")));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -143,7 +115,7 @@ int energy_text(lua_State* L) {
     "dt = 5 }\nenergy = run:energy()\n"
 
 constexpr lua::Member energy_members[] = {
-    {lua::a_field<total>,
+    {lua::a_value<EnergyHandle, total>,
      {"energy.total -> table",
       "The balance of the whole run, torque times rad: input (work of M) = kinetic + spring (changes of stored energy) "
       "+ viscous + dry (dissipated by the two frictions) + error. flow is the work of M, spring and inertia in all half "
@@ -153,7 +125,7 @@ constexpr lua::Member energy_members[] = {
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},
-    {lua::a_field<half_cycles>,
+    {lua::a_kept_value<EnergyHandle, half_cycles>,
      {"energy.half_cycles -> table",
       "The balance of each motion from one zero of the velocity to the next: { t_start, t_end, theta_start, "
       "theta_end, input, kinetic, spring, viscous, dry, error }. The ends of the run may cut off the first and the "
@@ -165,55 +137,55 @@ constexpr lua::Member energy_members[] = {
                    "--> -0.76 0.52 0.1536\n"
                    "--> 0.52 -0.28 0.0960\n"
                    "--> -0.28 0.04 0.0384"}},
-    {lua::a_field<stored_field<&analysis::Energy::start>>,
+    {lua::a_value<EnergyHandle, stored<&analysis::Energy::start>>,
      {"energy.start -> table", "The energy stored at the start: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.start.spring)  --> 0.5"}},
-    {lua::a_field<stored_field<&analysis::Energy::finish>>,
+    {lua::a_value<EnergyHandle, stored<&analysis::Energy::finish>>,
      {"energy.finish -> table", "The energy stored at the end: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.finish.kinetic)  --> 0.0"}},
-    {lua::a_field<times>,
+    {lua::a_value<EnergyHandle, times>,
      {"energy.t -> vector", "The times of the rows, run.t.", DINAL_ENERGY "print(energy.t[2])  --> 5.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::input>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::input>>,
      {"energy.input -> vector", "The work of M since the start, at each row.",
       DINAL_ENERGY "print(energy.input:max())  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::kinetic>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::kinetic>>,
      {"energy.kinetic -> vector", "The kinetic energy I velocity^2/2 at each row.",
       DINAL_ENERGY "print(energy.kinetic[1])  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::spring>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::spring>>,
      {"energy.spring -> vector", "The energy k theta^2/2 of the spring at each row, plus that of a second spring.",
       DINAL_ENERGY "print(energy.spring[1])  --> 0.5"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::viscous>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::viscous>>,
      {"energy.viscous -> vector", "The loss by viscous damping since the start, at each row.",
       DINAL_ENERGY "print(energy.viscous:max())  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::dry>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::dry>>,
      {"energy.dry -> vector", "The loss by dry friction since the start, at each row.",
       DINAL_ENERGY "print(string.format(\"%.6f\", energy.dry[#run]))  --> 0.499200"}},
-    {lua::a_field<rest_field<false>>,
+    {lua::a_value<EnergyHandle, rest_of_energy<false>>,
      {"energy.error -> vector",
       "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
       DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
-    {lua::a_field<rest_field<true>>,
+    {lua::a_value<EnergyHandle, rest_of_energy<true>>,
      {"energy.others -> vector or nil",
       "Of a body or link among several, in place of error: the work that its links, or its bodies, have done on it since the "
       "start, at each row. nil of a whole run.",
       "rig = system{ bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", C = 1 } } }\n"
       "run = rig:simulate{ velocity0 = { a = 1 }, t_end = 50 }\n"
       "print(string.format(\"%.6f\", run.rod:energy().others[#run]))  --> 0.250000"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::belt>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::belt>>,
      {"energy.belt -> vector", "The work of the belt on the mass since the start, at each row.",
       DINAL_ENERGY "print(energy.belt:max())  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::base>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::base>>,
      {"energy.base -> vector", "The work of the base on the mass since the start, at each row.",
       DINAL_ENERGY "print(energy.base:max())  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::acts>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::acts>>,
      {"energy.acts -> vector", "The energy added by acts of events since the start, at each row.",
       DINAL_ENERGY "print(energy.acts:max())  --> 0.0"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::impacts>>,
+    {lua::a_value<EnergyHandle, column_of_energy<analysis::EnergyColumn::impacts>>,
      {"energy.impacts -> vector", "The loss by impacts at walls since the start, at each row.",
       "run = system{ I = 2, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate{ velocity0 = 2, t_end = 1, "
       "dt = 1 }\n"
       "print(run:energy().impacts[2])  --> 3.0"}},
-    {lua::a_metamethod<energy_text>("__tostring"),
+    {lua::a_text<EnergyHandle, text_of_energy>,
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",
       DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"
                    "--> energy, t 0 … 20: input = kinetic + spring + viscous + dry"}},
@@ -255,9 +227,7 @@ EnergyHandle push_energy(lua_State* L, const RunHandle& run) {
                                                                             : analysis::Whose::body;
     lua::CallState call(L);
     auto energy = analysis::energy_of(run->trajectory, whose);
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     auto handle =
         std::make_shared<RunEnergy>(RunEnergy{run, lua::value_or_raise(L, "run:energy()", std::move(energy))});
     lua::push<EnergyHandle>(L, handle);
@@ -266,10 +236,9 @@ EnergyHandle push_energy(lua_State* L, const RunHandle& run) {
 
 }  // namespace
 
-int energy_of_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, "run:energy()");
+lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
     push_energy(L, run);
-    return 1;
+    return {};
 }
 
 Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run) {

@@ -9,6 +9,7 @@
 #include "api/classes.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "motion/witness.hpp"
@@ -186,9 +187,7 @@ model::State state_arguments(lua_State* L, int index) {
 /// Of a controller with a memory only a run can tell what it gives.
 void refuse_memory(lua_State* L, const model::Excitation& excitation, const char* call) {
     if (model::has_memory(excitation)) {
-        lua::raise(L,
-                   {.sentence = fmt::format("{}: a controller with a memory has values in a run only; see run.M", call),
-                    .call = call});
+        lua::fail(L, call, {"a controller with a memory has values in a run only; see run.M"});
     }
 }
 
@@ -202,9 +201,7 @@ int value(lua_State* L) {
     refuse_memory(L, excitation, "e:value(t)");
     lua::CallState call(L);
     const double M = excitation.value(t, state);
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     lua_pushnumber(L, M);
     return 1;
 }
@@ -213,9 +210,7 @@ int values(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:values(times)");
     refuse_memory(L, excitation, "e:values(times)");
     if (excitation.has_feedback()) {
-        lua::raise(L, {.sentence =
-                           "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)",
-                       .call = "e:values(times)"});
+        lua::fail(L, "e:values(times)", {"this excitation needs theta and velocity; use e:value(t, theta, velocity)"});
     }
     const std::vector<double> times = lua::numbers_at(L, 2, "e:values(times): times");
     std::vector<double> result = lua::new_numbers(L, times.size());
@@ -225,20 +220,16 @@ int values(lua_State* L) {
         const std::size_t count = std::min(block, times.size() - begin);
         const std::size_t filled =
             begin + excitation.fill(std::span(times).subspan(begin, count), std::span(result).subspan(begin, count));
-        if (call.failed()) {
-            call.raise_error();
-        }
+        call.check();
         if (filled < begin + count) {
-            lua::raise(L, {.sentence = fmt::format("e:values(times): M = {} at t = {:.14g} is not finite",
-                                                   result[filled], times[filled]),
-                           .call = "e:values(times)"});
+            lua::fail(L, "e:values(times)",
+                      {fmt::format("M = {} at t = {:.14g} is not finite", result[filled], times[filled])});
         }
         if (lua::interrupt_requested()) {
             lua::raise_interrupted(L);
         }
     }
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 int next_break(lua_State* L) {
@@ -266,11 +257,9 @@ int obstacle(lua_State* L) {
 int delay(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:delay(1.5)");
     if (model::has_memory(excitation)) {
-        lua::raise(L,
-                   {.sentence =
-                        "e:delay(d): an excitation with memory cannot be delayed as a whole; excitation.sampled has an "
-                        "option delay, and excitation.delayed uses the past motion",
-                    .call = "e:delay(d)"});
+        lua::fail(L, "e:delay(d)",
+                  {"an excitation with memory cannot be delayed as a whole; excitation.sampled has an "
+                   "option delay, and excitation.delayed uses the past motion"});
     }
     lua::push(L, excitation.delayed(lua::finite_argument(L, 2, "e:delay(d): d")));
     return 1;
@@ -289,8 +278,7 @@ int window(lua_State* L) {
     const double from = window_edge(L, 2, "from");
     const double to = window_edge(L, 3, "to");
     if (!(from < to)) {
-        lua::raise(L, {.sentence = fmt::format("e:window(from, to): to = {} must be after from = {}", to, from),
-                       .call = "e:window(from, to)"});
+        lua::fail(L, "e:window(from, to)", {fmt::format("to = {} must be after from = {}", to, from)});
     }
     lua::push(L, excitation.windowed(from, to));
     return 1;
@@ -347,10 +335,6 @@ int negate(lua_State* L) {
     return push_scaled(L, 1, -1);
 }
 
-int excitation_text(lua_State* L) {
-    return lua::push_text(L, source::describe(L, self_excitation(L, "tostring(e)")));
-}
-
 constexpr lua::Member excitation_members[] = {
     {lua::a_method<value>,
      {"e:value(t, theta = 0, velocity = 0) -> number",
@@ -389,7 +373,7 @@ constexpr lua::Member excitation_members[] = {
       "print((excitation.step{} / 4)(1))  --> 0.25"}},
     {lua::a_metamethod<negate>("__unm"),
      {"-e -> excitation", "The excitation with the other sign.", "print((-excitation.step{})(1))  --> -1.0"}},
-    {lua::a_metamethod<excitation_text>("__tostring"),
+    {lua::a_text<model::Excitation, [](lua_State* L, const model::Excitation& e) { return source::describe(L, e); }>,
      {"tostring(e) -> string",
       "Lua text that recreates it, if possible: functions by their source text, without the values of upvalues; "
       "long tables are left out.",

@@ -6,6 +6,7 @@
 #include "api/classes.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "model/laws/asymmetric.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
@@ -52,7 +53,7 @@ laws::Coulomb law_of_side(lua_State* L, const lua::Options& options, const char*
         options.missing(name);
     }
     if (lua_type(L, -1) != LUA_TTABLE) {
-        options.wrong(name, options.row(name).wanted);
+        options.wrong(name);
     }
     const std::string call = fmt::format("{}: {}", laws::asymmetric_call.name, name);
     const text::Call own{call.c_str(), "{ Rd = 0.3, Re = 0.4 }", laws::coulomb_options};
@@ -83,36 +84,19 @@ int law_of_function(lua_State* L) {
                                                                         .motion = lua::FunctionRole::Motion::never});
     lua::CallState call(L);
     law.at_zero = law.function->value(0, {});
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     return push_law(L, options, law);
 }
 
-const model::Friction& law_self(lua_State* L, const char* call) {
-    return lua::self<model::Friction>(L, 1, call);
-}
-
 int law_torque(lua_State* L) {
-    const model::Friction& law = law_self(L, "law:torque(velocity)");
+    const model::Friction& law = lua::self<model::Friction>(L, 1, "law:torque(velocity)");
     const double velocity = lua::finite_argument(L, 2, "law:torque(velocity): velocity");
     lua::CallState call(L);
     const double torque =
         law.sliding(velocity < 0 ? model::Motion::backward : model::Motion::forward, std::fabs(velocity));
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     lua_pushnumber(L, torque);
     return 1;
-}
-
-int law_holding(lua_State* L) {
-    lua_pushnumber(L, law_self(L, "law.Re").greatest_holding());
-    return 1;
-}
-
-int law_text(lua_State* L) {
-    return lua::push_text(L, source::lua_text(L, law_self(L, "tostring(law)")));
 }
 
 constexpr lua::Member friction_module_members[] = {
@@ -167,10 +151,10 @@ constexpr lua::Member friction_members[] = {
      {"law:torque(velocity) -> number",
       "The friction torque at this velocity (rad per time unit); at 0 the limit from above.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }:torque(-2))  --> 0.3"}},
-    {lua::a_field<law_holding>,
+    {lua::a_value<model::Friction, &model::Friction::greatest_holding>,
      {"law.Re -> number", "The breakaway torque; the greater one if the directions differ.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }.Re)  --> 0.4"}},
-    {lua::a_metamethod<law_text>("__tostring"),
+    {lua::a_text<model::Friction, [](lua_State* L, const model::Friction& law) { return source::lua_text(L, law); }>,
      {"tostring(law) -> string", "The Lua text that recreates it.",
       "print(friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 })\n"
       "--> friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"}},

@@ -44,8 +44,7 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
             column.of_words ? column_of(std::move(column.name), std::move(column.words))
                             : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit)));
     }
-    push_data(L, std::move(data));
-    return 1;
+    return push_data(L, std::move(data));
 }
 
 /// The comments of run:save begin so, or there are times and angles; and the rows have no gaps.

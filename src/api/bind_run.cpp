@@ -1,11 +1,15 @@
-// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp, run:continue
-// in continue_run.cpp, run:energy in bind_energy.cpp.
+// The run object: columns as vectors, events, the motion between the rows; how it goes on, and into files. run:energy
+// is in bind_energy.cpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/drive.hpp"
 #include "analysis/explain.hpp"
@@ -17,22 +21,29 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/plot_docs.hpp"
+#include "api/picture.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
-#include "api/units_option.hpp"
+#include "files/csv.hpp"
+#include "files/record1989.hpp"
 #include "files/table.hpp"
 #include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
+#include "lua/worker_state.hpp"
+#include "model/controller.hpp"
+#include "model/lowered.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/fixed_text.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
+#include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -44,9 +55,7 @@ std::string story_of_run(lua_State* L, const Run& run) {
                                                       run.terms ? *run.terms : run.origin->excitation,
                                                       run.origin->integrator, run.origin->extras)
                                   : analysis::explain_rows(run.trajectory, run.units);
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }
 
@@ -170,12 +179,11 @@ int spectrum_of_run(lua_State* L) {
     const motion::Trajectory& trajectory = run->trajectory;
     const bool positional = lua_gettop(L) > 1 && !lua_istable(L, 2);
     if (positional && lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L,
-                   {.sentence = fmt::format("run:spectrum: the name of a column must be a string, got {}; for example "
-                                            "{}",
-                                            lua::describe(L, 2), spectrum_call.example),
-                    .call = "run:spectrum",
-                    .culprit = lua::written(L, 2)});
+        lua::fail(L, "run:spectrum",
+                  {.sentence = fmt::format("the name of a column must be a string, got {}; for example "
+                                           "{}",
+                                           lua::describe(L, 2), spectrum_call.example),
+                   .culprit = lua::written(L, 2)});
     }
     const lua::Options options(L, positional ? 3 : 2, spectrum_call);
     SpectrumOptions asked;
@@ -208,24 +216,21 @@ int spectrum_of_run(lua_State* L) {
         const auto segments = static_cast<std::size_t>(asked.segments);
         const std::size_t length = 2 * rows / (segments + 1);
         if (length < least) {
-            options.fail({.sentence = fmt::format("{} rows are too few for {} segments of at least {} rows", rows,
-                                                  segments, least),
-                          .option = "segments"});
+            options.fail("segments",
+                         fmt::format("{} rows are too few for {} segments of at least {} rows", rows, segments, least));
         }
         analysis::Spectrum found = analysis::density_of(values.first(rows), dt, asked.window, length);
         data.heading = fmt::format("power density of {}: {} rows, {} of {}, {} window", name, rows,
                                    text::counted(segments, "segment"), length, window);
         data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                         column_of("density", std::move(found.amplitude))};
-        push_data(L, std::move(data));
-        return 1;
+        return push_data(L, std::move(data));
     }
     analysis::Spectrum found = analysis::spectrum_of(values.first(rows), dt, asked.window);
     data.heading = fmt::format("spectrum of {}: {} rows, {} window", name, rows, window);
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                     column_of("amplitude", std::move(found.amplitude), in.of(name))};
-    push_data(L, std::move(data));
-    return 1;
+    return push_data(L, std::move(data));
 }
 
 int poincare_of_run(lua_State* L) {
@@ -237,34 +242,31 @@ int poincare_of_run(lua_State* L) {
     const double period =
         period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(period_of_run(*run));
     if (!(period > 0)) {
-        options.fail({.sentence = "give a period: the M of this run has no known one", .option = "period"});
+        options.fail("period", "give a period: the M of this run has no known one");
     }
     const double from = asked.from.value_or(trajectory.t_start);
     if (from < trajectory.t_start || from > trajectory.t_stop) {
-        options.fail({.sentence = fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from,
-                                              trajectory.t_start, trajectory.t_stop),
-                      .option = "from"});
+        options.fail("from", fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from,
+                                         trajectory.t_start, trajectory.t_stop));
     }
     const double looks = std::floor((trajectory.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
     if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
-    std::vector<double> t, theta, velocity;
+    std::vector<std::pair<double, model::State>> samples;
     lua::CallState call(L);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
         const double at = std::min(from + static_cast<double>(i) * period, trajectory.t_stop);
         const auto state = trajectory.at(at);
-        if (call.failed()) call.raise_error();
-        if (!state) options.fail(state.error());
-        t.push_back(at);
-        theta.push_back(state->theta);
-        velocity.push_back(state->velocity);
+        call.check();
+        samples.emplace_back(at, options.value_or_fail(state));
     }
-    Data data{.columns = {}, .points_of = "velocity", .points_over = "theta"};
+    using Sample = std::pair<double, model::State>;
     const ColumnUnits in(units_of(*run));
-    data.columns = {column_of("t", std::move(t), in.t), column_of("theta", std::move(theta), in.theta),
-                    column_of("velocity", std::move(velocity), in.speed)};
-    push_data(L, std::move(data));
-    return 1;
+    Data data = table_of(samples, ListColumn{"t", &Sample::first, in.t},
+                         ListColumn{"theta", [](const Sample& s) { return s.second.theta; }, in.theta},
+                         ListColumn{"velocity", [](const Sample& s) { return s.second.velocity; }, in.speed});
+    data.points_of = "velocity", data.points_over = "theta";
+    return push_data(L, std::move(data));
 }
 
 const RunHandle& run_self(lua_State* L, const char* call) {
@@ -272,8 +274,7 @@ const RunHandle& run_self(lua_State* L, const char* call) {
 }
 
 void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
-    const auto values = run->trajectory.rows.col(column);
-    lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
+    lua::push(L, view_of(run, run->trajectory.rows.col(column)));
 }
 
 /// Members and columns: what a misspelt name may have meant.
@@ -315,8 +316,7 @@ void push_as_data(lua_State* L, const RunHandle& run) {
     const auto& names = run->trajectory.names();
     for (std::size_t i = 0; i < names.size(); ++i) {
         const auto numbers = run->trajectory.rows.col(static_cast<Eigen::Index>(i));
-        const auto size = static_cast<std::size_t>(numbers.size());
-        data.columns.push_back({names[i], lua::Vector(run, numbers.data(), size), in.of(names[i])});
+        data.columns.push_back({names[i], view_of(run, numbers), in.of(names[i])});
     }
     push_data(L, std::move(data));
 }
@@ -366,17 +366,9 @@ int columns(lua_State* L) {
     return asked;
 }
 
-// Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
-int events(lua_State* L) {
-    run_self(L, "run.events");
-    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) {
-        return 1;
-    }
-    const Run& run = *run_self(L, "run.events");
-    push_events(L, run.trajectory.events, run.trajectory.event_names, units_of(run));
-    lua_pushvalue(L, -1);
-    lua_setiuservalue(L, 1, 1);
-    return 1;
+lua::Pushed events(lua_State* L, const RunHandle& run) {
+    push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run));
+    return {};
 }
 
 /// One word for each way to end.
@@ -401,8 +393,7 @@ std::string_view status_word(model::Outcome outcome) {
 
 namespace {
 
-int cycle_of_run(lua_State* L) {
-    const RunHandle run = run_self(L, "run:cycle()");
+lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     const motion::Trajectory& trajectory = run->trajectory;
     lua::CallState call(L);
     std::vector<model::Event> events(trajectory.events.begin(), trajectory.events.end());
@@ -413,26 +404,22 @@ int cycle_of_run(lua_State* L) {
         std::inplace_merge(events.begin(), events.begin() + told, events.end(),
                            [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
     }
-    if (call.failed()) call.raise_error();
+    call.check();
     const auto found = analysis::recurrence(events);
     if (!found) {
         lua_pushnil(L);
-        return 1;
+        return {};
     }
-    lua::push_numbers(L, {{"period", found->period},
-                          {"amplitude", found->amplitude},
-                          {"middle", found->centre},
-                          {"stuck", found->stuck},
-                          {"drift", found->drift},
-                          {"change", found->change},
-                          {"since", found->since}});
+    lua::push_value(L, lua::NamedNumbers{{"period", found->period},
+                                         {"amplitude", found->amplitude},
+                                         {"middle", found->centre},
+                                         {"stuck", found->stuck},
+                                         {"drift", found->drift},
+                                         {"change", found->change},
+                                         {"since", found->since}});
     lua::set_value(L, "stops", found->stops);
     lua::set_value(L, "steady", found->steady);
-    return 1;
-}
-
-int units_of_this(lua_State* L) {
-    return push_units(L, units_of(*run_self(L, "run.units")));
+    return {};
 }
 
 /// What was simulated, and how; nil where the run was read from a file.
@@ -440,20 +427,6 @@ template <auto member>
 auto origin_of(const Run& run) {
     using Value = std::remove_cvref_t<decltype((*run.origin).*member)>;
     return run.origin ? std::optional<Value>((*run.origin).*member) : std::nullopt;
-}
-
-int run_length(lua_State* L) {
-    lua_pushinteger(L, run_self(L, "#run")->trajectory.size());
-    return 1;
-}
-
-int explain(lua_State* L) {
-    const RunHandle run = run_self(L, "run:explain()");
-    return lua::push_text(L, story_of_run(L, *run));
-}
-
-int run_text(lua_State* L) {
-    return lua::push_text(L, motion::summary(run_self(L, "tostring(run)")->trajectory));
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
@@ -495,13 +468,13 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "longer = run:continue(3)\n"
                 "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000",
       {&continue_call}}},
-    {lua::a_method<energy_of_run>,
+    {lua::a_question<RunHandle, energy_of_run>,
      {"run:energy() -> energy",
       "The energy balance: work of M, stored energy, losses; in total, for each half cycle and at the rows. Only "
       "for runs by integrator.exact and integrator.spectral.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
-    {lua::a_method<explain>,
+    {lua::a_question<RunHandle, [](lua_State* L, const RunHandle& run) { return story_of_run(L, *run); }>,
      {"run:explain() -> string",
       "Describes the run in sentences: half cycles, where, when and why the mass stopped and "
       "slipped (|M - k theta| against Re), and the end: rest, or a steady motion with its "
@@ -541,12 +514,12 @@ constexpr lua::Member run_members[] = {
      {"run.damping -> vector", "The torque of viscous damping on the mass, -C velocity.",
       "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
       "print(run.damping[1])  --> -3.0"}},
-    {lua::a_field<run_states>,
+    {lua::a_value<RunHandle, run_states>,
      {"run.states -> table", "The columns of the states by name: vectors.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.25,\n"
       "    states = { way = { rate = function(t, theta, velocity) return math.abs(velocity) end } } }\n"
       "print(string.format(\"%.6f\", run.states.way[5]))  --> 4.000000"}},
-    {lua::a_field<events>,
+    {lua::a_kept_value<RunHandle, events>,
      {"run.events -> data",
       "The events in order of time: the columns t, kind, theta, M and velocity, and by number { t, kind, theta, M, "
       "velocity }. kind is \"turn\" (the motion reverses), \"stick\", \"slip\" (the mass breaks away), \"rest\" "
@@ -557,12 +530,12 @@ constexpr lua::Member run_members[] = {
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"
       "--> turn\t1.0000 1.0000"}},
-    {lua::a_field<run_acceleration>,
+    {lua::a_value<RunHandle, run_acceleration>,
      {"run.acceleration -> vector or nil",
       "The angular acceleration at the rows, rad per time unit^2, from the equation of motion, relative to the "
       "base. For a run read from a file: its column of this name, or nil.",
       "run = system{ I = 2, k = 3 }:simulate{ theta0 = 1, t_end = 1 }\nprint(run.acceleration[1])  --> -1.5"}},
-    {lua::a_method<cycle_of_run>,
+    {lua::a_question<RunHandle, cycle_of_run>,
      {"run:cycle() -> table or nil",
       "The periodic motion at the end of the run, measured from its events: period, amplitude, middle (of the "
       "extremes), stops, stuck (fraction of a period), drift (of theta in a period), change (from the period "
@@ -610,7 +583,7 @@ constexpr lua::Member run_members[] = {
     {lua::a_value<RunHandle, origin_of<&source::Origin::system>>,
      {"run.system -> system or nil", "The system; nil for a run read from a file.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
-    {lua::a_field<units_of_this>,
+    {lua::a_value<RunHandle, [](const Run& run) { return units_by_name(units_of(run)); }>,
      {"run.units -> table", "The names of the units of theta, t and M; nil for those without one.",
       DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
     {lua::a_value<RunHandle, origin_of<&source::Origin::excitation>>,
@@ -619,9 +592,9 @@ constexpr lua::Member run_members[] = {
     {lua::a_value<RunHandle, origin_of<&source::Origin::integrator>>,
      {"run.integrator -> integrator or nil", "The integrator; nil for a run read from a file.",
       integrator_example.c_str()}},
-    {lua::a_metamethod<run_length>("__len"),
+    {lua::a_length<RunHandle, [](const Run& run) { return run.trajectory.size(); }>,
      {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},
-    {lua::a_metamethod<run_text>("__tostring"),
+    {lua::a_text<RunHandle, [](const Run& run) { return motion::summary(run.trajectory); }>,
      {"tostring(run) -> string", "A summary in one line.",
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
       "--> 13 rows, t 0 … 1.2; 2 events (2 turns); moving at the end; peak |theta| 1"}},
@@ -662,6 +635,250 @@ void push_run(lua_State* L, RunHandle run) {
 
 void register_run(lua_State* L) {
     lua::add_class<RunHandle>(L, run_class);
+}
+
+// run:at(t), and the columns of a run's own states.
+
+namespace {
+
+/// The answer to a name that is no state of the run: the metamethod __index of run.states.
+int no_such_state(lua_State* L) {
+    const std::string wanted(lua_type(L, 2) == LUA_TSTRING ? lua::text_at(L, 2) : luaL_typename(L, 2));
+    const std::vector<std::string> names = lua::text_keys(L, 1);
+    if (names.empty()) {
+        lua::raise(L, fmt::format("run.states has no '{}': the run has no states", wanted));
+    }
+    lua::raise(L, fmt::format("run.states has no '{}', only {}{}", wanted, fmt::join(names, ", "),
+                              text::did_you_mean(wanted, names)));
+}
+
+}  // namespace
+
+int run_at(lua_State* L) {
+    const RunHandle run =
+        lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
+    const double t = lua::finite_argument(L, 2, "run:at(t): t");
+    lua::CallState call(L);  // between rows the integrator asks the excitation again
+    const auto state = run->trajectory.at(t);
+    call.check();
+    if (!state) {
+        lua::fail(L, "run:at(t)", state.error());
+    }
+    lua_pushnumber(L, state->theta);
+    lua_pushnumber(L, state->velocity);
+    const motion::Trajectory& trajectory = run->trajectory;
+    if (trajectory.state_count() == 0 || trajectory.course == nullptr) {
+        return 2;
+    }
+    const std::vector<double> states = trajectory.course->states_at(t);
+    lua_createtable(L, 0, static_cast<int>(states.size()));
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        lua::set_value(L, trajectory.names()[motion::column_count + i].c_str(), states[i]);
+    }
+    return 3;
+}
+
+/// From the equation of motion at the rows.
+lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
+    const motion::Trajectory& trajectory = run->trajectory;
+    if (run->whole && !run->whole->system->is_link(run->joint)) {
+        lua::push(L, table_column(run->whole, acceleration_column(*run->whole, run->joint)));
+        return {};
+    }
+    if (!run->origin) {
+        const auto own = trajectory.find("acceleration");
+        own ? static_cast<void>(lua::push(L, view_of(run, trajectory.rows.col(*own)))) : lua_pushnil(L);
+        return {};
+    }
+    const source::Task& task = *run->origin;
+    const model::Lowered system(task.system);
+    const auto& walls = task.system.walls();
+    using motion::Column;
+    const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
+               velocity = trajectory.column(Column::velocity), M = trajectory.column(Column::M),
+               friction = trajectory.column(Column::friction), damping = trajectory.column(Column::damping);
+    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(trajectory.size()));
+    lua::CallState call(L);  // the spring and the base may be functions
+    for (Eigen::Index i = 0; i < trajectory.size(); ++i) {
+        const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
+        const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
+        const double base = task.extras.base.components().empty() ? 0 : task.extras.base.value(t[i]);
+        values[static_cast<std::size_t>(i)] = leans ? 0 : torque / task.system.inertia() - base + 0.0;
+        call.check();
+    }
+    lua::push_vector(L, std::move(values));
+    return {};
+}
+
+lua::Pushed run_states(lua_State* L, const RunHandle& run) {
+    // In a file, too, what stands after the columns that every run has are states.
+    const std::vector<std::string>& names = run->trajectory.names();
+    const std::vector<std::string>& always = motion::column_names();
+    const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
+    const std::size_t count = has_all ? names.size() - always.size() : 0;
+    lua_createtable(L, 0, static_cast<int>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto column = static_cast<Eigen::Index>(motion::column_count + i);
+        lua::set_value(L, names[motion::column_count + i].c_str(), view_of(run, run->trajectory.rows.col(column)));
+    }
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, lua::guarded<no_such_state>);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+    return {};
+}
+
+// run:continue{ t_end }: a run goes on from where it ended.
+
+namespace {
+
+/// The times of the run until it ended, then the new ones; without these, what it had not come to before t_end.
+motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
+                        const source::Task& task, double t_end) {
+    const std::span<const double> times = task.rows.times();
+    std::vector<double> more = asked.times.value_or(std::vector<double>());
+    if (!more.empty() && more.front() <= so_far.t_stop) {
+        options.fail("times", fmt::format("times[1] = {} must be after t = {}, where the run ended", more.front(),
+                                          so_far.t_stop));
+    }
+    if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
+        options.fail(wrong.error());
+    }
+    const double kept = asked.times ? so_far.t_stop : t_end;
+    const auto end = std::upper_bound(times.begin(), times.end(), kept);
+    return task.rows.followed_by(static_cast<std::size_t>(end - times.begin()), std::move(more));
+}
+
+/// t_end, the last of the times, or where a run that was stopped should have ended.
+double asked_end(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
+                 const source::Task& task) {
+    if (asked.t_end) {
+        return *asked.t_end;
+    }
+    if (asked.times && !asked.times->empty()) {
+        return *std::max_element(asked.times->begin(), asked.times->end());
+    }
+    if (so_far.t_stop < task.window.end) {
+        return task.window.end;
+    }
+    options.fail("t_end", fmt::format("the run reached its end at t = {:.6g}: give a later end, for example {}",
+                                      so_far.t_stop, continue_call.example));
+}
+
+}  // namespace
+
+int continue_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // kept: M may drop the last reference
+    const lua::Options options(L, 2, continue_call);
+    MoreTime asked;
+    options.fill(asked);
+    const motion::Trajectory& so_far = run->trajectory;
+    if (run->whole && !run->whole->system->named) return continue_one_body(L, options, run->whole, asked);
+    if (run->whole) {
+        options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
+    }
+    if (!run->origin) {
+        options.fail(
+            {"a run read from a file cannot be continued; start one from its end with sys:simulate{ theta0, "
+             "velocity0, t_start, ... }"});
+    }
+    source::Origin origin = *run->origin;
+    for (const model::Component& component : origin.excitation.components()) {
+        const auto* sampled = model::controller_of<model::SampledController>(component);
+        if (sampled != nullptr && sampled->first && sampled->latest != run.get()) {
+            options.fail(
+                {"the function of excitation.sampled has been used in another run since: simulate this run again"});
+        }
+    }
+    const bool spaced = origin.rows.dt() > 0;
+    if (spaced && asked.times) {
+        options.fail("times",
+                     fmt::format("this run has a row every dt = {:.6g} and keeps dt; times are for runs with times",
+                                 origin.rows.dt()));
+    }
+    origin.window.end = asked_end(options, asked, so_far, origin);
+    if (!spaced) {
+        origin.rows = asked_rows(options, asked, so_far, origin, origin.window.end);
+    }
+    const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
+                                   const motion::Limits& limits) {
+        return motion::resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator,
+                              monitor, limits, task.extras);
+    };
+    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.course != nullptr, compute);
+}
+
+// run:save(file): which kind of file, which columns, and the comment block that lets the run be repeated.
+
+namespace {
+
+/// The columns asked for by `columns = { name or number, ... }`, all without it.
+std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
+                                              const motion::Trajectory& trajectory) {
+    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names(), trajectory.rows.matrix());
+    if (!options.has("columns")) {
+        return all;
+    }
+    options.push("columns");
+    if (!lua_istable(L, -1) || lua_rawlen(L, -1) == 0) {
+        options.wrong("columns");
+    }
+    std::vector<files::NamedColumn> asked;
+    for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
+        lua_rawgeti(L, -1, i);
+        const auto column = column_at(L, -1, trajectory.names(), fmt::format("columns[{}]", i));
+        asked.push_back(all[static_cast<std::size_t>(options.value_or_fail(column))]);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return asked;
+}
+
+text::Expected<files::Written> write_record(const std::string& file, const Run& run) {
+    if (run.origin) {
+        return files::write_record1989(file, run.trajectory, run.origin->system);
+    }
+    if (run.trajectory.names() == files::record1989_names()) {
+        return files::write_record1989(file, run.trajectory.rows.matrix());
+    }
+    if (run.whole) return text::Error{"a .dat file is of one body with constant Rd and Re; save it as .csv"};
+    return text::Error{
+        "a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
+}
+
+text::Expected<files::Written> write(lua_State* L, const lua::Options& options, const std::string& file,
+                                     const Run& run) {
+    const std::string ending = text::ending_of(file);
+    if (ending == ".csv") {
+        return files::write_csv(file, asked_columns(L, options, run.trajectory),
+                                run.origin ? source::repeat_lines(*run.origin) : run.comments);
+    }
+    if (ending != ".dat") {
+        return text::Error{.sentence = fmt::format(
+                               "the name '{}' must end in .csv (names and numbers) or .dat (the record of 1989)", file),
+                           .culprit = file};
+    }
+    if (options.has("columns")) {
+        return text::Error{
+            .sentence = "the record of 1989 always has its six columns; save a choice of columns as .csv",
+            .option = "columns"};
+    }
+    return write_record(file, run);
+}
+
+}  // namespace
+
+int save_run(lua_State* L) {
+    lua::refuse_in_worker(L, "run:save");
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        lua::raise_got(L, 2, "run:save", "run:save: the name of the file must be a string",
+                       fmt::format("; for example {}", save_call.example));
+    }
+    const std::string file = lua_tostring(L, 2);
+    const lua::Options options(L, 3, save_call);
+    options.value_or_fail(write(L, options, file, *run));
+    return 0;
 }
 
 }  // namespace dinal::api

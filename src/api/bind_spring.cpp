@@ -7,6 +7,7 @@
 #include "api/classes.hpp"
 #include "api/system_options.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "model/springs/user_spring.hpp"
 #include "source/describe.hpp"
@@ -20,8 +21,7 @@ namespace springs = model::springs;
 constexpr const char* polynomial_example = "spring.polynomial{ [3] = 0.5 }";
 
 [[noreturn]] void refuse_power(lua_State* L, std::string sentence, int index) {
-    lua::raise(
-        L, text::in_call("spring.polynomial", {.sentence = std::move(sentence), .culprit = lua::written(L, index)}));
+    lua::fail(L, "spring.polynomial", {.sentence = std::move(sentence), .culprit = lua::written(L, index)});
 }
 
 /// The power that the key at `index` is, as a user has written it.
@@ -63,26 +63,16 @@ int polynomial_spring(lua_State* L) {
     return 1;
 }
 
-const model::Spring& spring_self(lua_State* L, const char* call) {
-    return lua::self<model::Spring>(L, 1, call);
-}
-
 /// What a function of theta answers that may be a user's.
 template <double (model::Spring::*get)(double) const>
 int at_theta(lua_State* L) {
-    const model::Spring& spring = spring_self(L, "spring:torque(theta)");
+    const model::Spring& spring = lua::self<model::Spring>(L, 1, "spring:torque(theta)");
     const double theta = lua::finite_argument(L, 2, "spring:torque(theta): theta");
     lua::CallState call(L);
     const double value = (spring.*get)(theta);
-    if (call.failed()) {
-        call.raise_error();
-    }
+    call.check();
     lua_pushnumber(L, value);
     return 1;
-}
-
-int spring_text(lua_State* L) {
-    return lua::push_text(L, source::lua_text(L, spring_self(L, "tostring(spring)")));
 }
 
 constexpr lua::Member spring_module_members[] = {
@@ -103,7 +93,7 @@ constexpr lua::Member spring_members[] = {
      {"spring:energy(theta) -> number",
       "The stored energy at theta (rad): the integral of the torque from 0, torque times rad.",
       "print(spring.polynomial{ [3] = 0.5 }:energy(1))  --> 0.125"}},
-    {lua::a_metamethod<spring_text>("__tostring"),
+    {lua::a_text<model::Spring, [](lua_State* L, const model::Spring& spring) { return source::lua_text(L, spring); }>,
      {"tostring(spring) -> string", "The Lua text that recreates it.",
       "print(spring.polynomial{ [3] = 0.5 })  --> spring.polynomial{ [3] = 0.5 }"}},
 };
@@ -122,12 +112,10 @@ std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& opti
             lua::FunctionRole{.name = "spring", .argument = "theta", .motion = lua::FunctionRole::Motion::never})};
         lua::CallState call(L);
         static_cast<void>(own.torque(0));  // what returns nothing is told here, and not in the middle of a run
-        if (call.failed()) {
-            call.raise_error();
-        }
+        call.check();
         asked = own;
     } else if (!lua_isnil(L, index)) {
-        options.wrong("spring", options.row("spring").wanted);
+        options.wrong("spring");
     }
     lua_pop(L, 1);
     return asked;

@@ -1,25 +1,26 @@
-// The class of what sys:steady{ ... } and run:steady{ ... } return; the calls are in steady_calls.cpp.
-#include "api/steady_answer.hpp"
-
+// sys:steady{ ... } and run:steady{ ... }, and the class of what they return.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "api/bind_excitation.hpp"
+#include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
+#include "api/run.hpp"
+#include "api/steady_answer.hpp"
+#include "lua/values.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {
+
 namespace {
 
 using analysis::SteadyStatus;
-
-const SteadyHandle& steady_self(lua_State* L, const char* call) {
-    return lua::self<SteadyHandle>(L, 1, call);
-}
 
 bool is_moving(const Steady& s) {
     return s.motion.status == SteadyStatus::steady;
@@ -53,163 +54,92 @@ const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHa
     return *s->others;
 }
 
-int push_or_nil(lua_State* L, const std::optional<double>& x) {
-    x && !std::isnan(*x) ? lua_pushnumber(L, *x) : lua_pushnil(L);  // NaN: of a body that goes round
-    return 1;
-}
+// ---- fields: nil where there is no such motion
 
-// ---- fields
-
-int steady_status(lua_State* L) {
-    const std::string_view text = analysis::name(steady_self(L, "s.status")->motion.status);
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+/// A fact about a motion that was found; none where it is nan, as of a body that goes round.
+template <auto fact>
+auto found_fact(const Steady& s) {
+    const auto value = std::invoke(fact, s.motion);
+    bool known = is_found(s);
+    if constexpr (std::is_floating_point_v<decltype(value)>) known = known && !std::isnan(value);
+    return known ? std::optional(value) : std::nullopt;
 }
 
 template <auto fact>
-int steady_found_number(lua_State* L) {
-    const Steady& s = of_one(L, *steady_self(L, "s.amplitude"));
-    return push_or_nil(L, is_found(s) ? std::optional<double>(static_cast<double>(s.motion.*fact)) : std::nullopt);
+auto fact_of_one(lua_State* L, const SteadyHandle& s) {
+    return found_fact<fact>(of_one(L, *s));
 }
 
-int steady_period(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.period");
-    return push_or_nil(L, s.motion.status == SteadyStatus::none || s.motion.period == 0
-                              ? std::nullopt
-                              : std::optional(s.motion.period));
+std::optional<double> steady_period(const Steady& s) {
+    const bool has_one = s.motion.status != SteadyStatus::none && s.motion.period != 0;
+    return has_one ? std::optional(s.motion.period) : std::nullopt;
 }
 
-int steady_peak(lua_State* L) {
-    const Steady& s = of_one(L, *steady_self(L, "s.peak"));
-    const double most = std::max(std::fabs(s.motion.low), std::fabs(s.motion.high));
-    return push_or_nil(L, is_found(s) ? std::optional(most) : std::nullopt);
-}
-
-int steady_mean(lua_State* L) {
-    const SteadyHandle s = steady_self(L, "s.mean");
-    return push_or_nil(L, is_found(*s) ? std::optional(steady_shape(L, s).mean) : std::nullopt);
+std::optional<double> steady_mean(lua_State* L, const SteadyHandle& s) {
+    const double mean = is_found(*s) ? steady_shape(L, s).mean : std::nan("");
+    return std::isnan(mean) ? std::nullopt : std::optional(mean);
 }
 
 template <auto angle>
-int steady_shape_angle(lua_State* L) {
-    const SteadyHandle s = steady_self(L, "s.lag");
-    return push_or_nil(L, is_moving(*s) ? steady_shape(L, s).*angle : std::nullopt);
+std::optional<double> steady_shape_angle(lua_State* L, const SteadyHandle& s) {
+    return is_moving(*s) ? steady_shape(L, s).*angle : std::nullopt;
 }
 
-int steady_stops(lua_State* L) {
-    const Steady& s = of_one(L, *steady_self(L, "s.stops"));
-    is_moving(s) ? lua_pushinteger(L, static_cast<lua_Integer>(s.motion.stops)) : lua_pushnil(L);
-    return 1;
+std::optional<std::size_t> steady_stops(lua_State* L, const SteadyHandle& s) {
+    return is_moving(of_one(L, *s)) ? std::optional(s->motion.stops) : std::nullopt;
 }
 
-int steady_periods(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.periods");
-    is_found(s) ? lua_pushinteger(L, s.motion.periods) : lua_pushnil(L);
-    return 1;
+std::optional<double> steady_growth(const Steady& s) {
+    return s.motion.status == SteadyStatus::grows ? std::optional(s.motion.growth) : std::nullopt;
 }
 
-int steady_growth(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.growth");
-    return push_or_nil(L, s.motion.status == SteadyStatus::grows ? std::optional(s.motion.growth) : std::nullopt);
-}
-
-int steady_rest(lua_State* L) {
-    const Steady& s = of_one(L, *steady_self(L, "s.rest"));
-    if (s.motion.status != SteadyStatus::adheres && s.motion.status != SteadyStatus::rest) {
+lua::Pushed steady_rest(lua_State* L, const SteadyHandle& s) {
+    const analysis::SteadyMotion& motion = of_one(L, *s).motion;
+    if (motion.status != SteadyStatus::adheres && motion.status != SteadyStatus::rest) {
         lua_pushnil(L);
-        return 1;
+        return {};
     }
-    lua_createtable(L, 2, 2);
-    lua_pushnumber(L, s.motion.rest.first);
-    lua_rawseti(L, -2, 1);
-    lua_pushnumber(L, s.motion.rest.second);
-    lua_rawseti(L, -2, 2);
-    lua_pushnumber(L, s.motion.rest.first);
-    lua_setfield(L, -2, "lower");
-    lua_pushnumber(L, s.motion.rest.second);
-    lua_setfield(L, -2, "upper");
-    return 1;
+    lua::push_value(L, std::array{motion.rest.first, motion.rest.second});
+    lua::set_value(L, "lower", motion.rest.first);
+    lua::set_value(L, "upper", motion.rest.second);
+    return {};
 }
 
-int steady_multipliers(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.multipliers");
-    if (!is_moving(s) || !s.motion.differentiable) {
-        lua_pushnil(L);
-        return 1;
+std::optional<std::vector<lua::NamedNumbers>> steady_multipliers(const Steady& s) {
+    if (!is_moving(s) || !s.motion.differentiable) return {};
+    std::vector<lua::NamedNumbers> all;
+    for (const auto& m : s.motion.multipliers) {
+        all.push_back({{"re", m.real()}, {"im", m.imag()}, {"abs", std::abs(m)}});
     }
-    lua_createtable(L, 2, 0);
-    for (std::size_t i = 0; i < s.motion.multipliers.size(); ++i) {
-        lua_createtable(L, 0, 3);
-        lua_pushnumber(L, s.motion.multipliers[i].real());
-        lua_setfield(L, -2, "re");
-        lua_pushnumber(L, s.motion.multipliers[i].imag());
-        lua_setfield(L, -2, "im");
-        lua_pushnumber(L, std::abs(s.motion.multipliers[i]));
-        lua_setfield(L, -2, "abs");
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    return 1;
+    return all;
 }
 
-template <auto fact>
-int steady_found_flag(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.stable");
-    is_found(s) ? lua_pushboolean(L, s.motion.*fact ? 1 : 0) : lua_pushnil(L);
-    return 1;
-}
-
-int steady_unique(lua_State* L) {
-    const SteadyHandle s = steady_self(L, "s.unique");
+lua::Pushed steady_unique(lua_State* L, const SteadyHandle& s) {
+    const auto others = [&] { return s->rig ? others_of_rig(L, *s->rig).size() : others_of(L, s).size(); };
+    const std::optional<bool>& unique = s->motion.unique;
     if (!is_found(*s)) {
         lua_pushnil(L);
-        return 1;
-    }
-    if (s->motion.unique.value_or(false)) {
+    } else if (unique.value_or(false)) {
         lua_pushliteral(L, "proven");
-    } else if (!s->motion.unique && (s->rig ? others_of_rig(L, *s->rig).empty() : others_of(L, s).empty())) {
-        lua_pushliteral(L, "not seen");
     } else {
-        lua_pushboolean(L, 0);
+        !unique&& others() == 0 ? lua::push_value(L, "not seen") : lua_pushboolean(L, 0);
     }
-    return 1;
+    return {};
 }
 
-/// Kept, so that s.others is the same table each time.
-int steady_others(lua_State* L) {
-    const SteadyHandle s = steady_self(L, "s.others");
-    if (!is_found(*s)) {
-        lua_pushnil(L);
-        return 1;
-    }
-    if (push_kept(L, "others")) return 1;
-    lua_newtable(L);
-    lua_Integer n = 0;
-    if (s->rig) {
-        for (const SteadyHandle& other : others_of_rig(L, *s->rig)) {
-            lua::push<SteadyHandle>(L, other);
-            lua_rawseti(L, -2, ++n);
-        }
-        keep(L, "others");
-        return 1;
-    }
+std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const SteadyHandle& s) {
+    if (!is_found(*s)) return {};
+    if (s->rig) return others_of_rig(L, *s->rig);
+    std::vector<SteadyHandle> others;
     for (const analysis::OtherMotion& other : others_of(L, s)) {
-        lua::push<SteadyHandle>(L, std::make_shared<Steady>(Steady{other.question, other.motion}));
-        lua_rawseti(L, -2, ++n);
+        others.push_back(std::make_shared<Steady>(Steady{other.question, other.motion}));
     }
-    keep(L, "others");
-    return 1;
+    return others;
 }
 
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
     if (s->rig) return story_of_rig(L, *s);
     return analysis::told(s->question, s->motion, steady_shape(L, s), others_of(L, s));
-}
-
-int steady_explain(lua_State* L) {
-    const SteadyHandle s = steady_self(L, "s:explain()");
-    const std::string text = text::wrapped(steady_story(L, s));
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
 }
 
 std::string steady_summary(const Steady& s) {
@@ -245,133 +175,88 @@ std::string steady_summary(const Steady& s) {
     return fmt::format("none: nothing periodic was found in {} periods of M", m.maps);
 }
 
-int steady_to_string(lua_State* L) {
-    const std::string text = steady_summary(*steady_self(L, "tostring(s)"));
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
-}
-
 #define DINAL_STEADY                                 \
     "sys = nondimensional{ friction_ratio = 0.4 }\n" \
     "s = sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }\n"
 
 constexpr lua::Member steady_members[] = {
-    {"explain",
-     lua::guarded<steady_explain>,
-     lua::Kind::method,
+    {lua::a_question<SteadyHandle,
+                     [](lua_State* L, const SteadyHandle& s) { return text::wrapped(steady_story(L, s)); }>,
      {"s:explain() -> string",
       "Describes the motion, whether it is stable, and whether other starts lead to another one.",
       DINAL_STEADY "print(s:explain():match(\"It stops[^.]*\"))  --> It stops 2 times a period and is stuck for 31"}},
-    {"status",
-     lua::guarded<steady_status>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, [](const Steady& s) { return analysis::name(s.motion.status); }>,
      {"s.status -> string",
       "\"steady\"; \"adheres\": the mass never moves; \"rest\": the motion dies out; \"grows\": M supplies more "
       "energy than is dissipated; \"none\": no periodic motion was found. Fields without a value are nil.",
       DINAL_STEADY "print(s.status)  --> steady"}},
-    {"period",
-     lua::guarded<steady_period>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_period>,
      {"s.period -> number", "The period of the motion, time units; nil at rest.",
       DINAL_STEADY "print(s.period)  --> 2.5"}},
-    {"periods",
-     lua::guarded<steady_periods>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, found_fact<&analysis::SteadyMotion::periods>>,
      {"s.periods -> integer", "The number of periods of M in one period of the motion; 1 unless it is subharmonic.",
       DINAL_STEADY "print(s.periods)  --> 1"}},
-    {"amplitude",
-     lua::guarded<steady_found_number<&analysis::SteadyMotion::amplitude>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, fact_of_one<&analysis::SteadyMotion::amplitude>>,
      {"s.amplitude -> number", "Half the distance between the extremes of theta, rad.",
       DINAL_STEADY "print(string.format(\"%.4f\", s.amplitude))  --> 1.1111"}},
-    {"peak",
-     lua::guarded<steady_peak>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, fact_of_one<greatest_angle>>,
      {"s.peak -> number", "The greatest |theta|, rad.", DINAL_STEADY "print(s.peak >= s.amplitude)  --> true"}},
-    {"mean",
-     lua::guarded<steady_mean>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_mean>,
      {"s.mean -> number", "The mean of theta over time, rad.",
       DINAL_STEADY "print(math.abs(s.mean) < 1e-9)  --> true"}},
-    {"lag",
-     lua::guarded<steady_shape_angle<&analysis::SteadyShape::lag>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_shape_angle<&analysis::SteadyShape::lag>>,
      {"s.lag -> number",
       "The lag of the fundamental of theta behind that of M, rad in (-pi, pi]; nil if one of them has none or M "
       "depends on the motion.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f\", s.lag))  --> 1.570796"}},
-    {"peak_lag",
-     lua::guarded<steady_shape_angle<&analysis::SteadyShape::peak_lag>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_shape_angle<&analysis::SteadyShape::peak_lag>>,
      {"s.peak_lag -> number", "The lag of the maximum of theta behind that of the fundamental of M, rad.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f\", s.peak_lag))  --> 1.570796"}},
-    {"stops",
-     lua::guarded<steady_stops>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_stops>,
      {"s.stops -> integer", "The number of stops in a period; nil if it adheres.",
       DINAL_STEADY "print(s.stops)  --> 2"}},
-    {"stuck",
-     lua::guarded<steady_found_number<&analysis::SteadyMotion::stuck>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, fact_of_one<&analysis::SteadyMotion::stuck>>,
      {"s.stuck -> number", "The fraction of a period for which it is stuck.",
       DINAL_STEADY "print(string.format(\"%.4f\", s.stuck))  --> 0.3154"}},
-    {"multipliers",
-     lua::guarded<steady_multipliers>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_multipliers>,
      {"s.multipliers -> table",
       "The Floquet multipliers, each { re, im, abs }: the factors of small disturbances in one period. There are "
       "two, and one for each state; a limit cycle has one less, without the trivial one. nil with delayed and "
       "sampled controllers.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f %.6f\", s.multipliers[1].abs, math.exp(-math.pi / 2)))  --> 0.207880 0.207880"}},
-    {"stable",
-     lua::guarded<steady_found_flag<&analysis::SteadyMotion::stable>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, found_fact<&analysis::SteadyMotion::stable>>,
      {"s.stable -> boolean", "true if no disturbance grows; if M has a memory, true if a run converged to this motion.",
       DINAL_STEADY "print(s.stable)  --> true"}},
-    {"unique",
-     lua::guarded<steady_unique>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_unique>,
      {"s.unique -> string or false",
       "\"proven\": no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and "
       "an M of time alone. \"not seen\": sixteen other starts led to no other. false: others exist, in s.others or "
       "as a family.",
       DINAL_STEADY "print(s.unique)  --> proven"}},
-    {"others",
-     lua::guarded<steady_others>,
-     lua::Kind::field,
+    {lua::a_kept_value<SteadyHandle, steady_others>,
      {"s.others -> table",
       "The other motions found from sixteen other starts, a list of steady motions. Empty if the motion is unique, "
       "or one of a family.",
       "s = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }:steady{ belt = 0.1 }\n"
       "print(s.status, #s.others, s.others[1].status)  --> steady\t1\trest"}},
-    {"symmetric",
-     lua::guarded<steady_found_flag<&analysis::SteadyMotion::symmetric>>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, found_fact<&analysis::SteadyMotion::symmetric>>,
      {"s.symmetric -> boolean", "The motion is symmetric: theta(t + T/2) = -theta(t).",
       DINAL_STEADY "print(s.symmetric)  --> true"}},
-    {"rest",
-     lua::guarded<steady_rest>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_rest>,
      {"s.rest -> table", "If it adheres or comes to rest: { lower, upper }, the range of rest positions, rad.",
       "s = system{ I = 1, k = 2, Rd = 1 }:steady{ M = excitation.harmonic{ amplitude = 0.8, omega = 1 } }\n"
       "print(s.status, string.format(\"%.4f %.4f\", s.rest[1], s.rest[2]))  --> adheres\t-0.1000 0.1000"}},
-    {"growth",
-     lua::guarded<steady_growth>,
-     lua::Kind::field,
+    {lua::a_value<SteadyHandle, steady_growth>,
      {"s.growth -> number", "If it grows: the growth of the amplitude in a period of M, rad.",
       "s = nondimensional{ friction_ratio = 0.167 }:steady{ M = excitation.harmonic{ frequency = 1 } }\n"
       "print(string.format(\"%.6f\", s.growth))  --> 2.473593"}},
-    {"run",
-     lua::guarded<run_of_steady>,
-     lua::Kind::field,
+    {lua::a_kept_value<SteadyHandle, run_of_steady>,
      {"s.run -> run", "One period of the motion as a run with 401 rows; nil at rest.",
       DINAL_STEADY "print(#s.run, s.run.t_end)  --> 401\t2.5"}},
-    {"__tostring",
-     lua::guarded<steady_to_string>,
-     lua::Kind::metamethod,
+    {lua::a_text<SteadyHandle, steady_summary>,
      {"tostring(s) -> string", "The answer in one line.",
       DINAL_STEADY "print(s)  --> steady: period 2.5 T0, amplitude 1.11113 Mc/k, 2 stops a period"}},
 };
@@ -397,6 +282,185 @@ const lua::Class steady_class = {
 
 void register_steady(lua_State* L) {
     lua::add_class<SteadyHandle>(L, steady_class);
+}
+
+// sys:steady{ ... } and run:steady{ ... }, and the run of what they found.
+
+namespace {
+
+int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
+    const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
+    const auto note = watched_memories(L, options, steady->question.excitation, false);
+    asking(L, steady->question.extras, [&](const motion::Monitor& monitor) {
+        steady->motion = analysis::steady_motion(steady->question, monitor);
+    });
+    const model::Outcome outcome = steady->motion.outcome;
+    if (outcome == model::Outcome::unresolved || outcome == model::Outcome::chattering ||
+        outcome == model::Outcome::excitation_not_finite) {
+        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
+    }
+    note(nullptr);
+    check_function(options, steady->motion);
+    lua::push<SteadyHandle>(L, steady);
+    return 1;
+}
+
+/// The state of the run at the last beginning of a period of M in it.
+model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Drive& drive) {
+    const double n = std::floor((trajectory.t_stop - drive.start) / drive.period);
+    const double t = drive.start + n * drive.period;
+    if (t >= trajectory.t_start) {
+        if (const auto state = trajectory.at(t)) return *state;
+    }
+    return trajectory.state_at_stop;
+}
+
+}  // namespace
+
+void check_function(const lua::Options& options, const analysis::SteadyMotion& motion) {
+    if (motion.contradiction) options.fail({model::sentence_with_cure(*motion.contradiction)});
+}
+
+namespace {
+
+/// One period as a run of 400 rows from row to row; none at rest.
+std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
+    constexpr double rows = 400;
+    const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
+    source::Task task{.system = asked.system,
+                      .excitation = asked.excitation,
+                      .initial = asked.initial,
+                      .window = {},
+                      .rows = motion::Grid::every(s.motion.period / rows),
+                      .integrator = {},
+                      .extras = asked.extras};
+    if (s.motion.settled) {
+        // What led there is a part of the run that is asked for again, and its rows are those of its last period.
+        const motion::Trajectory& last = *s.motion.settled;
+        task.window = {.start = s.motion.asked ? last.t_start : asked.drive.start, .end = last.t_stop};
+        if (s.motion.asked) {
+            task.integrator = motion::integrator_for(asked.system, asked.excitation, asked.extras);
+        } else {
+            const auto times = last.column(motion::Column::t);
+            task.rows = motion::Grid::at({times.begin(), times.end()});
+        }
+        return Run{.trajectory = last, .origin = source::origin_of(L, std::move(task))};
+    }
+    if (asked.is_timeless()) return {};
+    task.initial = s.motion.start;
+    task.window = {.start = asked.drive.start, .end = asked.drive.start + s.motion.period};
+    task.extras = {};
+    Run made{.trajectory = {}, .origin = source::origin_of(L, task)};
+    asking(L, [&](const motion::Monitor& monitor) {
+        auto result = motion::simulate(task.system, task.excitation, task.initial, task.window, task.rows,
+                                       task.integrator, monitor);
+        if (result) made.trajectory = std::move(result).value();
+    });
+    return made;
+}
+
+}  // namespace
+
+lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s) {
+    if (s->rig && is_found(*s)) {
+        run_of_rig(L, *s);
+        return {};
+    }
+    auto run = is_found(*s) ? period_as_run(L, *s) : std::nullopt;
+    run ? push_run(L, std::make_shared<const Run>(std::move(*run))) : lua_pushnil(L);
+    return {};
+}
+
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
+                              const std::optional<double>& period) {
+    const model::Excitation& excitation = question.excitation;
+    std::optional<analysis::Drive> drive;
+    asking(L, question.extras,
+           [&](const motion::Monitor&) { drive = analysis::drive_of(excitation, question.extras, question.initial); });
+    const bool scripts = excitation.has_script() || question.extras.belt.has_script() ||
+                         question.extras.base.has_script() || !question.extras.states.empty();
+    if (!drive && !period) {
+        options.fail("period",
+                     scripts ? "the period of M is not known; give it with period = ..."
+                             : "the terms of M have no common period, so no motion is periodic; make a run and use "
+                               "run:spectrum");
+    }
+    if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
+    if (period || (excitation.has_script() && drive->period > 0)) {
+        std::optional<text::Error> wrong;
+        asking(L, question.extras, [&](const motion::Monitor&) {
+            wrong = question.extras.any() ? analysis::not_periodic(excitation, question.extras, *drive)
+                                          : analysis::not_periodic(excitation, *drive);
+        });
+        if (wrong) options.fail(*wrong);
+    }
+    return *drive;
+}
+
+std::optional<double> period_or_fail(const lua::Options& options, const std::optional<double>& period,
+                                     const std::optional<double>& frequency, const std::optional<double>& omega) {
+    if ((period ? 1 : 0) + (frequency ? 1 : 0) + (omega ? 1 : 0) > 1) {
+        options.fail("period", "period, frequency and omega exclude each other; give one of them");
+    }
+    if (frequency) return 1 / *frequency;
+    if (omega) return 2 * std::numbers::pi / *omega;
+    return period;
+}
+
+/// Functions in M that repeat say so, as native terms or by themselves.
+void find_period(lua_State* L, analysis::SteadyQuestion& question) {
+    const auto terms = terms_alone(L, question.system, question.excitation, 0, model::never, question.extras);
+    question.excitation = terms ? *terms : with_periods(L, question.excitation);
+}
+
+int steady_of_system(lua_State* L) {
+    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, steady_call.example);
+    const lua::Options options(L, 2, steady_call);
+    SteadyOptions asked;
+    options.fill(asked);
+    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
+    if (const auto& walls = system.walls()) {
+        if (const auto beyond = walls->crossed_by(asked.theta0)) options.fail(*beyond);
+    }
+    options.push("M");
+    analysis::SteadyQuestion question{.system = system,
+                                      .excitation = to_excitation(L, -1, "sys:steady: M", "M"),
+                                      .drive = {},
+                                      .periods = asked.periods.value_or(0),
+                                      .initial = {asked.theta0, asked.velocity0},
+                                      .extras = read_extras(L, options)};
+    lua_pop(L, 1);
+    check_relays(options, question.excitation, question.extras);
+    if (!asked.period) find_period(L, question);
+    question.drive = drive_or_fail(L, options, question, asked.period);
+    return push_steady(L, options, std::move(question));
+}
+
+int steady_of_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, steady_run_call.example);
+    const lua::Options options(L, 2, steady_run_call);
+    SteadyOptions asked;
+    options.fill(asked);
+    if (run->whole) options.fail({"ask the system for its steady motion: rig:steady{ ... } with the M of this run"});
+    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
+    if (!run->origin) options.fail({"a run read from a file has no system and no M"});
+    const source::Task& task = *run->origin;
+    analysis::SteadyQuestion question{.system = task.system,
+                                      .excitation = task.excitation,
+                                      .drive = {},
+                                      .periods = asked.periods.value_or(0),
+                                      .initial = run->trajectory.state_at_stop,
+                                      .extras = task.extras};
+    const motion::Trajectory& ended = run->trajectory;
+    for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
+    if (!asked.period) find_period(L, question);
+    question.drive = drive_or_fail(L, options, question, asked.period);
+    if (question.extras.any()) {
+        question.drive.start = std::max(question.drive.start, ended.t_stop);
+    } else if (!question.is_timeless()) {
+        asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(ended, question.drive); });
+    }
+    return push_steady(L, options, std::move(question));
 }
 
 }  // namespace dinal::api

@@ -9,11 +9,12 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/response.hpp"
+#include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
-#include "api/units_option.hpp"
 #include "lua/options.hpp"
 #include "lua/values.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "source/describe.hpp"
 
@@ -66,7 +67,7 @@ int system(lua_State* L) {
     if (options.has("bodies")) return push_bodies(L, options);
     if (options.has("links")) {
         options.push("links");
-        if (lua_type(L, -1) != LUA_TTABLE) options.wrong("links", options.row("links").wanted);
+        if (lua_type(L, -1) != LUA_TTABLE) options.wrong("links");
         options.fail("links", "links connect bodies: give bodies = { ... } as well");
     }
     if (!options.has("I")) options.missing("I");
@@ -125,36 +126,22 @@ std::optional<double> with_spring(const model::Oscillator& system) {
     return system.has_spring() ? std::optional((system.*get)()) : std::nullopt;
 }
 
-/// nil where there are none.
-int walls_of(lua_State* L) {
-    const auto& walls = system_self(L, "sys.walls").walls();
-    if (!walls) {
-        lua_pushnil(L);
-        return 1;
-    }
-    lua_createtable(L, 0, 3);
-    if (std::isfinite(walls->lower)) {
-        lua::set_number(L, "lower", walls->lower);
-    }
-    if (std::isfinite(walls->upper)) {
-        lua::set_number(L, "upper", walls->upper);
-    }
-    lua::set_number(L, "restitution", walls->restitution);
-    return 1;
-}
-
-int units_of_system(lua_State* L) {
-    return push_units(L, system_self(L, "sys.units").units());
+std::optional<lua::NamedNumbers> walls_of(const model::Oscillator& system) {
+    const auto& walls = system.walls();
+    if (!walls) return {};
+    lua::NamedNumbers numbers{{"lower", walls->lower}, {"upper", walls->upper}, {"restitution", walls->restitution}};
+    std::erase_if(numbers, [](const auto& one) { return std::isinf(one.second); });
+    return numbers;
 }
 
 int friction_ratio(lua_State* L) {
     const model::Oscillator& sys = system_self(L, "sys:friction_ratio(Mc)");
     const double torque = lua::finite_argument(L, 2, "sys:friction_ratio(Mc): Mc");
     if (torque == 0) {
-        lua::raise(L, {.sentence = "sys:friction_ratio(Mc): Mc = 0 must not be zero; for a free motion it is "
-                                   "sys:characteristic_torque(theta0, velocity0)",
-                       .call = "sys:friction_ratio(Mc)",
-                       .culprit = lua::written(L, 2)});
+        lua::fail(L, "sys:friction_ratio(Mc)",
+                  {.sentence = "Mc = 0 must not be zero; for a free motion it is "
+                               "sys:characteristic_torque(theta0, velocity0)",
+                   .culprit = lua::written(L, 2)});
     }
     lua_pushnumber(L, sys.friction_ratio(torque));
     return 1;
@@ -168,11 +155,6 @@ int characteristic_torque(lua_State* L) {
         initial.velocity = lua::finite_argument(L, 3, "sys:characteristic_torque(theta0, velocity0): velocity0");
     }
     lua_pushnumber(L, sys.characteristic_torque(initial));
-    return 1;
-}
-
-int system_text(lua_State* L) {
-    lua_pushstring(L, source::lua_text(L, system_self(L, "tostring(sys)")).c_str());
     return 1;
 }
 
@@ -234,10 +216,10 @@ constexpr lua::Member system_members[] = {
                   }>,
      {"sys.spring -> spring or nil", "The spring in addition to k theta; nil if there is none.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
-    {lua::a_field<walls_of>,
+    {lua::a_value<model::Oscillator, walls_of>,
      {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad; nil if there are none.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
-    {lua::a_field<units_of_system>,
+    {lua::a_value<model::Oscillator, [](const model::Oscillator& system) { return units_by_name(system.units()); }>,
      {"sys.units -> table",
       "The names of the units of theta, t and M; nil without one. Cards, columns and axes show them; no number "
       "depends on them.",
@@ -271,7 +253,8 @@ constexpr lua::Member system_members[] = {
       "Re/k, rad: without excitation the mass can rest wherever |theta| is at most this; nil if "
       "k = 0 or with another spring.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
-    {lua::a_metamethod<system_text>("__tostring"),
+    {lua::a_text<model::Oscillator,
+                 [](lua_State* L, const model::Oscillator& system) { return source::lua_text(L, system); }>,
      {"tostring(sys) -> string", "The Lua text that recreates it.",
       "print(system{ I = 1, k = 4, Rd = 0.5 })  --> system{ I = 1, k = 4, Rd = 0.5, Re = 0.5 }"}},
 };
@@ -295,6 +278,121 @@ const lua::Class system_class = {
 void register_system(lua_State* L) {
     lua::add_class<model::Oscillator>(L, system_class);
     lua::add_functions(L, system_functions);
+}
+
+int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
+    lua::push(L, options.value_or_fail(model::Oscillator::make(parameters)));
+    return 1;
+}
+
+std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
+                                         std::initializer_list<const char*> instead_of, bool may_have_state) {
+    options.push("friction");
+    if (lua_type(L, -1) == LUA_TNUMBER) {
+        options.fail({.sentence = fmt::format("friction must be {}, got {}", options.row("friction").wanted,
+                                              lua::describe(L, -1)),
+                      .option = "friction",
+                      .culprit = lua::written(L, -1),
+                      .cure = fmt::format("; did you mean '{}'?", *instead_of.begin())});
+    }
+    lua_pop(L, 1);
+    const auto* law = options.object<model::Friction>("friction");
+    if (law == nullptr) {
+        return std::nullopt;
+    }
+    for (const char* name : instead_of) {
+        if (options.has(name)) {
+            options.fail(name, fmt::format("friction and {} exclude each other; give one of them", name));
+        }
+    }
+    if (!may_have_state && law->as<model::laws::Bristle>() != nullptr) {
+        options.fail("friction", "a law of bristles has a state of its own, which only system{ ... } supports");
+    }
+    return *law;
+}
+
+std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options) {
+    options.push("walls");
+    if (lua_isnil(L, -1)) {
+        lua_pop(L, 1);
+        return std::nullopt;
+    }
+    if (lua_type(L, -1) != LUA_TTABLE) {
+        options.wrong("walls");
+    }
+    lua_pushnil(L);
+    if (lua_next(L, -2) == 0) {
+        lua_pop(L, 1);
+        return std::nullopt;
+    }
+    lua_pop(L, 2);
+    const auto walls = lua::read<model::Walls>(L, lua_gettop(L), model::walls_call);
+    lua_pop(L, 1);
+    return walls;
+}
+
+/// A new Rd or Re makes another law one of Coulomb's again; Re goes with Rd where the two were one number.
+int system_with(lua_State* L) {
+    const model::Oscillator& old = lua::self<model::Oscillator>(L, 1, with_call.example);
+    const lua::Options options(L, 2, with_call);
+    model::OscillatorParameters parameters = old.parameters();
+    SystemChanges changes;
+    options.fill(changes);
+    parameters.inertia = changes.inertia.value_or(parameters.inertia);
+    parameters.stiffness = changes.stiffness.value_or(parameters.stiffness);
+    parameters.damping = changes.damping.value_or(parameters.damping);
+    if (const auto spring = asked_spring(L, options)) {
+        parameters.spring = *spring;
+    }
+    if (options.has("walls")) {
+        parameters.walls = asked_walls(L, options);
+    }
+    if (const auto units = asked_units(L, options)) {
+        parameters.units = *units;
+    }
+    const auto law = asked_law(L, options, {"Rd", "Re"});
+    if (law) {
+        parameters.friction = law;
+    } else if (changes.kinetic || changes.breakaway) {
+        if (parameters.friction && !(changes.kinetic && changes.breakaway)) {
+            options.fail(changes.kinetic ? "Rd" : "Re",
+                         fmt::format("the friction of this system is {}: give both Rd and Re, or friction",
+                                     source::lua_text(L, *parameters.friction)));
+        }
+        const bool one_number = parameters.breakaway == parameters.kinetic_friction;
+        parameters.friction.reset();
+        parameters.kinetic_friction = changes.kinetic.value_or(parameters.kinetic_friction);
+        if (changes.breakaway || one_number) {
+            parameters.breakaway = changes.breakaway ? changes.breakaway : parameters.kinetic_friction;
+        }
+    }
+    return push_system(L, options, parameters);
+}
+
+std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options) {
+    if (!options.has("units")) {
+        return std::nullopt;
+    }
+    options.push("units");
+    if (lua_type(L, -1) != LUA_TTABLE) {
+        options.wrong("units");
+    }
+    auto units = lua::read<model::Units>(L, lua_gettop(L), model::units_call);
+    lua_pop(L, 1);
+    if (const auto wrong = units.complaint()) {
+        options.fail(*wrong);
+    }
+    return units;
+}
+
+const model::Units& units_of(const Run& run) {
+    return run.origin ? run.origin->system.units() : run.units;
+}
+
+std::map<std::string, std::string> units_by_name(const model::Units& units) {
+    std::map<std::string, std::string> named{{"theta", units.theta}, {"t", units.t}, {"M", units.M}};
+    std::erase_if(named, [](const auto& one) { return one.second.empty(); });
+    return named;
 }
 
 }  // namespace dinal::api

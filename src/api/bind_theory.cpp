@@ -203,14 +203,30 @@ private:
 
 class TheoryArguments {
 public:
-    TheoryArguments(lua_State* L, const text::Call& call);
+    TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
+        luaL_checkstack(L, 10, "too many values");
+    }
 
     [[nodiscard]] const lua::Options& options() const { return options_; }
 
     /// A number or a vector in the range of its row. Vectors and tables of numbers must be equally long. A nan in a
     /// vector passes: its result is nan. What is absent is the default of its row, a number or another option.
-    Quantity quantity(std::string_view name);
-    Quantity quantity(std::string_view name, Quantity otherwise);
+    Quantity quantity(std::string_view name) {
+        if (options_.has(name)) {
+            return given(name);
+        }
+        const char* otherwise = options_.row(name).otherwise;
+        if (otherwise == text::needed) {
+            options_.missing(name);
+        }
+        double number = 0;
+        const auto read = std::from_chars(otherwise, otherwise + std::strlen(otherwise), number);
+        return read.ptr != otherwise ? Quantity(number) : quantity(otherwise);
+    }
+
+    Quantity quantity(std::string_view name, Quantity otherwise) {
+        return options_.has(name) ? given(name) : otherwise;
+    }
     /// All options of a call that takes nothing else.
     template <std::size_t n>
     std::array<Quantity, n> quantities() {
@@ -218,15 +234,55 @@ public:
     }
     /// The system; nullptr when there is none and none is needed.
     /// Raises when no closed form is known for it.
-    [[nodiscard]] const model::Oscillator* system() const;
+    [[nodiscard]] const model::Oscillator* system() const {
+        const auto* system = options_.object<model::Oscillator>("system");
+        if (system == nullptr) {
+            return system;
+        }
+        const model::Friction& friction = system->friction();
+        const char* lacks = !system->has_spring() ? "need a spring, and this system has k = 0"
+                            : system->walls()     ? "do not include walls; simulate this system"
+                            : !system->spring().none()
+                                ? "include only the spring k theta, and this system has a second spring; simulate it"
+                            : !friction.none() && friction.as<model::laws::Coulomb>() == nullptr
+                                ? "include only Coulomb friction with one Rd and one Re; simulate this system"
+                                : nullptr;
+        if (lacks != nullptr) options_.fail("system", fmt::format("the closed forms {}", lacks));
+        return system;
+    }
 
     /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
-    [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;
+    [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const {
+        options_.push(name);
+        const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
+        const std::string element = is_number ? "" : fmt::format("[{}]", i + 1);
+        options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
+    }
 
     /// Pushes f(i) for each element, i from 0: an array of doubles, one for each result. A number when all options are
     /// numbers, otherwise a vector.
     template <class Function>
-    int push_results(Function f) const;
+    int push_results(Function f) const {
+        constexpr std::size_t count = std::tuple_size_v<decltype(f(0))>;
+        std::array<std::vector<double>, count> columns;
+        for (auto& column : columns) column.resize(size_, no_value);
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (lua::interrupt_requested()) lua::raise_interrupted(L_);
+            if (has_nan(i)) continue;
+            const auto results = f(i);
+            for (std::size_t j = 0; j < count; ++j) columns[j][i] = results[j];
+        }
+        for (auto& column : columns) {
+            if (!sized_by_.empty()) {
+                lua::push_vector(L_, std::move(column));
+            } else if (std::isnan(column[0])) {
+                lua_pushnil(L_);
+            } else {
+                lua_pushnumber(L_, column[0]);
+            }
+        }
+        return static_cast<int>(count);
+    }
     /// The same for a function with one result.
     template <class Function>
     int push_result(Function f) const {
@@ -238,11 +294,55 @@ private:
     std::array<Quantity, sizeof...(i)> quantities(std::index_sequence<i...> /*places*/) {
         return {quantity(call_.options[i].name)...};
     }
-    Quantity given(std::string_view name);
-    Quantity remembered(const Quantity& quantity);
-    [[nodiscard]] bool has_nan(std::size_t i) const;
-    void check_size(std::string_view name, std::size_t size);
-    void check(std::string_view name, const text::Range& range, std::span<const double> values) const;
+
+    Quantity given(std::string_view name) {
+        const text::Range& range = options_.row(name).range;
+        options_.push(name);
+        if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
+            lua_pop(L_, 1);  // the table of options holds it on
+            check_size(name, vector->size());
+            check(name, range, vector->values());
+            return remembered(Quantity(vector->values()));
+        }
+        const bool is_table = lua_type(L_, -1) == LUA_TTABLE;
+        if (!is_table && lua_type(L_, -1) != LUA_TNUMBER && !lua_isnil(L_, -1)) {
+            options_.wrong(name, "a finite number or a vector");
+        }
+        lua_pop(L_, 1);
+        if (is_table) {
+            tables_.push_back(options_.numbers(name));
+            check_size(name, tables_.back().size());
+            check(name, range, tables_.back());
+            return remembered(Quantity(tables_.back()));
+        }
+        return remembered(Quantity(options_.number(name)));
+    }
+
+    Quantity remembered(const Quantity& quantity) {
+        quantities_.push_back(quantity);
+        return quantity;
+    }
+
+    [[nodiscard]] bool has_nan(std::size_t i) const {
+        return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
+    }
+
+    void check_size(std::string_view name, std::size_t size) {
+        if (!sized_by_.empty() && size != size_) {
+            options_.fail(name, fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_,
+                                            name, size_, size));
+        }
+        size_ = size;
+        sized_by_ = name;
+    }
+
+    void check(std::string_view name, const text::Range& range, std::span<const double> values) const {
+        const auto bad =
+            std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
+        if (bad != values.end()) {
+            refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
+        }
+    }
 
     lua_State* L_;
     const text::Call& call_;
@@ -252,29 +352,6 @@ private:
     std::size_t size_ = 1;
     std::string_view sized_by_;  // the first option that is a vector
 };
-
-template <class Function>
-int TheoryArguments::push_results(Function f) const {
-    constexpr std::size_t count = std::tuple_size_v<decltype(f(0))>;
-    std::array<std::vector<double>, count> columns;
-    for (auto& column : columns) column.resize(size_, no_value);
-    for (std::size_t i = 0; i < size_; ++i) {
-        if (lua::interrupt_requested()) lua::raise_interrupted(L_);
-        if (has_nan(i)) continue;
-        const auto results = f(i);
-        for (std::size_t j = 0; j < count; ++j) columns[j][i] = results[j];
-    }
-    for (auto& column : columns) {
-        if (!sized_by_.empty()) {
-            lua::push_vector(L_, std::move(column));
-        } else if (std::isnan(column[0])) {
-            lua_pushnil(L_);
-        } else {
-            lua_pushnumber(L_, column[0]);
-        }
-    }
-    return static_cast<int>(count);
-}
 
 /// theory.NAME for a function of as many numbers as the call has options, in their order; its result is a number or
 /// an array of them.
@@ -292,108 +369,6 @@ int closed_form(lua_State* L) {
     });
 }
 
-TheoryArguments::TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
-    luaL_checkstack(L, 10, "too many values");
-}
-
-const model::Oscillator* TheoryArguments::system() const {
-    const auto* system = options_.object<model::Oscillator>("system");
-    if (system == nullptr) {
-        return system;
-    }
-    if (!system->has_spring()) {
-        options_.fail({.sentence = "the closed forms need a spring, and this system has k = 0", .option = "system"});
-    }
-    if (system->walls()) {
-        options_.fail({.sentence = "the closed forms do not include walls; simulate this system", .option = "system"});
-    }
-    if (!system->spring().none()) {
-        options_.fail(
-            {.sentence =
-                 "the closed forms include only the spring k theta, and this system has a second spring; simulate it",
-             .option = "system"});
-    }
-    if (!system->friction().none() && system->friction().as<model::laws::Coulomb>() == nullptr) {
-        options_.fail(
-            {.sentence = "the closed forms include only Coulomb friction with one Rd and one Re; simulate this system",
-             .option = "system"});
-    }
-    return system;
-}
-
-Quantity TheoryArguments::quantity(std::string_view name, Quantity otherwise) {
-    return options_.has(name) ? given(name) : otherwise;
-}
-
-Quantity TheoryArguments::quantity(std::string_view name) {
-    if (options_.has(name)) {
-        return given(name);
-    }
-    const char* otherwise = options_.row(name).otherwise;
-    if (otherwise == text::needed) {
-        options_.missing(name);
-    }
-    double number = 0;
-    const auto read = std::from_chars(otherwise, otherwise + std::strlen(otherwise), number);
-    return read.ptr != otherwise ? Quantity(number) : quantity(otherwise);
-}
-
-Quantity TheoryArguments::given(std::string_view name) {
-    const text::Range& range = options_.row(name).range;
-    options_.push(name);
-    if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
-        lua_pop(L_, 1);  // the table of options holds it on
-        check_size(name, vector->size());
-        check(name, range, vector->values());
-        return remembered(Quantity(vector->values()));
-    }
-    const bool is_table = lua_type(L_, -1) == LUA_TTABLE;
-    if (!is_table && lua_type(L_, -1) != LUA_TNUMBER && !lua_isnil(L_, -1)) {
-        options_.wrong(name, "a finite number or a vector");
-    }
-    lua_pop(L_, 1);
-    if (is_table) {
-        tables_.push_back(options_.numbers(name));
-        check_size(name, tables_.back().size());
-        check(name, range, tables_.back());
-        return remembered(Quantity(tables_.back()));
-    }
-    return remembered(Quantity(options_.number(name)));
-}
-
-void TheoryArguments::refuse(std::string_view name, std::size_t i, double value, std::string_view must) const {
-    options_.push(name);
-    const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
-    const std::string element = is_number ? "" : fmt::format("[{}]", i + 1);
-    options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
-}
-
-void TheoryArguments::check_size(std::string_view name, std::size_t size) {
-    if (!sized_by_.empty() && size != size_) {
-        options_.fail(name, fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_, name,
-                                        size_, size));
-    }
-    size_ = size;
-    sized_by_ = name;
-}
-
-void TheoryArguments::check(std::string_view name, const text::Range& range, std::span<const double> values) const {
-    const auto bad =
-        std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
-    if (bad != values.end()) {
-        refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
-    }
-}
-
-Quantity TheoryArguments::remembered(const Quantity& quantity) {
-    quantities_.push_back(quantity);
-    return quantity;
-}
-
-bool TheoryArguments::has_nan(std::size_t i) const {
-    return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
-}
-
 // ---- what does more than one formula
 
 namespace theory_functions {
@@ -401,33 +376,22 @@ namespace theory_functions {
 using namespace theory;
 namespace options = theory_options;
 
-/// A system set off at t = 0: what time_to_rest{...} and its relatives take.
-struct Start {
-    const model::Oscillator& system;
-    Quantity theta0;
-    Quantity velocity0;
+/// The free motions that the options system, theta0 and velocity0 set off at t = 0.
+class Starts {
+public:
+    explicit Starts(TheoryArguments& arguments)
+        : system_(*arguments.system()),
+          theta0_(arguments.quantity("theta0")),
+          velocity0_(arguments.quantity("velocity0")) {}
+    FreeMotion operator[](std::size_t i) const { return {system_, {theta0_[i], velocity0_[i]}}; }
 
-    explicit Start(TheoryArguments& arguments)
-        : system(*arguments.system()),
-          theta0(arguments.quantity("theta0")),
-          velocity0(arguments.quantity("velocity0")) {}
-    [[nodiscard]] FreeMotion motion(std::size_t i) const { return {system, {theta0[i], velocity0[i]}}; }
+private:
+    const model::Oscillator& system_;
+    Quantity theta0_, velocity0_;
 };
 
-int free_response_of_system(TheoryArguments& arguments) {
-    const Start start(arguments);
-    const Quantity t = arguments.quantity("t");
-    if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
-        arguments.options().fail("system", "system excludes omega0 and zeta, which it defines");
-    }
-    return arguments.push_results([&](std::size_t i) {
-        if (t[i] < 0 && !start.system.friction().none()) {
-            arguments.refuse("t", i, t[i],
-                             "must not be negative: with dry friction the past of a motion is not determined");
-        }
-        const model::State y = start.motion(i).at(t[i]);
-        return std::array{y.theta, y.velocity};
-    });
+std::array<double, 2> both(const model::State& state) {
+    return {state.theta, state.velocity};
 }
 
 /// How many extremes extremes{...} returns.
@@ -445,20 +409,26 @@ double asked_count(const lua::Options& options, std::optional<double> count, con
 
 int free_response(lua_State* L) {
     TheoryArguments arguments(L, options::free_response);
-    if (arguments.system() != nullptr) {
-        return free_response_of_system(arguments);
-    }
-    if (!arguments.options().has("omega0")) {
-        arguments.options().missing("system, or omega0 and zeta");
-    }
-    const Quantity omega0 = arguments.quantity("omega0");
-    const Quantity zeta = arguments.quantity("zeta");
-    const Quantity theta0 = arguments.quantity("theta0");
-    const Quantity velocity0 = arguments.quantity("velocity0");
+    const lua::Options& given = arguments.options();
     const Quantity t = arguments.quantity("t");
+    if (const model::Oscillator* system = arguments.system()) {
+        const Starts starts(arguments);
+        if (given.has("omega0") || given.has("zeta")) {
+            given.fail("system", "system excludes omega0 and zeta, which it defines");
+        }
+        return arguments.push_results([&](std::size_t i) {
+            if (t[i] < 0 && !system->friction().none()) {
+                arguments.refuse("t", i, t[i],
+                                 "must not be negative: with dry friction the past of a motion is not determined");
+            }
+            return both(starts[i].at(t[i]));
+        });
+    }
+    if (!given.has("omega0")) given.missing("system, or omega0 and zeta");
+    const Quantity omega0 = arguments.quantity("omega0"), zeta = arguments.quantity("zeta"),
+                   theta0 = arguments.quantity("theta0"), velocity0 = arguments.quantity("velocity0");
     return arguments.push_results([&](std::size_t i) {
-        const model::State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
-        return std::array{y.theta, y.velocity};
+        return both(theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]));
     });
 }
 
@@ -482,14 +452,14 @@ int extremes(lua_State* L) {
 
 int time_to_rest(lua_State* L) {
     TheoryArguments arguments(L, options::time_to_rest);
-    const Start start(arguments);
-    return arguments.push_result([&](std::size_t i) { return start.motion(i).time_to_rest(); });
+    const Starts starts(arguments);
+    return arguments.push_result([&](std::size_t i) { return starts[i].time_to_rest(); });
 }
 
 int rest_position(lua_State* L) {
     TheoryArguments arguments(L, options::rest_position);
-    const Start start(arguments);
-    return arguments.push_result([&](std::size_t i) { return start.motion(i).rest_position().value_or(no_value); });
+    const Starts starts(arguments);
+    return arguments.push_result([&](std::size_t i) { return starts[i].rest_position().value_or(no_value); });
 }
 
 int half_cycle(lua_State* L) {
@@ -528,39 +498,24 @@ std::array<double, 2> identify(double X0, double X1, double X2) {
     return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};
 }
 
-/// The two results of den_hartog{...} and den_hartog_fundamental{...}.
-template <class Select>
-int sliding_motion(lua_State* L, const text::Call& call, Select select) {
+/// den_hartog{...} and den_hartog_fundamental{...}: two numbers of the motion.
+template <const text::Call& call, auto amplitude, auto lag>
+int sliding_motion(lua_State* L) {
     TheoryArguments arguments(L, call);
-    const Quantity r = arguments.quantity("r");
-    const Quantity friction_ratio = arguments.quantity("friction_ratio");
-    const Quantity zeta = arguments.quantity("zeta");
-    const Quantity breakaway_ratio = arguments.quantity("breakaway_ratio");
-    return arguments.push_results([&](std::size_t i) {
-        if (breakaway_ratio[i] < friction_ratio[i]) {
-            arguments.refuse("breakaway_ratio", i, breakaway_ratio[i],
-                             fmt::format("must be at least friction_ratio = {}", friction_ratio[i]));
+    const auto [r, friction_ratio, zeta, breakaway_ratio] = arguments.quantities<4>();
+    return arguments.push_results([&, r = r, gamma = friction_ratio, zeta = zeta, Re = breakaway_ratio](std::size_t i) {
+        if (Re[i] < gamma[i]) {
+            arguments.refuse("breakaway_ratio", i, Re[i],
+                             fmt::format("must be at least friction_ratio = {}", gamma[i]));
         }
-        const auto motion = DenHartog(r[i], zeta[i]).motion(friction_ratio[i], breakaway_ratio[i]);
-        return motion ? select(*motion) : std::array{no_value, no_value};
+        const auto motion = DenHartog(r[i], zeta[i]).motion(gamma[i], Re[i]);
+        return motion ? std::array{(*motion).*amplitude, (*motion).*lag} : std::array{no_value, no_value};
     });
 }
 
 std::array<double, 2> linearised(double r, double friction_ratio, double zeta) {
     const auto motion = linearised_friction(r, zeta, friction_ratio);
     return motion ? std::array{motion->amplitude, motion->lag} : std::array{no_value, no_value};
-}
-
-int den_hartog(lua_State* L) {
-    return sliding_motion(L, options::den_hartog, [](const SlidingMotion& y) {
-        return std::array{y.amplitude, y.lag};
-    });
-}
-
-int den_hartog_fundamental(lua_State* L) {
-    return sliding_motion(L, options::den_hartog_fundamental, [](const SlidingMotion& y) {
-        return std::array{y.fundamental_amplitude, y.fundamental_lag};
-    });
 }
 
 double stop_boundary(double r, double zeta, double factor) {
@@ -595,154 +550,146 @@ int step_limit(lua_State* L) {
 namespace f = theory_functions;
 namespace o = theory_options;
 
+/// theory.NAME, which takes the options of the call.
+template <const text::Call& call, lua_CFunction function>
+constexpr lua::Member row(const char* signature, const char* summary, const char* sample) {
+    return {lua::a_function<function>, {signature, summary, sample, {&call}}};
+}
+template <const text::Call& call, auto function>
+constexpr lua::Member formula(const char* signature, const char* summary, const char* sample) {
+    return row<call, closed_form<call, function>>(signature, summary, sample);
+}
+
 constexpr lua::Member theory_module_members[] = {
-    {lua::a_function<f::free_response>,
-     {"theory.free_response{ OPTIONS } -> theta, velocity",
-      "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact at any "
-      "damping, and with the dry friction of the system. Instead of system, omega0 (rad per time unit) and zeta = "
-      "0 give a motion without dry friction.",
-      "sys = nondimensional{ friction_ratio = 0.167 }\n"
-      "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
-      "--> 0.155151392 0.0",
-      {&o::free_response}}},
-    {lua::a_function<f::extremes>,
-     {"theory.extremes{ OPTIONS } -> t, theta",
-      "The times and angles at which the velocity of a free motion is zero, by the half-cycle map: two vectors; "
-      "the last is the place of rest. If the motion starts with velocity 0, the start is the first.",
-      "sys = nondimensional{ friction_ratio = 0.1 }\n"
-      "print(theory.extremes{ system = sys, theta0 = 0.55 })  --> vector{ 0, 0.5, 1, 1.5 }\t"
-      "vector{ 0.55, -0.35, 0.15, 0.05 }",
-      {&o::extremes}}},
-    {lua::a_function<f::time_to_rest>,
-     {"theory.time_to_rest{ OPTIONS } -> number or vector",
-      "The time when a free motion ends; math.huge if it never stops (no dry friction, or an overdamped creep).",
-      "sys = nondimensional{ friction_ratio = 0.167 }\n"
-      "print(string.format(\"%.9f\", theory.time_to_rest{ system = sys, velocity0 = 2*math.pi }))  --> 1.723664157",
-      {&o::time_to_rest}}},
-    {lua::a_function<f::rest_position>,
-     {"theory.rest_position{ OPTIONS } -> number or nil, or vector",
-      "The place of rest of a free motion, or its limit (rad); nil, or nan in a vector, if it "
-      "swings for ever.",
-      "sys = nondimensional{ friction_ratio = 0.1 }\n"
-      "print(theory.rest_position{ system = sys, theta0 = { 0.05, 0.15, 1.05 } })  --> vector{ 0.05, 0.05, -0.05 }",
-      {&o::rest_position}}},
-    {lua::a_function<f::half_cycle>,
-     {"theory.half_cycle{ OPTIONS } -> number or vector",
-      "The extreme of a free motion that is n half cycles after the extreme X (rad, with its "
-      "sign): X' = s x_f - (X - s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. "
-      "Within dead_zone = Re/k the mass stays. Instead of zeta, x_f and dead_zone a system can "
-      "be given. zeta < 1.",
-      "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2",
-      {&o::half_cycle}}},
-    {lua::a_function<closed_form<o::logarithmic_decrement, theory::logarithmic_decrement>>,
-     {"theory.logarithmic_decrement{ OPTIONS } -> number or vector",
-      "ln(X0/X2) of extremes a full cycle apart, by viscous damping alone: 2 pi zeta/sqrt(1 - zeta^2), zeta < 1.",
-      "print(string.format(\"%.6f\", theory.logarithmic_decrement{ zeta = 0.119 }))  --> 0.753050",
-      {&o::logarithmic_decrement}}},
-    {lua::a_function<closed_form<o::zeta_from_decrement, theory::zeta_of_decrement>>,
-     {"theory.zeta_from_decrement{ OPTIONS } -> number or vector",
-      "The viscous damping ratio that has this logarithmic decrement.",
-      "print(string.format(\"%.3f\", theory.zeta_from_decrement{ decrement = 0.753050 }))  --> 0.119",
-      {&o::zeta_from_decrement}}},
-    {lua::a_function<closed_form<o::friction_decrement, theory::friction_decrement>>,
-     {"theory.friction_decrement{ OPTIONS } -> number or vector",
-      "The loss of amplitude in each full cycle by dry friction alone: 4 Rd/k, rad.",
-      "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2",
-      {&o::friction_decrement}}},
-    {lua::a_function<closed_form<o::identify, f::identify>>,
-     {"theory.identify{ OPTIONS } -> zeta, x_f",
-      "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q "
-      "= (X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 "
-      "> X1 > X2. A negative result means that the extremes are too inaccurate to tell this damping from none.",
-      "t, X = theory.extremes{ system = nondimensional{ zeta = 0.119, friction_ratio = 0.06 }, theta0 = 1 }\n"
-      "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))"
-      "  --> 0.119000 0.060000",
-      {&o::identify}}},
-    {lua::a_function<closed_form<o::magnification, theory::magnification>>,
-     {"theory.magnification{ OPTIONS } -> number or vector",
-      "The steady amplitude under M0 sin(omega t) without dry friction, in units of M0/k: 1/sqrt((1 - r^2)^2 + 4 "
-      "zeta^2 r^2), r = omega/omega0. math.huge at r = 1 without damping.",
-      "print(theory.magnification{ r = { 0, 0.5, 2 } })  --> vector{ 1, 1.33333, 0.333333 }",
-      {&o::magnification}}},
-    {lua::a_function<closed_form<o::phase_lag, theory::phase_lag>>,
-     {"theory.phase_lag{ OPTIONS } -> number or vector",
-      "The lag of that motion behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
-      "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }",
-      {&o::phase_lag}}},
-    {lua::a_function<closed_form<o::transmissibility, theory::transmissibility>>,
-     {"theory.transmissibility{ OPTIONS } -> number or vector",
-      "The torque on the support relative to that of the load, and also the motion of the mass relative to that of "
-      "its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
-      "print(string.format(\"%.12f\", theory.transmissibility{ r = math.sqrt(2), zeta = 0.3 }))  --> 1.000000000000",
-      {&o::transmissibility}}},
-    {lua::a_function<closed_form<o::equivalent_damping, theory::equivalent_damping>>,
-     {"theory.equivalent_damping{ OPTIONS } -> number or vector",
-      "The viscous damping constant C that dissipates as much energy in a cycle of this amplitude (rad) as the dry "
-      "friction Rd: 4 Rd/(pi omega amplitude).",
-      "print(string.format(\"%.6f\", theory.equivalent_damping{ Rd = 1, omega = 2, amplitude = 0.5 }))  --> 1.273240",
-      {&o::equivalent_damping}}},
-    {lua::a_function<closed_form<o::equivalent_zeta, theory::equivalent_damping_ratio>>,
-     {"theory.equivalent_zeta{ OPTIONS } -> number or vector",
-      "The same as a damping ratio: 2 gamma/(pi r Phi), with gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
-      "phi = theory.linearised{ r = 1.35, friction_ratio = 0.5 }\n"
-      "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
-      "--> 0.2515",
-      {&o::equivalent_zeta}}},
-    {lua::a_function<closed_form<o::linearised, f::linearised>>,
-     {"theory.linearised{ OPTIONS } -> amplitude, lag",
-      "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
-      "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "
-      "is exact. nil, or nan in a vector, from gamma = pi/4 on.",
-      "print(string.format(\"%.4f %.4f\", theory.linearised{ r = 1.35, friction_ratio = 0.5 }))  --> 0.9376 2.4515",
-      {&o::linearised}}},
-    {lua::a_function<closed_form<o::friction_work, theory::friction_work>>,
-     {"theory.friction_work{ OPTIONS } -> number or vector",
-      "The energy dissipated by dry friction in a cycle of this amplitude (rad): 4 Rd amplitude.",
-      "print(theory.friction_work{ Rd = 2, amplitude = { 0.5, 1 } })  --> vector{ 4, 8 }",
-      {&o::friction_work}}},
-    {lua::a_function<closed_form<o::growth_at_resonance, theory::growth_at_resonance>>,
-     {"theory.growth_at_resonance{ OPTIONS } -> number or vector",
-      "The growth of the amplitude in each period at r = 1 without viscous damping, in M0/k: pi "
-      "- 4 gamma, gamma = Rd/M0; 0 from gamma = pi/4 on.",
-      "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593",
-      {&o::growth_at_resonance}}},
-    {lua::a_function<f::den_hartog>,
-     {"theory.den_hartog{ OPTIONS } -> amplitude, lag",
-      "The exact steady motion under M0 sin(omega t) with dry friction and without stops (Den Hartog 1931): amplitude "
-      "in units of M0/k and lag of its peak in rad; r = omega/omega0, friction_ratio = Rd/M0, breakaway_ratio = Re/M0. "
-      "nil, or nan in a vector, beyond theory.stop_boundary, where the mass stops in each cycle. At r = 1 with "
-      "zeta = 0 the motion grows without bound: math.huge and pi/2. At r = 1/2, 1/4, ... with zeta = 0 the steady "
-      "motion depends on its start; this is the symmetric one of them. r is 0 or from 0.0001 to 1e6.",
-      "print(string.format(\"%.9f %.4f\", theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }))"
-      "  --> 1.972601445 0.5296\n"
-      "print(theory.den_hartog{ r = { 0.75, 0.75 }, friction_ratio = { 0.7, 0.8 } })\n"
-      "--> vector{ 1.61591, nan }\tvector{ 0.785606, nan }",
-      {&o::den_hartog}}},
-    {lua::a_function<f::den_hartog_fundamental>,
-     {"theory.den_hartog_fundamental{ OPTIONS } -> "
-      "amplitude, lag",
-      "The fundamental of that motion: amplitude in units of M0/k and lag in rad.",
-      "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
-      "print(string.format(\"%.4f, %.2f degrees\", amplitude, math.deg(lag)))  --> 0.8649, 140.69 degrees",
-      {&o::den_hartog_fundamental}}},
-    {lua::a_function<closed_form<o::stop_boundary, f::stop_boundary>>,
-     {"theory.stop_boundary{ OPTIONS } -> number or vector",
-      "The friction ratio Rd/M0 up to which the steady motion under M0 sin(omega t) "
-      "has no stops; r is 0 or from 0.0001 to 1e6.",
-      "print(theory.stop_boundary{ r = { 0.5, 1, 3 } })  --> vector{ 0.333333, 0.785398, 0.5625 }",
-      {&o::stop_boundary}}},
-    {lua::a_function<f::step_limit>,
-     {"theory.step_limit{ OPTIONS } -> number or vector",
-      "The greatest step (time units) by one of three rules: \"rk4\", beyond which integrator.rk4 amplifies a free "
-      "motion; \"report\", deltatmax of the program of 1989, T0 (zeta + gamma/VMAX) with gamma = Rd/|Mc| and VMAX the "
-      "greatest velocity of the free motion, Mc that of a free motion unless given; \"corrected\", what its argument "
-      "gives without slips, T0 zeta/pi + Rd/(k VMAX). Only the first one is a limit.",
-      "sys = nondimensional{ zeta = 0.02387 }\n"
-      "print(string.format(\"%.4f %.4f %.4f\", theory.step_limit{ system = sys },\n"
-      "    theory.step_limit{ system = sys, rule = \"report\" }, "
-      "theory.step_limit{ system = sys, rule = \"corrected\" }))\n"
-      "--> 0.4573 0.0239 0.0076",
-      {&o::step_limit}}},
+    row<o::free_response, f::free_response>(
+        "theory.free_response{ OPTIONS } -> theta, velocity",
+        "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact at any "
+        "damping, and with the dry friction of the system. Instead of system, omega0 (rad per time unit) and zeta = "
+        "0 give a motion without dry friction.",
+        "sys = nondimensional{ friction_ratio = 0.167 }\n"
+        "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
+        "--> 0.155151392 0.0"),
+    row<o::extremes, f::extremes>(
+        "theory.extremes{ OPTIONS } -> t, theta",
+        "The times and angles at which the velocity of a free motion is zero, by the half-cycle map: two vectors; "
+        "the last is the place of rest. If the motion starts with velocity 0, the start is the first.",
+        "sys = nondimensional{ friction_ratio = 0.1 }\n"
+        "print(theory.extremes{ system = sys, theta0 = 0.55 })  --> vector{ 0, 0.5, 1, 1.5 }\t"
+        "vector{ 0.55, -0.35, 0.15, 0.05 }"),
+    row<o::time_to_rest, f::time_to_rest>(
+        "theory.time_to_rest{ OPTIONS } -> number or vector",
+        "The time when a free motion ends; math.huge if it never stops (no dry friction, or an overdamped creep).",
+        "sys = nondimensional{ friction_ratio = 0.167 }\n"
+        "print(string.format(\"%.9f\", theory.time_to_rest{ system = sys, velocity0 = 2*math.pi }))  --> 1.723664157"),
+    row<o::rest_position, f::rest_position>(
+        "theory.rest_position{ OPTIONS } -> number or nil, or vector",
+        "The place of rest of a free motion, or its limit (rad); nil, or nan in a vector, if it "
+        "swings for ever.",
+        "sys = nondimensional{ friction_ratio = 0.1 }\n"
+        "print(theory.rest_position{ system = sys, theta0 = { 0.05, 0.15, 1.05 } })  --> vector{ 0.05, 0.05, -0.05 }"),
+    row<o::half_cycle, f::half_cycle>(
+        "theory.half_cycle{ OPTIONS } -> number or vector",
+        "The extreme of a free motion that is n half cycles after the extreme X (rad, with its "
+        "sign): X' = s x_f - (X - s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. "
+        "Within dead_zone = Re/k the mass stays. Instead of zeta, x_f and dead_zone a system can "
+        "be given. zeta < 1.",
+        "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2"),
+    formula<o::logarithmic_decrement, theory::logarithmic_decrement>(
+        "theory.logarithmic_decrement{ OPTIONS } -> number or vector",
+        "ln(X0/X2) of extremes a full cycle apart, by viscous damping alone: 2 pi zeta/sqrt(1 - zeta^2), zeta < 1.",
+        "print(string.format(\"%.6f\", theory.logarithmic_decrement{ zeta = 0.119 }))  --> 0.753050"),
+    formula<o::zeta_from_decrement, theory::zeta_of_decrement>(
+        "theory.zeta_from_decrement{ OPTIONS } -> number or vector",
+        "The viscous damping ratio that has this logarithmic decrement.",
+        "print(string.format(\"%.3f\", theory.zeta_from_decrement{ decrement = 0.753050 }))  --> 0.119"),
+    formula<o::friction_decrement, theory::friction_decrement>(
+        "theory.friction_decrement{ OPTIONS } -> number or vector",
+        "The loss of amplitude in each full cycle by dry friction alone: 4 Rd/k, rad.",
+        "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2"),
+    formula<o::identify, f::identify>(
+        "theory.identify{ OPTIONS } -> zeta, x_f",
+        "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q "
+        "= (X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 "
+        "> X1 > X2. A negative result means that the extremes are too inaccurate to tell this damping from none.",
+        "t, X = theory.extremes{ system = nondimensional{ zeta = 0.119, friction_ratio = 0.06 }, theta0 = 1 }\n"
+        "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))"
+        "  --> 0.119000 0.060000"),
+    formula<o::magnification, theory::magnification>(
+        "theory.magnification{ OPTIONS } -> number or vector",
+        "The steady amplitude under M0 sin(omega t) without dry friction, in units of M0/k: 1/sqrt((1 - r^2)^2 + 4 "
+        "zeta^2 r^2), r = omega/omega0. math.huge at r = 1 without damping.",
+        "print(theory.magnification{ r = { 0, 0.5, 2 } })  --> vector{ 1, 1.33333, 0.333333 }"),
+    formula<o::phase_lag, theory::phase_lag>(
+        "theory.phase_lag{ OPTIONS } -> number or vector",
+        "The lag of that motion behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
+        "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }"),
+    formula<o::transmissibility, theory::transmissibility>(
+        "theory.transmissibility{ OPTIONS } -> number or vector",
+        "The torque on the support relative to that of the load, and also the motion of the mass relative to that of "
+        "its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
+        "print(string.format(\"%.12f\", theory.transmissibility{ r = math.sqrt(2), zeta = 0.3 }))  --> 1.000000000000"),
+    formula<o::equivalent_damping, theory::equivalent_damping>(
+        "theory.equivalent_damping{ OPTIONS } -> number or vector",
+        "The viscous damping constant C that dissipates as much energy in a cycle of this amplitude (rad) as the dry "
+        "friction Rd: 4 Rd/(pi omega amplitude).",
+        "print(string.format(\"%.6f\", theory.equivalent_damping{ Rd = 1, omega = 2, amplitude = 0.5 }))  --> 1.273240"),
+    formula<o::equivalent_zeta, theory::equivalent_damping_ratio>(
+        "theory.equivalent_zeta{ OPTIONS } -> number or vector",
+        "The same as a damping ratio: 2 gamma/(pi r Phi), with gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
+        "phi = theory.linearised{ r = 1.35, friction_ratio = 0.5 }\n"
+        "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
+        "--> 0.2515"),
+    formula<o::linearised, f::linearised>(
+        "theory.linearised{ OPTIONS } -> amplitude, lag",
+        "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
+        "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "
+        "is exact. nil, or nan in a vector, from gamma = pi/4 on.",
+        "print(string.format(\"%.4f %.4f\", theory.linearised{ r = 1.35, friction_ratio = 0.5 }))  --> 0.9376 2.4515"),
+    formula<o::friction_work, theory::friction_work>(
+        "theory.friction_work{ OPTIONS } -> number or vector",
+        "The energy dissipated by dry friction in a cycle of this amplitude (rad): 4 Rd amplitude.",
+        "print(theory.friction_work{ Rd = 2, amplitude = { 0.5, 1 } })  --> vector{ 4, 8 }"),
+    formula<o::growth_at_resonance, theory::growth_at_resonance>(
+        "theory.growth_at_resonance{ OPTIONS } -> number or vector",
+        "The growth of the amplitude in each period at r = 1 without viscous damping, in M0/k: pi "
+        "- 4 gamma, gamma = Rd/M0; 0 from gamma = pi/4 on.",
+        "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593"),
+    row<o::den_hartog,
+        f::sliding_motion<o::den_hartog, &theory::SlidingMotion::amplitude, &theory::SlidingMotion::lag>>(
+        "theory.den_hartog{ OPTIONS } -> amplitude, lag",
+        "The exact steady motion under M0 sin(omega t) with dry friction and without stops (Den Hartog 1931): amplitude "
+        "in units of M0/k and lag of its peak in rad; r = omega/omega0, friction_ratio = Rd/M0, breakaway_ratio = Re/M0. "
+        "nil, or nan in a vector, beyond theory.stop_boundary, where the mass stops in each cycle. At r = 1 with "
+        "zeta = 0 the motion grows without bound: math.huge and pi/2. At r = 1/2, 1/4, ... with zeta = 0 the steady "
+        "motion depends on its start; this is the symmetric one of them. r is 0 or from 0.0001 to 1e6.",
+        "print(string.format(\"%.9f %.4f\", theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }))"
+        "  --> 1.972601445 0.5296\n"
+        "print(theory.den_hartog{ r = { 0.75, 0.75 }, friction_ratio = { 0.7, 0.8 } })\n"
+        "--> vector{ 1.61591, nan }\tvector{ 0.785606, nan }"),
+    row<o::den_hartog_fundamental,
+        f::sliding_motion<o::den_hartog_fundamental, &theory::SlidingMotion::fundamental_amplitude,
+                          &theory::SlidingMotion::fundamental_lag>>(
+        "theory.den_hartog_fundamental{ OPTIONS } -> "
+        "amplitude, lag",
+        "The fundamental of that motion: amplitude in units of M0/k and lag in rad.",
+        "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
+        "print(string.format(\"%.4f, %.2f degrees\", amplitude, math.deg(lag)))  --> 0.8649, 140.69 degrees"),
+    formula<o::stop_boundary, f::stop_boundary>(
+        "theory.stop_boundary{ OPTIONS } -> number or vector",
+        "The friction ratio Rd/M0 up to which the steady motion under M0 sin(omega t) "
+        "has no stops; r is 0 or from 0.0001 to 1e6.",
+        "print(theory.stop_boundary{ r = { 0.5, 1, 3 } })  --> vector{ 0.333333, 0.785398, 0.5625 }"),
+    row<o::step_limit, f::step_limit>(
+        "theory.step_limit{ OPTIONS } -> number or vector",
+        "The greatest step (time units) by one of three rules: \"rk4\", beyond which integrator.rk4 amplifies a free "
+        "motion; \"report\", deltatmax of the program of 1989, T0 (zeta + gamma/VMAX) with gamma = Rd/|Mc| and VMAX the "
+        "greatest velocity of the free motion, Mc that of a free motion unless given; \"corrected\", what its argument "
+        "gives without slips, T0 zeta/pi + Rd/(k VMAX). Only the first one is a limit.",
+        "sys = nondimensional{ zeta = 0.02387 }\n"
+        "print(string.format(\"%.4f %.4f %.4f\", theory.step_limit{ system = sys },\n"
+        "    theory.step_limit{ system = sys, rule = \"report\" }, "
+        "theory.step_limit{ system = sys, rule = \"corrected\" }))\n"
+        "--> 0.4573 0.0239 0.0076"),
 };
 
 }  // namespace

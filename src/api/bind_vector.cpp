@@ -40,17 +40,16 @@ const Vector& own(lua_State* L, std::string_view call) {
 const Vector& other(lua_State* L, int index, std::string_view call, const char* name) {
     const auto* found = lua::test<Vector>(L, index);
     if (found == nullptr) {
-        lua::raise(L, {.sentence = fmt::format("{}: {} must be a vector, got {}", call, name, lua::describe(L, index)),
-                       .call = std::string(call),
-                       .culprit = lua::written(L, index)});
+        lua::fail(L, call,
+                  {.sentence = fmt::format("{} must be a vector, got {}", name, lua::describe(L, index)),
+                   .culprit = lua::written(L, index)});
     }
     return *found;
 }
 
 void check_equal_sizes(lua_State* L, std::string_view call, std::size_t n, std::size_t m) {
     if (n != m) {
-        lua::raise(L, text::in_call(
-                          call, {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)}));
+        lua::fail(L, call, {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)});
     }
 }
 
@@ -72,8 +71,7 @@ int of_each(lua_State* L) {
     const Vector& v = own(L, call.text);
     std::vector<double> result = lua::new_numbers(L, v.size());
     for_each_index(L, v.size(), [&](std::size_t i) { result[i] = f(v.begin()[i]); });
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 /// One number from at least so many.
@@ -81,8 +79,7 @@ template <CallText call, auto f, std::size_t least = 1>
 int of_all(lua_State* L) {
     const Vector& v = own(L, call.text);
     if (v.size() < least) {
-        lua::raise(L,
-                   text::in_call(call.text, {least == 1 ? "the vector is empty" : "two numbers are needed at least"}));
+        lua::fail(L, call.text, {least == 1 ? "the vector is empty" : "two numbers are needed at least"});
     }
     lua::push_value(L, f(v.values()));
     return 1;
@@ -94,8 +91,7 @@ int filled(lua_State* L) {
     const Vector& v = own(L, call.text);
     std::vector<double> result = lua::new_numbers(L, v.size());
     f(v.values(), result);
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 /// One side of an operator: a vector, or a number that stands for as many as the other side has.
@@ -135,8 +131,7 @@ int combined(lua_State* L) {
     const Operands of = operands(L, symbol.text);
     std::vector<double> result = lua::new_numbers(L, of.size);
     for_each_index(L, of.size, [&](std::size_t i) { result[i] = f(of.a[i], of.b[i]); });
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 // Lua turns the result of v > 0 into true or false. So that v[v > 0] can work, the comparison is remembered here, with
@@ -233,8 +228,7 @@ int masked(lua_State* L) {
     for (std::size_t i = 0; i < v.size(); ++i) {
         if (last_comparison.mask[i] == wanted) result.push_back(v.begin()[i]);
     }
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 /// True when it holds for every element.
@@ -352,15 +346,14 @@ int map(lua_State* L) {
     for (std::size_t i = 0; i < v.size(); ++i) {
         ask(L, v.begin()[i], i);
         if (!lua_isboolean(L, -1) && lua_type(L, -1) != LUA_TNUMBER) {
-            lua::raise(L, {.sentence = fmt::format("v:map: f must return a number, true or false, but f({:.6g}) is {}",
-                                                   v.begin()[i], lua::describe(L, -1)),
-                           .call = "v:map"});
+            lua::fail(L, "v:map",
+                      {fmt::format("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
+                                   lua::describe(L, -1))});
         }
         result[i] = lua_isboolean(L, -1) ? static_cast<double>(lua_toboolean(L, -1)) : lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 int find(lua_State* L) {
@@ -372,17 +365,16 @@ int find(lua_State* L) {
         if (lua_toboolean(L, -1) != 0) places.push_back(static_cast<double>(i + 1));
         lua_pop(L, 1);
     }
-    lua::push_vector(L, std::move(places));
-    return 1;
+    return lua::push_vector(L, std::move(places));
 }
 
 int quantile(lua_State* L) {
     const Vector& v = own(L, "v:quantile(p)");
     const double p = lua::finite_argument(L, 2, "v:quantile(p): p");
     if (!(p >= 0 && p <= 1)) {
-        lua::raise(L, text::in_call("v:quantile(p)", {fmt::format("p = {:.6g} must lie between 0 and 1", p)}));
+        lua::fail(L, "v:quantile(p)", {fmt::format("p = {:.6g} must lie between 0 and 1", p)});
     }
-    if (v.size() == 0) lua::raise(L, text::in_call("v:quantile(p)", {"the vector is empty"}));
+    if (v.size() == 0) lua::fail(L, "v:quantile(p)", {"the vector is empty"});
     std::vector<double> values(v.begin(), v.end());
     if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) {
         lua_pushnumber(L, std::nan(""));
@@ -403,11 +395,12 @@ int interpolated(lua_State* L) {
     const Vector& x = other(L, 2, call, "x");
     const Vector& y = other(L, 3, call, "y");
     check_equal_sizes(L, call, x.size(), y.size());
-    if (x.size() == 0) lua::raise(L, text::in_call(call, {"there are no points"}));
+    if (x.size() == 0) lua::fail(L, call, {"there are no points"});
     const auto* const step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
     if (step != x.end()) {
-        lua::raise(L, text::in_call(call, {fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase",
-                                                       step - x.begin() + 2, step[1], step - x.begin() + 1, *step)}));
+        lua::fail(L, call,
+                  {fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase", step - x.begin() + 2, step[1],
+                               step - x.begin() + 1, *step)});
     }
     std::vector<double> result = lua::new_numbers(L, v.size());
     std::transform(v.begin(), v.end(), result.begin(), [&](double at) {
@@ -419,8 +412,7 @@ int interpolated(lua_State* L) {
         const double* const b = y.begin() + i - 1;
         return b[0] + (b[1] - b[0]) * ((at - a[0]) / (a[1] - a[0]));
     });
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 int joined(lua_State* L) {
@@ -437,8 +429,7 @@ int joined(lua_State* L) {
                                       lua_type(L, index) == LUA_TSTRING ? " (tostring(v) is its text)" : ""));
         }
     }
-    lua::push_vector(L, std::move(all));
-    return 1;
+    return lua::push_vector(L, std::move(all));
 }
 
 int pick(lua_State* L) {
@@ -463,8 +454,7 @@ int pick(lua_State* L) {
         }
         picked.push_back(v.begin()[static_cast<std::size_t>(x) - 1]);
     }
-    lua::push_vector(L, std::move(picked));
-    return 1;
+    return lua::push_vector(L, std::move(picked));
 }
 
 int dot(lua_State* L) {
@@ -487,8 +477,7 @@ int arctangent(lua_State* L) {
     for (std::size_t i = 0; i < v.size(); ++i) {
         result[i] = std::atan2(v.begin()[i], w != nullptr ? w->begin()[i] : all);
     }
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 int equal(lua_State* L) {
@@ -542,16 +531,15 @@ int slice(lua_State* L) {
     const lua_Integer last = whole_argument(L, 3, "last", n);
     const lua_Integer step = whole_argument(L, 4, "step", 1);
     if (first < 1 || last > n || step < 1) {
-        lua::raise(L, text::in_call(fmt::format("v:slice({}, {}, {})", first, last, step),
-                                    {fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)}));
+        lua::fail(L, fmt::format("v:slice({}, {}, {})", first, last, step),
+                  {fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)});
     }
     lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (lua_Integer i = first; i <= last; i += std::min(step, n)) {
         result.push_back(v.begin()[i - 1]);
     }
-    lua::push_vector(L, std::move(result));
-    return 1;
+    return lua::push_vector(L, std::move(result));
 }
 
 int vector_text(lua_State* L) {

@@ -19,15 +19,13 @@ int vector_make(lua_State* L) {
         lua::raise(L,
                    {.sentence = "vector takes one table of numbers, for example vector{ 1, 2, 3 }", .call = "vector"});
     }
-    lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
-    return 1;
+    return lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
 }
 
 std::size_t count_argument(lua_State* L, const std::string& call) {
     const double count = lua::finite_argument(L, 3, call + ": n");
     if (count != std::floor(count) || count < 2 || count > most_numbers) {
-        lua::raise(
-            L, text::in_call(call, {fmt::format("n = {} must be a whole number from 2 to {}", count, most_numbers)}));
+        lua::fail(L, call, {fmt::format("n = {} must be a whole number from 2 to {}", count, most_numbers)});
     }
     return static_cast<std::size_t>(count);
 }
@@ -45,8 +43,7 @@ std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) 
 int vector_linspace(lua_State* L) {
     const double from = lua::finite_argument(L, 1, "vector.linspace(from, to, n): from");
     const double to = lua::finite_argument(L, 2, "vector.linspace(from, to, n): to");
-    lua::push_vector(L, spaced(L, from, to, count_argument(L, "vector.linspace(from, to, n)")));
-    return 1;
+    return lua::push_vector(L, spaced(L, from, to, count_argument(L, "vector.linspace(from, to, n)")));
 }
 
 int vector_range(lua_State* L) {
@@ -54,19 +51,17 @@ int vector_range(lua_State* L) {
     const double from = lua::finite_argument(L, 1, call + ": from"), to = lua::finite_argument(L, 2, call + ": to");
     const double step = lua_isnoneornil(L, 3) ? 1 : lua::finite_argument(L, 3, call + ": step");
     if (step == 0 || (to - from) * step < 0) {
-        lua::raise(
-            L, text::in_call(call, {fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)}));
+        lua::fail(L, call, {fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)});
     }
     const double ratio = (to - from) / step;
     if (ratio >= most_numbers) {
-        lua::raise(L, text::in_call(call, {fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)}));
+        lua::fail(L, call, {fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)});
     }
     constexpr double rounding = 1e-9;  // of a step: 0 to 0.3 by 0.1 has its end
     const auto count = static_cast<std::size_t>(std::floor(ratio + rounding)) + 1;
     std::vector<double> values = lua::new_numbers(L, count);
     for (std::size_t i = 0; i < count; ++i) values[i] = from + static_cast<double>(i) * step;
-    lua::push_vector(L, std::move(values));
-    return 1;
+    return lua::push_vector(L, std::move(values));
 }
 
 int vector_logspace(lua_State* L) {
@@ -75,16 +70,16 @@ int vector_logspace(lua_State* L) {
     const double to = lua::finite_argument(L, 2, call + ": to");
     const std::size_t n = count_argument(L, call);
     if (!(from > 0) || !(to > 0)) {
-        lua::raise(L, text::in_call(call, {fmt::format("from = {} and to = {} must be positive: they are the ends "
-                                                       "themselves, not powers of ten",
-                                                       from, to)}));
+        lua::fail(L, call,
+                  {fmt::format("from = {} and to = {} must be positive: they are the ends "
+                               "themselves, not powers of ten",
+                               from, to)});
     }
     std::vector<double> values = spaced(L, std::log(from), std::log(to), n);
     for (double& x : values) x = std::exp(x);
     values.front() = from;
     values.back() = to;
-    lua::push_vector(L, std::move(values));
-    return 1;
+    return lua::push_vector(L, std::move(values));
 }
 
 // ---- random numbers
@@ -136,8 +131,7 @@ int vector_random(lua_State* L) {
     std::mt19937_64 engine = engine_of(asked.seed);
     std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(asked.n));
     for (double& x : values) x = asked.from + (asked.to - asked.from) * unit(engine);
-    lua::push_vector(L, std::move(values));
-    return 1;
+    return lua::push_vector(L, std::move(values));
 }
 
 /// Box and Muller's pairs.
@@ -151,8 +145,7 @@ int vector_normal(lua_State* L) {
         values[i] = asked.mean + radius * std::cos(angle);
         if (i + 1 < values.size()) values[i + 1] = asked.mean + radius * std::sin(angle);
     }
-    lua::push_vector(L, std::move(values));
-    return 1;
+    return lua::push_vector(L, std::move(values));
 }
 
 constexpr lua::Member vector_module_members[] = {

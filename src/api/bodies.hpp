@@ -9,6 +9,7 @@
 #include "api/run.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
+#include "lua/vector.hpp"
 #include "model/assembly.hpp"
 #include "motion/engine/run.hpp"
 
@@ -105,6 +106,8 @@ struct BodiesRun {
     mutable std::shared_ptr<const motion::engine::History> legs = {};  ///< with them: the motion with its torques
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+/// A column of its table.
+lua::Vector table_column(const BodiesRunHandle& run, std::size_t column);
 /// The columns of a run: the first state, and the acceleration of a body.
 inline std::size_t first_state_column(const BodiesRun& run) {
     return run.run.table.columns() - run.system->bodies.size() - run.drive.states.size();
@@ -116,7 +119,7 @@ inline std::size_t acceleration_column(const BodiesRun& run, std::size_t body) {
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
 /// What was put in and taken, torque times rad; in rig_energy.cpp. Raises when a function of the run does.
 const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
-int energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
+lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
 /// Of a run as seen from one of the bodies or links; in bind_energy.cpp.
 Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run);
 std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);

@@ -141,30 +141,24 @@ std::string ColumnUnits::of(std::string_view column) const {
                                                                           : "";
 }
 
-void push_data(lua_State* L, Data data) {
+int push_data(lua_State* L, Data data) {
     const std::size_t bytes = bytes_of(data);
     lua::push<DataHandle>(L, std::make_shared<const Data>(std::move(data)));
     lua::note_external_memory(L, bytes);
+    return 1;
 }
 
 void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
                  const model::Units& units) {
-    std::vector<double> t(events.size()), theta(events.size()), M(events.size()), velocity(events.size());
-    std::vector<std::string> kind(events.size()), name(events.size());
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        t[i] = events[i].t;
-        kind[i] = model::name(events[i].kind);
-        theta[i] = events[i].theta;
-        M[i] = events[i].M;
-        velocity[i] = events[i].velocity;
-        if (events[i].user >= 0) name[i] = user_names[static_cast<std::size_t>(events[i].user)];
-    }
-    Data data;
     const ColumnUnits in(units);
-    data.columns = {column_of("t", std::move(t), in.t), column_of("kind", std::move(kind)),
-                    column_of("theta", std::move(theta), in.theta), column_of("M", std::move(M), in.M),
-                    column_of("velocity", std::move(velocity), in.speed)};
-    if (!user_names.empty()) data.columns.push_back(column_of("name", std::move(name)));
+    using model::Event;
+    Data data = table_of(events, ListColumn{"t", &Event::t, in.t},
+                         ListColumn{"kind", [](const Event& e) { return model::name(e.kind); }},
+                         ListColumn{"theta", &Event::theta, in.theta}, ListColumn{"M", &Event::M, in.M},
+                         ListColumn{"velocity", &Event::velocity, in.speed});
+    const ListColumn names{
+        "name", [&](const Event& e) { return e.user < 0 ? "" : user_names[static_cast<std::size_t>(e.user)]; }};
+    if (!user_names.empty()) data.columns.push_back(names.of(events));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -60,6 +62,42 @@ using DataHandle = std::shared_ptr<const Data>;
 
 DataColumn column_of(std::string name, std::vector<double> numbers, std::string unit = {});
 DataColumn column_of(std::string name, std::vector<std::string> words);
+/// Numbers that `owner` keeps, without a copy.
+template <class Numbers>
+lua::Vector view_of(std::shared_ptr<const void> owner, const Numbers& numbers) {
+    return {std::move(owner), numbers.data(), static_cast<std::size_t>(numbers.size())};
+}
+
+/// A column of a table that has a row for each element of a list: what it gets of the element is a number or a word.
+template <class Get>
+struct ListColumn {
+    std::string name;
+    Get get;
+    std::string unit = {};
+
+    template <class List>
+    [[nodiscard]] DataColumn of(const List& list) const {
+        using Value = std::decay_t<std::invoke_result_t<const Get&, decltype(*std::begin(list))>>;
+        constexpr bool number = std::is_convertible_v<Value, double>;
+        std::vector<std::conditional_t<number, double, std::string>> values;
+        for (const auto& element : list) values.emplace_back(std::invoke(get, element));
+        if constexpr (number) {
+            return column_of(name, std::move(values), unit);
+        } else {
+            return column_of(name, std::move(values));
+        }
+    }
+};
+template <class Name, class Get>
+ListColumn(Name, Get) -> ListColumn<Get>;
+template <class Name, class Get, class Unit>
+ListColumn(Name, Get, Unit) -> ListColumn<Get>;
+
+template <class List, class... Get>
+Data table_of(const List& list, const ListColumn<Get>&... columns) {
+    return {.columns = {columns.of(list)...}};
+}
+
 /// What stands beside the names of columns: nothing where nobody has said in what they are measured.
 struct ColumnUnits {
     explicit ColumnUnits(const model::Units& units);
@@ -69,8 +107,8 @@ struct ColumnUnits {
     [[nodiscard]] std::string of(std::string_view column) const;
 };
 
-/// The data as a Lua object on the top of the stack.
-void push_data(lua_State* L, Data data);
+/// The data as a Lua object on the top of the stack; returns 1, as a function with one result.
+int push_data(lua_State* L, Data data);
 
 /// Pushes a row of the data at `index` as a table that knows how to write itself.
 void push_row(lua_State* L, int index, const Data& data, std::size_t row);

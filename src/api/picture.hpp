@@ -1,13 +1,18 @@
 // A picture in Lua: figures that were described but not yet drawn, and where drawing them leads.
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lua/bind.hpp"
 #include "lua/options.hpp"
+#include "model/units.hpp"
 #include "plots/figure.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/text_plot.hpp"
+#include "text/option.hpp"
 
 namespace dinal::api {
 
@@ -16,12 +21,12 @@ struct Picture {
     plots::TextFormat format;
 };
 
-/// Changes the figure as its options say (plot_options.hpp).
+/// Changes the figure as its options say.
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure);
 /// The same for figures one below the other, which share x.
 void apply_options(lua_State* L, const lua::Options& options, std::vector<plots::Figure>& figures);
 
-/// As its options say (plot_options.hpp), prints, writes the file, or with show = false leaves the picture on the
+/// As its options say, prints, writes the file, or with show = false leaves the picture on the
 /// stack; returns the number of values left.
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures);
 
@@ -42,5 +47,155 @@ text::Expected<std::string> svg_of(const Picture& picture);
 
 /// The text of the picture without the last line end.
 std::string text_of_picture(const Picture& picture);
+
+// The options of plot, run:plot and run:phase_plot: the parts of a figure, where it goes, and each of its curves.
+
+/// What is absent stays as the figure has it.
+struct FigureOptions {
+    std::optional<std::string> title = {}, xlabel = {}, ylabel = {};
+    std::optional<std::vector<double>> xlim = {}, ylim = {};
+    std::optional<bool> xlog = {}, ylog = {}, equal = {}, axes = {};
+};
+
+inline constexpr text::Range tick_distance{"be positive: it is the distance between ticks",
+                                           [](double x) { return x > 0; }};
+inline constexpr const char* ticks_meaning = "distance between ticks, or a list of ticks";
+
+inline constexpr text::Option figure_options[] = {
+    {.name = "title", .meaning = "title", .filled = text::fills<&FigureOptions::title>},
+    {.name = "xlabel", .meaning = "label of the x axis", .filled = text::fills<&FigureOptions::xlabel>},
+    {.name = "ylabel", .meaning = "label of the y axis", .filled = text::fills<&FigureOptions::ylabel>},
+    {.name = "xlim", .meaning = "visible range, { from, to }", .filled = text::fills<&FigureOptions::xlim>},
+    {.name = "ylim", .meaning = "the same for y", .filled = text::fills<&FigureOptions::ylim>},
+    {.name = "xticks", .range = tick_distance, .meaning = ticks_meaning},
+    {.name = "yticks", .range = tick_distance, .meaning = ticks_meaning},
+    {.name = "xlog", .meaning = "a logarithmic axis", .filled = text::fills<&FigureOptions::xlog>},
+    {.name = "ylog", .meaning = "a logarithmic axis", .filled = text::fills<&FigureOptions::ylog>},
+    {.name = "equal", .meaning = "one unit is as long on both axes", .filled = text::fills<&FigureOptions::equal>},
+    {.name = "axes", .meaning = "false leaves only the curves", .filled = text::fills<&FigureOptions::axes>},
+};
+
+/// Where a picture goes, and how large it is.
+struct TargetOptions {
+    std::optional<std::string> file = {};
+    std::optional<std::vector<double>> size = {};
+    std::optional<int> width = {}, height = {};
+    std::optional<bool> ascii = {};
+    bool show = true;
+};
+
+inline constexpr text::Option target_options[] = {
+    {.name = "file",
+     .meaning = "file to write instead of printing; the ending of the name chooses the format: .svg, .png, "
+                ".pdf (these need gnuplot), .gp (gnuplot commands with the data, to be restyled) or .txt",
+     .filled = text::fills<&TargetOptions::file>},
+    {.name = "size",
+     .unit = "cm",
+     .meaning = "{ width, height } in a file",
+     .filled = text::fills<&TargetOptions::size>},
+    {.name = "width",
+     .range = {"be a whole number from 20 to 1000: columns of text",
+               [](double x) { return text::is_whole(x, 20, 1000); }},
+     .meaning = "columns of the text; by default those of the terminal, or 79",
+     .filled = text::fills<&TargetOptions::width>},
+    {.name = "height",
+     .range = {"be a whole number from 5 to 500: lines of text", [](double x) { return text::is_whole(x, 5, 500); }},
+     .meaning = "lines of the text; by default those of the terminal, or 22",
+     .filled = text::fills<&TargetOptions::height>},
+    {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&TargetOptions::ascii>},
+    {.name = "show",
+     .meaning = "false returns the picture, for print or for plot{ p, q }",
+     .filled = text::fills<&TargetOptions::show>},
+};
+
+inline constexpr text::Option column_options[] = {
+    {.name = "x", .otherwise = "\"t\"", .meaning = "name or number of a column"},
+    {.name = "y",
+     .meaning = "name or number of a column, or a list of them; by default theta, and M/k if there is an "
+                "excitation; M/k, friction/k, damping/k and velocity/omega0 are names, too; columns with "
+                "other units get an axis of their own, below"},
+    {.name = "labels",
+     .meaning = "names of the columns in the picture",
+     .wanted = "a list of words such as { \"angle\", \"torque\" }"},
+};
+
+inline constexpr auto plot_options = text::joined(figure_options, target_options);
+inline constexpr text::Call plot_call{"plot", "plot{ { t, theta, label = \"theta\" }, xlabel = \"t\" }", plot_options};
+inline constexpr text::Call pictures_call{"plot", "plot{ picture, picture, file = \"both.svg\" }", target_options};
+inline constexpr text::Call curve_call{"plot: curve", "{ x, y, label = \"theta\", style = \"points\" }",
+                                       plots::curve_options};
+inline constexpr auto plot_run_options =
+    text::joined(column_options, model::units_option, figure_options, target_options);
+inline constexpr auto phase_plot_options = text::joined(model::units_option, figure_options, target_options);
+inline constexpr text::Call plot_run_call{"run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
+                                          plot_run_options, true};
+inline constexpr text::Call phase_plot_call{"run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
+                                            phase_plot_options, true};
+
+// What help() and the manual say about plot, run:plot and run:phase_plot besides their options.
+
+/// Defined in bind_plot.cpp.
+int plot_run(lua_State* L);
+int phase_plot_run(lua_State* L);
+
+inline constexpr lua::Doc plot_doc{
+    "plot(x, y), plot{ { x, y, OPTIONS }, ..., OPTIONS }",
+    "Draws y over x, or several curves, each a table with two vectors (or tables) of numbers; numbers that are "
+    "not finite are gaps. A run is drawn as theta over t: plot{ run, { other, label = \"more friction\" } }. "
+    "plot{ p, q } draws pictures side by side.",
+    "x = vector.linspace(-2, 2, 9)\n"
+    "p = plot{ { x, x^2, style = \"points\" }, width = 40, height = 10, ascii = true, show = false }\n"
+    "print(p)\n"
+    "--> 4 +  x                            x\n"
+    "-->   |\n"
+    "-->   |\n"
+    "-->   |     x                      x\n"
+    "--> 2 +\n"
+    "-->   |         x              x\n"
+    "-->   |             x      x\n"
+    "--> 0 +- - - - - - - - -x- - - - - - - -\n"
+    "-->   +--+--------------+-------------+--\n"
+    "-->     -2              0             2",
+    {&curve_call, &plot_call}};
+
+inline constexpr lua::Doc plot_run_doc{
+    "run:plot{ OPTIONS }",
+    "Draws columns over a column, with bars where the mass sticks.",
+    "run = system{ I = 1, k = 39.5, C = 0.6 }:simulate{ theta0 = 1, t_end = 4, dt = 0.01 }\n"
+    "print(run:plot{ width = 60, height = 11, ascii = true, show = false })\n"
+    "--> theta, rad\n"
+    "--> 1 +..\n"
+    "-->   | '.         ...\n"
+    "-->   |  :.       .'  :.        .'':          ...\n"
+    "-->   |   :      .:    :       :'  ':.      .:' ':.      .:''\n"
+    "--> 0 +- -'. - - : - - -:- - -:- - - :.- - :'- - -'. - .:' -\n"
+    "-->   |    :.   :       ':  .:'       ':..:'        '::'\n"
+    "-->   |     :  :'        ':.'\n"
+    "-->   |      '''\n"
+    "-->   ++------------+-------------+------------+------------+\n"
+    "-->    0            1             2            3            4 t",
+    {&plot_run_call}};
+
+inline constexpr lua::Doc phase_plot_run_doc{
+    "run:phase_plot{ OPTIONS }",
+    "Draws the phase plane, velocity/omega0 over theta, with equal scales: without a second spring, circles "
+    "about the origin are lines of equal energy. Without k the velocity itself is drawn.",
+    "run = system{ I = 1, k = 39.5, Rd = 3.95 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
+    "print(run:phase_plot{ width = 60, height = 14, ascii = true, show = false })\n"
+    "--> theta'/omega0, rad   o start   @ end   = dead zone\n"
+    "-->      |   .  *******     .\n"
+    "-->  0.5 + . ****   . ***\n"
+    "-->      |  **   ****    **   .\n"
+    "-->      | **   **  ***   *\n"
+    "-->  0.0 +.*. . * .=@** . * . .o.\n"
+    "-->      | **   *   .     *   **\n"
+    "-->      |  *    ***.  ***    *\n"
+    "--> -0.5 + . **    *****    **\n"
+    "-->      |   . ***  .    ****\n"
+    "-->      |       .*******.\n"
+    "-->      +----------+----------+-\n"
+    "-->                 0          1\n"
+    "-->             theta, rad",
+    {&phase_plot_call}};
 
 }  // namespace dinal::api

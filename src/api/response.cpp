@@ -6,20 +6,211 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "analysis/response_curve.hpp"
 #include "analysis/steady_facts.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/data.hpp"
-#include "api/response_companions.hpp"
 #include "api/steady_answer.hpp"
-#include "api/sweep_parameters.hpp"
+#include "api/sweep_options.hpp"
+#include "model/lowered.hpp"
 #include "text/sentences.hpp"
+#include "theory/den_hartog.hpp"
+#include "theory/theory_forced.hpp"
 
 namespace dinal::api {
+
+// What a response brings along: its jumps, and the curves of theory that can be drawn over it.
+
+/// The column of what is varied; its unit, and that of theta.
+struct VariedColumn {
+    std::string name, unit = {}, theta = {};
+};
+
+/// A response over one parameter, which over two is that at a value of the first.
+struct ResponsePart {
+    double beside = 0;
+    std::size_t branches_before = 0;  ///< in the parts before this one
+    analysis::ResponseCurve curve = {};
+};
+
+/// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
+struct HarmonicSweep {
+    model::Oscillator system;
+    VariedColumn column;
+    double low = 0, high = 0;
+    std::optional<double> frequency = {};  ///< none: that is what is varied
+    double amplitude = 1;                  ///< torque, where the frequency is varied
+};
+
 namespace {
 
-constexpr double nan_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t curve_points = 400;
+
+/// A curve of theory at one point: amplitude in units of M0/k and lag in rad.
+using ClosedCurve = std::optional<theory::Harmonic_motion> (*)(double r, double zeta, double gamma, double breakaway);
+
+std::optional<theory::Harmonic_motion> linearised_at(double r, double zeta, double gamma, double) {
+    return theory::linearised_friction(r, zeta, gamma);
+}
+
+std::optional<theory::Harmonic_motion> den_hartog_at(double r, double zeta, double gamma, double breakaway) {
+    if (!(r >= theory::DenHartog::slowest) || r > theory::DenHartog::fastest) return {};
+    const auto motion = theory::DenHartog(r, zeta).motion(gamma, breakaway);
+    if (!motion) return {};
+    return theory::Harmonic_motion{motion->amplitude, motion->fundamental_lag};
+}
+
+Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
+    const model::Oscillator& system = sweep.system;
+    const double Rd = system.friction().sliding(model::Motion::forward, 0);
+    const double Re = system.friction().holding(model::Motion::forward);
+    struct Point {
+        double x, amplitude, lag;
+    };
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < curve_points; ++i) {
+        const double x = sweep.low + (sweep.high - sweep.low) * static_cast<double>(i) / (curve_points - 1);
+        const double M0 = std::fabs(sweep.frequency ? x : sweep.amplitude);
+        const double r = sweep.frequency.value_or(x) * system.natural_period();
+        const auto motion = M0 > 0 ? curve(r, system.damping_ratio(), Rd / M0, Re / M0) : std::nullopt;
+        points.push_back(
+            {x, motion ? motion->amplitude * M0 / system.stiffness() : no_number, motion ? motion->lag : no_number});
+    }
+    return table_of(points, ListColumn{sweep.column.name, &Point::x, sweep.column.unit},
+                    ListColumn{"amplitude", &Point::amplitude, sweep.column.theta},
+                    ListColumn{"lag", &Point::lag, "rad"});
+}
+
+struct LocatedPoint {
+    double beside = 0, branch = 0;
+    analysis::BranchPoint at = {};
+    double curve = 0;
+};
+
+/// Numbers the curves that the points form. A point goes on the curve of the nearest point of its kind at the value of
+/// the first parameter before, if that is near and has no nearer one. `points` are in the order of these values.
+void number_curves(std::vector<LocatedPoint>& points, double range) {
+    constexpr double near = 0.5;  // of the range, and of the amplitude
+    const auto distance = [range](const LocatedPoint& a, const LocatedPoint& b) {
+        const double larger = std::max({a.at.motion.amplitude, b.at.motion.amplitude, 1e-300});
+        return a.at.kind != b.at.kind ? std::numeric_limits<double>::infinity()
+                                      : std::fabs(a.at.parameter - b.at.parameter) / range +
+                                            std::fabs(a.at.motion.amplitude - b.at.motion.amplitude) / larger;
+    };
+    const auto nearest = [&](const LocatedPoint& to, auto from, auto until) {
+        return std::min_element(from, until,
+                                [&](const auto& a, const auto& b) { return distance(to, a) < distance(to, b); });
+    };
+    double curves = 0;
+    for (auto begin = points.begin(), before = begin; begin != points.end();) {
+        const auto end = std::find_if(begin, points.end(), [&](const auto& p) { return p.beside != begin->beside; });
+        for (auto point = begin; point != end; ++point) {
+            const auto last = nearest(*point, before, begin);
+            const bool goes_on = last != begin && distance(*point, *last) < near && nearest(*last, begin, end) == point;
+            point->curve = goes_on ? last->curve : ++curves;
+        }
+        before = begin;
+        begin = end;
+    }
+}
+
+}  // namespace
+
+/// c.linearised and c.den_hartog, for a linear spring and the friction of Coulomb; else none.
+std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
+    const model::Oscillator& system = sweep.system;
+    const model::Lowered lowered(system);
+    const bool even = lowered.braking(model::Motion::forward) == -lowered.braking(model::Motion::backward) &&
+                      lowered.holding(model::Motion::forward) == lowered.holding(model::Motion::backward);
+    if (!system.has_linear_spring() || lowered.has_remainder() || system.walls() || !even) return {};
+    return {{"linearised", [sweep] { return closed_curve(sweep, linearised_at); }},
+            {"den_hartog", [sweep] { return closed_curve(sweep, den_hartog_at); }}};
+}
+
+/// c.jumps, over the one or two parameters.
+DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
+    const VariedColumn& column = over.back();
+    struct Jump {
+        double beside;
+        analysis::MotionJump at;
+    };
+    std::vector<Jump> list;
+    for (const ResponsePart& part : parts) {
+        for (const analysis::MotionJump& jump : part.curve.jumps) list.push_back({part.beside, jump});
+    }
+    Data jumps = table_of(list, ListColumn{column.name, [](const Jump& j) { return j.at.parameter; }, column.unit},
+                          ListColumn{"sweep", [](const Jump& j) { return j.at.rising ? "up" : "down"; }},
+                          ListColumn{"from", [](const Jump& j) { return j.at.from; }, column.theta},
+                          ListColumn{"to", [](const Jump& j) { return j.at.to; }, column.theta},
+                          ListColumn{"status", [](const Jump& j) { return analysis::name(j.at.landed.status); }});
+    if (over.size() > 1) {
+        const ListColumn beside{over.front().name, &Jump::beside, over.front().unit};
+        jumps.columns.insert(jumps.columns.begin(), beside.of(list));
+    }
+    const auto drawn = [list, column = column] {
+        std::vector<double> x, amplitude;
+        for (const Jump& jump : list) {
+            x.insert(x.end(), {jump.at.parameter, jump.at.parameter, no_number});
+            amplitude.insert(amplitude.end(), {jump.at.from, jump.at.to, no_number});
+        }
+        return Data{.columns = {column_of(column.name, std::move(x), column.unit),
+                                column_of("amplitude", std::move(amplitude), column.theta)}};
+    };
+    return {"jumps", [jumps] { return Data(jumps); }, drawn};
+}
+
+/// c.points: where a branch turns back, or another one begins. Over two parameters they form curves.
+DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
+    std::vector<LocatedPoint> located;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const ResponsePart& part : parts) {
+        for (std::size_t i = 0; i < part.curve.branches.size(); ++i) {
+            for (const analysis::BranchPoint& point : part.curve.branches[i]) {
+                low = std::min(low, point.parameter), high = std::max(high, point.parameter);
+                if (point.kind == analysis::BranchKind::point) continue;
+                located.push_back({part.beside, static_cast<double>(part.branches_before + i + 1), point});
+            }
+        }
+    }
+    const bool is_plane = over.size() > 1;
+    if (is_plane) {
+        number_curves(located, high - low);
+        std::stable_sort(located.begin(), located.end(),
+                         [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
+    }
+    using Point = LocatedPoint;
+    const VariedColumn& column = over.back();
+    Data points = table_of(
+        located, ListColumn{column.name, [](const Point& p) { return p.at.parameter; }, column.unit},
+        ListColumn{"kind", [](const Point& p) { return analysis::name(p.at.kind); }},
+        ListColumn{"amplitude", [](const Point& p) { return p.at.motion.amplitude; }, column.theta},
+        ListColumn{"period", [](const Point& p) { return p.at.motion.period > 0 ? p.at.motion.period : no_number; }},
+        ListColumn{"branch", &Point::branch});
+    if (!is_plane) return {"points", [points] { return Data(points); }};
+    const ListColumn beside{over.front().name, &Point::beside, over.front().unit};
+    points.columns.insert(points.columns.begin(), beside.of(located));
+    points.columns.push_back(ListColumn{"curve", &Point::curve}.of(located));
+    points.pieces_of = "curve";
+    const auto drawn = [over, located] {
+        std::vector<double> x, y;
+        for (std::size_t i = 0; i < located.size(); ++i) {
+            if (i > 0 && located[i].curve != located[i - 1].curve) x.push_back(no_number), y.push_back(no_number);
+            x.push_back(located[i].beside);
+            y.push_back(located[i].at.parameter);
+        }
+        return Data{.columns = {column_of(over.front().name, std::move(x)), column_of(over.back().name, std::move(y))}};
+    };
+    return {"points", [points] { return Data(points); }, drawn};
+}
+
+// The response.
+
+namespace {
 
 inline constexpr text::Option system_at_option[] = {
     {.name = "system", .meaning = "the system at this point", .object = "system", .wanted = "a system"},
@@ -39,7 +230,7 @@ void refuse_old_forms(lua_State* L) {
         return type;
     };
     const auto fail = [L](const char* name, std::string sentence) {
-        lua::raise(L, {.sentence = fmt::format("sys:response: {}", sentence), .call = "sys:response", .option = name});
+        lua::fail(L, "sys:response", {.sentence = fmt::format("{}", sentence), .option = name});
     };
     if (type_of("M") != LUA_TNIL) {
         fail(
@@ -69,7 +260,7 @@ public:
         options.push("at");
         place_ = lua_gettop(L);
         function_ = !lua_isnil(L, -1);
-        if (function_ && !lua::is_callable(L, place_)) options.wrong("at", options.row("at").wanted);
+        if (function_ && !lua::is_callable(L, place_)) options.wrong("at");
         if (!function_) check_harmonic();
         extras_ = question(values_.front()).extras;
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
@@ -195,23 +386,8 @@ private:
 
     /// The names under `over`, and their values.
     void choose() {
-        options_.push("over");
-        if (lua_isnil(L_, -1)) options_.missing("over");
-        if (!lua_istable(L_, -1)) options_.wrong("over", options_.row("over").wanted);
-        parameters_ = parameters_in(L_, lua_gettop(L_), response_call);
-        lua_pop(L_, 1);
-        if (parameters_.empty()) options_.wrong("over", options_.row("over").wanted);
-        if (parameters_.size() > 2) {
-            options_.fail("over", fmt::format("over has {} names: a response varies one or two, and sweep varies more",
-                                              parameters_.size()));
-        }
-        check_parameters(L_, response_call, parameters_);
-        for (const DataColumn& parameter : parameters_) {
-            if (parameter.numbers() == nullptr) {
-                options_.fail("over", fmt::format("over.{} must be a list of numbers", parameter.name));
-            }
-            check_name(parameter.name);
-        }
+        parameters_ = varied_in(L_, options_, response_call);
+        for (const DataColumn& parameter : parameters_) check_name(parameter.name);
         varied_ = parameters_.back().name;
         const auto values = parameters_.back().numbers()->values();
         values_.assign(values.begin(), values.end());
@@ -244,7 +420,7 @@ private:
             if (given > 0) options_.fail("over", fmt::format("{} is varied, and cannot be given as well", name));
             for (const double x : parameter.numbers()->values()) {
                 if (x > 0) continue;
-                options_.fail({.sentence = fmt::format("{} = {} must be positive", name, x), .option = name});
+                options_.fail(name, fmt::format("{} = {} must be positive", name, x));
             }
         }
         if (in_time > 1) options_.fail("over", "frequency, omega and period exclude each other; vary one of them");
@@ -266,47 +442,46 @@ private:
     int place_ = 0;
 };
 
-struct ResponseColumns {
-    std::vector<double> beside, varied, amplitude, lag, peak, stops, stuck, stable, branch;
-    std::vector<std::string> status;
-
-    void add(double other, double x, std::size_t piece, const analysis::SteadyMotion& motion,
-             const std::optional<double>& angle) {
-        using analysis::SteadyStatus;
-        const bool found = motion.status == SteadyStatus::steady || motion.status == SteadyStatus::adheres ||
-                           motion.status == SteadyStatus::rest;
-        const bool grows = motion.status == analysis::SteadyStatus::grows;
-        const double otherwise = grows ? std::numeric_limits<double>::infinity() : nan_number;
-        beside.push_back(other);
-        varied.push_back(x);
-        amplitude.push_back(found ? motion.amplitude : otherwise);
-        lag.push_back(angle.value_or(nan_number));
-        peak.push_back(found ? std::max(std::fabs(motion.low), std::fabs(motion.high)) : otherwise);
-        stops.push_back(motion.status == SteadyStatus::steady ? static_cast<double>(motion.stops) : nan_number);
-        stuck.push_back(found ? motion.stuck : nan_number);
-        stable.push_back(found && motion.stable ? 1 : 0);
-        branch.push_back(static_cast<double>(piece));
-        status.emplace_back(analysis::name(motion.status));
-    }
-    Data data(const std::vector<VariedColumn>& over) && {
-        const VariedColumn& of = over.back();
-        Data data;
-        data.columns = {
-            column_of(of.name, std::move(varied), of.unit), column_of("amplitude", std::move(amplitude), of.theta),
-            column_of("lag", std::move(lag), "rad"),        column_of("peak", std::move(peak), of.theta),
-            column_of("stops", std::move(stops)),           column_of("stuck", std::move(stuck)),
-            column_of("stable", std::move(stable)),         column_of("branch", std::move(branch)),
-            column_of("status", std::move(status))};
-        if (over.size() > 1) {
-            data.columns.insert(data.columns.begin(),
-                                column_of(over.front().name, std::move(beside), over.front().unit));
-            data.parameters = {over.front().name, of.name};
-        }
-        data.pieces_of = "branch";
-        data.dotted_of = "stable";
-        return data;
-    }
+struct ResponseRow {
+    double beside, varied;
+    std::size_t branch;
+    analysis::SteadyMotion motion;
+    std::optional<double> lag;
 };
+
+Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over) {
+    using analysis::SteadyMotion, analysis::SteadyStatus;
+    const VariedColumn& of = over.back();
+    const auto is_found_in = [](const SteadyMotion& m) {
+        return m.status == SteadyStatus::steady || m.status == SteadyStatus::adheres || m.status == SteadyStatus::rest;
+    };
+    const auto found = [&](const ResponseRow& row, double value, bool may_grow = false) {
+        const bool grows = may_grow && row.motion.status == SteadyStatus::grows;
+        return is_found_in(row.motion) ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
+    };
+    Data data = table_of(
+        rows, ListColumn{of.name, &ResponseRow::varied, of.unit},
+        ListColumn{"amplitude", [&](const auto& row) { return found(row, row.motion.amplitude, true); }, of.theta},
+        ListColumn{"lag", [](const auto& row) { return row.lag.value_or(no_number); }, "rad"},
+        ListColumn{"peak", [&](const auto& row) { return found(row, greatest_angle(row.motion), true); }, of.theta},
+        ListColumn{"stops",
+                   [](const auto& row) {
+                       return row.motion.status == SteadyStatus::steady ? static_cast<double>(row.motion.stops)
+                                                                        : no_number;
+                   }},
+        ListColumn{"stuck", [&](const auto& row) { return found(row, row.motion.stuck); }},
+        ListColumn{"stable", [&](const auto& row) { return is_found_in(row.motion) && row.motion.stable; }},
+        ListColumn{"branch", &ResponseRow::branch},
+        ListColumn{"status", [](const auto& row) { return analysis::name(row.motion.status); }});
+    if (over.size() > 1) {
+        const ListColumn beside{over.front().name, &ResponseRow::beside, over.front().unit};
+        data.columns.insert(data.columns.begin(), beside.of(rows));
+        data.parameters = {over.front().name, of.name};
+    }
+    data.pieces_of = "branch";
+    data.dotted_of = "stable";
+    return data;
+}
 
 }  // namespace
 
@@ -320,7 +495,7 @@ int response_of_system(lua_State* L) {
                                            .start = call.start(),
                                            .doubled = call.doubled()};
     std::vector<ResponsePart> parts;
-    ResponseColumns columns;
+    std::vector<ResponseRow> rows;
     std::size_t pieces = 0, jumps = 0;
     asking(L, call.extras(), [&](const motion::Monitor& monitor) {
         for (const double beside : call.beside_values()) {
@@ -334,14 +509,14 @@ int response_of_system(lua_State* L) {
                 for (const analysis::BranchPoint& point : branch) {
                     if (call.is_list() && !point.asked) continue;
                     const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
-                    columns.add(beside, point.parameter, pieces, point.motion, shape.lag);
+                    rows.push_back({beside, point.parameter, pieces, point.motion, shape.lag});
                 }
             }
         }
     });
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();
-    Data data = std::move(columns).data(over);
+    Data data = response_data(rows, over);
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
     if (call.harmonic() && !call.is_plane()) {
@@ -360,8 +535,7 @@ int response_of_system(lua_State* L) {
             fmt::format("response: {} on {}, {} (c.jumps)", text::counted(data.size(), "row"),
                         pieces == 1 ? "1 branch" : fmt::format("{} branches", pieces), text::counted(jumps, "jump"));
     }
-    push_data(L, std::move(data));
-    return 1;
+    return push_data(L, std::move(data));
 }
 
 }  // namespace dinal::api

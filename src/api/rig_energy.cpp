@@ -28,29 +28,29 @@ double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Of all: the names are those of one body.
-void set_total(lua_State* L, const engine::Works& works) {
-    lua_createtable(L, 0, 12);
-    for (const auto& [name, values] :
-         {std::pair("input", &works.input), std::pair("base", &works.base), std::pair("kinetic", &works.kinetic),
-          std::pair("spring", &works.spring), std::pair("viscous", &works.viscous), std::pair("dry", &works.dry),
-          std::pair("belt", &works.belt), std::pair("impacts", &works.impacts)}) {
-        lua::set_number(L, name, sum_of(*values));
-    }
-    lua::set_number(L, "acts", works.acts);
-    lua::set_number(L, "error", analysis::error_of(works));
-    lua::set_number(L, "flow", works.flow);
-    lua::set_number(L, "closure", works.flow > 0 ? std::fabs(analysis::error_of(works)) / works.flow : 0);
-}
+using lua::NamedNumbers;
 
-const RigEnergy& rig_energy_self(lua_State* L) {
-    return *lua::self<RigEnergyHandle>(L, 1, "energy.total");
+/// Of all: the names are those of one body.
+NamedNumbers total_of_rig(const RigEnergy& energy) {
+    const engine::Works& works = *energy.run->works;
+    const double error = analysis::error_of(works);
+    return {{"input", sum_of(works.input)},
+            {"base", sum_of(works.base)},
+            {"kinetic", sum_of(works.kinetic)},
+            {"spring", sum_of(works.spring)},
+            {"viscous", sum_of(works.viscous)},
+            {"dry", sum_of(works.dry)},
+            {"belt", sum_of(works.belt)},
+            {"impacts", sum_of(works.impacts)},
+            {"acts", works.acts},
+            {"error", error},
+            {"flow", works.flow},
+            {"closure", works.flow > 0 ? std::fabs(error) / works.flow : 0}};
 }
 
 /// The sum over all bodies and links, at the rows.
 template <analysis::EnergyColumn which>
-int column_of_rig(lua_State* L) {
-    const RigEnergyHandle energy = lua::self<RigEnergyHandle>(L, 1, "energy.dry");
+lua::Vector column_of_rig(lua_State* L, const RigEnergyHandle& energy) {
     const BodiesRunHandle& run = energy->run;
     if (energy->columns.size() == 0) {
         Eigen::MatrixXd sum = energy_columns_of_run(L, part_of(run, 0));
@@ -59,45 +59,30 @@ int column_of_rig(lua_State* L) {
         energy->columns = std::move(sum);
         lua::note_external_memory(L, static_cast<std::size_t>(energy->columns.size()) * sizeof(double));
     }
-    const auto column = energy->columns.col(static_cast<Eigen::Index>(which));
-    lua::push(L, lua::Vector(energy, column.data(), static_cast<std::size_t>(column.size())));
-    return 1;
-}
-
-int times_of_rig(lua_State* L) {
-    const BodiesRunHandle& run = rig_energy_self(L).run;
-    const auto t = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(0);
-    lua::push(L, lua::Vector(run, t.data(), t.size()));
-    return 1;
-}
-
-int total_of_rig(lua_State* L) {
-    set_total(L, *rig_energy_self(L).run->works);
-    return 1;
+    return view_of(energy, energy->columns.col(static_cast<Eigen::Index>(which)));
 }
 
 /// energy.load, energy.clutch
 int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
-    const BodiesRun& run = *rig_energy_self(L).run;
+    const BodiesRun& run = *lua::self<RigEnergyHandle>(L, 1, "energy.load")->run;
     const engine::Works& works = *run.works;
     const std::size_t joint = joint_named(L, 2, *run.system, "this energy", rig_energy_class.members);
-    lua_createtable(L, 0, 8);
+    NamedNumbers numbers{{"spring", works.spring[joint]},
+                         {"viscous", works.viscous[joint]},
+                         {"dry", works.dry[joint]},
+                         {"belt", works.belt[joint]},
+                         {"impacts", works.impacts[joint]}};
     if (!run.system->is_link(joint)) {
-        lua::set_number(L, "input", works.input[joint]);
-        lua::set_number(L, "base", works.base[joint]);
-        lua::set_number(L, "kinetic", works.kinetic[joint]);
+        numbers.insert(numbers.end(),
+                       {{"input", works.input[joint]}, {"base", works.base[joint]}, {"kinetic", works.kinetic[joint]}});
     }
-    lua::set_number(L, "spring", works.spring[joint]);
-    lua::set_number(L, "viscous", works.viscous[joint]);
-    lua::set_number(L, "dry", works.dry[joint]);
-    lua::set_number(L, "belt", works.belt[joint]);
-    lua::set_number(L, "impacts", works.impacts[joint]);
+    lua::push_value(L, numbers);
     return 1;
 }
 
-int rig_energy_text(lua_State* L) {
-    const BodiesRun& run = *rig_energy_self(L).run;
+std::string rig_energy_text(const RigEnergy& energy) {
+    const BodiesRun& run = *energy.run;
     const engine::Works& works = *run.works;
     const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * works.flow ? 0.0 : x; };
     std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
@@ -128,7 +113,7 @@ int rig_energy_text(lua_State* L) {
     const double error = analysis::error_of(works);
     text += fmt::format("  error {:.2g}, {:.1g} of {:.6g} that flowed", error,
                         works.flow > 0 ? std::fabs(error) / works.flow : 0, works.flow);
-    return lua::push_text(L, text);
+    return text;
 }
 
 #define DINAL_RIG_ENERGY                                                   \
@@ -139,19 +124,19 @@ int rig_energy_text(lua_State* L) {
 
 #define DINAL_RIG_COLUMN(name, meaning, which, last)                                                 \
     {                                                                                                \
-        lua::a_field<column_of_rig<analysis::EnergyColumn::which>>, {                                \
+        lua::a_value<RigEnergyHandle, column_of_rig<analysis::EnergyColumn::which>>, {               \
             "energy." name " -> vector", meaning ", of all bodies and links together, at each row.", \
                 DINAL_RIG_ENERGY "print(string.format(\"%.6g\", energy." name "[5]))  --> " last     \
         }                                                                                            \
     }
 
 constexpr lua::Member rig_energy_members[] = {
-    {lua::a_field<total_of_rig>,
+    {lua::a_value<RigEnergyHandle, total_of_rig>,
      {"energy.total -> table",
       "The balance of the whole run, torque times rad: input + belt + base + acts = kinetic + spring + viscous + "
       "dry + impacts + error; flow, and closure = |error|/flow.",
       DINAL_RIG_ENERGY "print(energy.total.kinetic, energy.total.closure < 1e-12)  --> -3.375\ttrue"}},
-    {lua::a_field<times_of_rig>,
+    {lua::a_value<RigEnergyHandle, [](const RigEnergy& energy) { return table_column(energy.run, 0); }>,
      {"energy.t -> vector", "The times of the rows.", DINAL_RIG_ENERGY "print(energy.t[2])  --> 1.0"}},
     DINAL_RIG_COLUMN("input", "The work that M has done", input, "0"),
     DINAL_RIG_COLUMN("kinetic", "The kinetic energy", kinetic, "1.125"),
@@ -162,10 +147,10 @@ constexpr lua::Member rig_energy_members[] = {
     DINAL_RIG_COLUMN("base", "The work of a shaking base", base, "0"),
     DINAL_RIG_COLUMN("acts", "What acts of events have brought", acts, "0"),
     DINAL_RIG_COLUMN("impacts", "What impacts have taken", impacts, "0"),
-    {lua::a_field<column_of_rig<analysis::EnergyColumn::error>>,
+    {lua::a_value<RigEnergyHandle, column_of_rig<analysis::EnergyColumn::error>>,
      {"energy.error -> vector", "What does not add up, at each row.",
       DINAL_RIG_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
-    {lua::a_metamethod<rig_energy_text>("__tostring"),
+    {lua::a_text<RigEnergyHandle, rig_energy_text>,
      {"tostring(energy) -> string", "The balance as a small table.",
       DINAL_RIG_ENERGY "print((tostring(energy):match(\"clutch.*0%s+([%d.]+)\\n\")))  --> 3.375"}},
 };
@@ -205,7 +190,7 @@ const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
                                              .limits = {},
                                              .works = true});
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
-    if (call.failed()) call.raise_error();
+    call.check();
     double off = 0, size = 0;
     for (std::size_t k = 0; k < again.carry->y.size(); ++k) {
         off = std::max(off, std::fabs(again.carry->y[k] - run->run.carry->y[k]));
@@ -223,10 +208,10 @@ const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
     return *run->works;
 }
 
-int energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
+lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
     works_of(L, run);
     lua::push<RigEnergyHandle>(L, std::make_shared<RigEnergy>(RigEnergy{run}));
-    return 1;
+    return {};
 }
 
 std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run) {

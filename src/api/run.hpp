@@ -1,13 +1,16 @@
 // What a run object in Lua holds: the trajectory, and where it came from.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
+#include "lua/options.hpp"
+#include "lua/values.hpp"
+#include "model/units.hpp"
 #include "motion/trajectory.hpp"
 #include "source/origin.hpp"
 
@@ -43,7 +46,7 @@ std::string_view status_word(model::Outcome outcome);
 /// What run:explain() says; raises what a user's spring does.
 std::string story_of_run(lua_State* L, const Run& run);
 
-/// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
+/// run:save(file [, { columns = { "t", "theta" } }]).
 inline constexpr text::Option save_options[] = {
     {.name = "columns",
      .meaning = "only these, for a .csv: names or numbers of columns",
@@ -52,13 +55,24 @@ inline constexpr text::Option save_options[] = {
 inline constexpr text::Call save_call{"run:save", "run:save(\"run.csv\", { columns = { \"t\", \"theta\" } })",
                                       save_options, true};
 int save_run(lua_State* L);
-/// run:continue{ t_end }, in continue_run.cpp.
+/// run:continue{ t_end }.
 int continue_run(lua_State* L);
 /// run:energy(), in bind_energy.cpp.
-int energy_of_run(lua_State* L);
-/// run:at(t), run.states and run.acceleration, in run_states.cpp.
+lua::Pushed energy_of_run(lua_State* L, const RunHandle& run);
+/// run:at(t), run.states and run.acceleration.
 int run_at(lua_State* L);
-int run_acceleration(lua_State* L);
-int run_states(lua_State* L);
+lua::Pushed run_acceleration(lua_State* L, const RunHandle& run);
+lua::Pushed run_states(lua_State* L, const RunHandle& run);
+
+// The option `units` of a system, a run and its pictures, and the units of what comes of them.
+
+/// What it says; none when it is absent.
+std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options);
+
+/// Those of its system, or those that stand in the file that it was read from.
+const model::Units& units_of(const Run& run);
+
+/// Those that have a name, by "theta", "t" and "M".
+std::map<std::string, std::string> units_by_name(const model::Units& units);
 
 }  // namespace dinal::api

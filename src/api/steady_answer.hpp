@@ -1,6 +1,8 @@
 // What sys:steady{ ... } asks, and the answer as Lua sees it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 
 namespace dinal::api {
 
@@ -70,11 +73,11 @@ inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitatio
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
 
-/// rig:steady{ ... }, in rig_steady.cpp.
+/// rig:steady{ ... }.
 inline constexpr auto rig_steady_options = text::joined(bodies_drive_rows, period_options);
 inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { load = 0.2 } }", rig_steady_options};
 
-/// rig:response{ ... }, in rig_response.cpp.
+/// rig:response{ ... }.
 inline constexpr text::Option rig_response_options[] = {
     {.name = "over",
      .otherwise = text::needed,
@@ -121,6 +124,10 @@ inline bool is_found(const Steady& s) {
     return status == SteadyStatus::steady || status == SteadyStatus::adheres || status == SteadyStatus::rest;
 }
 
+inline double greatest_angle(const analysis::SteadyMotion& motion) {
+    return std::max(std::fabs(motion.low), std::fabs(motion.high));
+}
+
 /// Calls the work, which may evaluate functions of a run with these extras, and raises their errors.
 template <class Work>
 void asking(lua_State* L, const model::Extras& extras, Work work) {
@@ -128,7 +135,7 @@ void asking(lua_State* L, const model::Extras& extras, Work work) {
     if (!extras.states.empty()) call.name_states(names_of(extras));
     work([](double) { return !lua::interrupt_requested(); });
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
-    if (call.failed()) call.raise_error();
+    call.check();
 }
 template <class Work>
 void asking(lua_State* L, Work work) {
@@ -147,21 +154,15 @@ std::optional<double> period_or_fail(const lua::Options& options, const std::opt
 /// Raises when M was found to be no function of its arguments.
 void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);
 
-/// What the steady motion at index 1 keeps under this name, so that a field has the same value each time: pushes it,
-/// and false when there is none yet.
-bool push_kept(lua_State* L, const char* name);
-/// Keeps the value on the top.
-void keep(lua_State* L, const char* name);
-
 /// sys:steady{ ... } and run:steady{ ... }
 int steady_of_system(lua_State* L);
 int steady_of_run(lua_State* L);
 /// s.run
-int run_of_steady(lua_State* L);
+lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s);
 
-// Of several bodies, in rig_steady.cpp.
+// Of several bodies.
 int steady_of_rig(lua_State* L);
-int run_of_rig(lua_State* L, const Steady& s);
+void run_of_rig(lua_State* L, const Steady& s);
 const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig);
 std::string story_of_rig(lua_State* L, const Steady& s);
 /// s.load

@@ -3,8 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "api/data.hpp"
 #include "lua/bind.hpp"
+#include "lua/options.hpp"
 #include "text/option.hpp"
 
 namespace dinal::api {
@@ -111,5 +114,22 @@ inline constexpr lua::Doc sweep_doc{
     "-->   5  0.6  0.4   1.02745      2\n"
     "-->   6  0.6  1.5       0.4      0",
     {&sweep_call}};
+
+// The table that sweep and its like take: parameters with values, among options.
+
+/// The parameters that the option `over` of the table at 1 names, with their values.
+std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call);
+
+/// Those of the table at this index: { r = values }, in the order of their names, or { { "r", values } }, as listed.
+std::vector<DataColumn> parameters_in(lua_State* L, int table, const text::Call& call);
+
+/// The one or two names under `over` of a response, and their lists of numbers; raises errors.
+std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options, const text::Call& call);
+
+/// There must be one, their names must be different, and their points not too many.
+void check_parameters(lua_State* L, const text::Call& call, const std::vector<DataColumn>& parameters);
+
+/// Pushes the option of this name, a function, and returns its index.
+int push_function(lua_State* L, const lua::Options& options, const char* name);
 
 }  // namespace dinal::api

@@ -1,11 +1,13 @@
 #include "api/sweep_run.hpp"
 
 #include <fmt/format.h>
-
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +24,6 @@
 #include <vector>
 
 #include "api/classes.hpp"
-#include "api/sweep_results.hpp"
 #include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "lua/foreign.hpp"
@@ -37,6 +38,7 @@
 #include "text/words.hpp"
 
 namespace dinal::api {
+
 namespace {
 
 // ---- The threads of a sweep, each with a Lua state of its own into which the user's function was carried.
@@ -58,32 +60,6 @@ struct SweepWork {
     std::atomic<std::size_t> finished = 0;
     std::atomic<bool> ends = false;
     std::size_t workers = 1;
-};
-
-class SweepWorkers {
-public:
-    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible. A function of
-    /// another language stays where it is, and the thread of the call does all points.
-    SweepWorkers(lua_State* L, int index, SweepWork& work);
-
-    /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
-    void run(lua_State* L);
-
-private:
-    void run_here(lua_State* L);
-    void start(std::vector<std::thread>& threads);
-    void run_one(lua_State* worker, lua::WorkerWatch& watch);
-    /// Gives up what has taken too long.
-    void watch(std::vector<std::thread>& threads);
-
-    SweepWork& work_;
-    std::vector<lua::OwnedState> states_;
-    std::deque<lua::WorkerWatch> watches_;  // of the threads
-    std::mutex ending_;
-    std::condition_variable ended_;
-    std::size_t running_ = 0;
-    std::string trouble_;
-    int function_ = 0;  // on the stack, of another language; 0: it is in the states
 };
 
 double now_in_seconds() {
@@ -263,116 +239,136 @@ int work_on_points(lua_State* L) {
     return 0;
 }
 
-SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
-    if (const lua::Foreign* other = lua::foreign(L, index)) {
-        if (work.max_time > 0) {
-            lua::raise(L, {.sentence = fmt::format("{}: max_time needs a Lua function, and this one is of {}",
-                                                   work.call, other->language),
-                           .call = work.call,
-                           .option = "max_time"});
-        }
-        other->runs_alone(L, work.call);
-        function_ = lua_absindex(L, index);
-        work.workers = 1;
-        return;
-    }
-    for (std::size_t i = 0; i < work.workers; ++i) {
-        states_.push_back(lua::new_state_like(L));
-        lua_State* worker = states_.back().get();
-        Carrying carrying{L, lua_absindex(L, index), work};
-        lua_pushcfunction(worker, lua::guarded<carry_function>);
-        lua_pushlightuserdata(worker, &carrying);
-        const bool carried = lua_pcall(worker, 1, 1, 0) == LUA_OK;
-        if (carrying.error) lua::raise(L, text::in_call(work.call, *carrying.error));
-        if (!carried) lua::raise(L, std::string(work.call) + ": not enough memory for another worker");
-    }
-}
-
-void SweepWorkers::run_here(lua_State* L) {
-    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
-    lua::WorkerWatch watch;
-    work_.after_point = [&] { progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed))); };
-    lua_pushcfunction(L, lua::guarded<work_on_points>);
-    lua_pushvalue(L, function_);
-    if (work_.adapt) work_.adapt(L);
-    lua_pushlightuserdata(L, &work_);
-    lua_pushlightuserdata(L, &watch);
-    lua_call(L, 3, 0);
-}
-
-void SweepWorkers::run_one(lua_State* worker, lua::WorkerWatch& watch) {
-    std::string trouble;
-    {
-        const lua::WorkerScope scope(worker, &watch);
-        lua_pushcfunction(worker, lua::guarded<work_on_points>);
-        lua_insert(worker, -2);
-        lua_pushlightuserdata(worker, &work_);
-        lua_pushlightuserdata(worker, &watch);
-        if (lua_pcall(worker, 3, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
-            trouble = lua_isstring(worker, -1) != 0 ? lua::text_at(worker, -1) : "a worker has failed";
-        }
-    }
-    const std::lock_guard lock(ending_);
-    if (!trouble.empty()) trouble_ = trouble;
-    --running_;
-    ended_.notify_one();
-}
-
-/// As many as the system allows; one does all, too.
-void SweepWorkers::start(std::vector<std::thread>& threads) {
-    const lua::SignalsForOthers blocked;
-    for (const lua::OwnedState& state : states_) {
-        {
-            const std::lock_guard lock(ending_);
-            ++running_;
-        }
-        lua::WorkerWatch& own = watches_.emplace_back();
-        own.since = std::numeric_limits<double>::infinity();
-        own.outer = lua::watch_here();
-        try {
-            threads.emplace_back([this, worker = state.get(), &own] { run_one(worker, own); });
-        } catch (const std::system_error&) {
-            const std::lock_guard lock(ending_);
-            --running_;
+class SweepWorkers {
+public:
+    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible. A function of
+    /// another language stays where it is, and the thread of the call does all points.
+    SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
+        if (const lua::Foreign* other = lua::foreign(L, index)) {
+            if (work.max_time > 0) {
+                lua::fail(
+                    L, work.call,
+                    {.sentence = fmt::format("max_time needs a Lua function, and this one is of {}", other->language),
+                     .option = "max_time"});
+            }
+            other->runs_alone(L, work.call);
+            function_ = lua_absindex(L, index);
+            work.workers = 1;
             return;
         }
-    }
-}
-
-void SweepWorkers::watch(std::vector<std::thread>& threads) {
-    const double now = now_in_seconds();
-    for (std::size_t i = 0; i < threads.size(); ++i) {
-        lua::WorkerWatch& own = watches_[i];
-        const std::uint64_t task = own.task;
-        if (now - own.since <= work_.max_time) continue;
-        own.given_up = task;  // no other one, should it have ended meanwhile
-        lua::nudge(threads[i].native_handle());
-    }
-}
-
-void SweepWorkers::run(lua_State* L) {
-    using std::chrono::milliseconds;
-    constexpr milliseconds look_again{20};
-    if (function_ != 0) return run_here(L);
-    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
-    std::vector<std::thread> threads;
-    threads.reserve(states_.size());
-    start(threads);
-    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the operating system refuses to start a thread");
-    std::unique_lock lock(ending_);
-    while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
-        progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
-        if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
-        if (work_.max_time > 0) watch(threads);
-        if (lua::interrupt_requested()) {
-            for (std::thread& thread : threads) lua::nudge(thread.native_handle());
+        for (std::size_t i = 0; i < work.workers; ++i) {
+            states_.push_back(lua::new_state_like(L));
+            lua_State* worker = states_.back().get();
+            Carrying carrying{L, lua_absindex(L, index), work};
+            lua_pushcfunction(worker, lua::guarded<carry_function>);
+            lua_pushlightuserdata(worker, &carrying);
+            const bool carried = lua_pcall(worker, 1, 1, 0) == LUA_OK;
+            if (carrying.error) lua::fail(L, work.call, *carrying.error);
+            if (!carried) lua::raise(L, std::string(work.call) + ": not enough memory for another worker");
         }
     }
-    lock.unlock();
-    for (std::thread& thread : threads) thread.join();
-    if (work_.look && !work_.ends) work_.look();
-    if (!trouble_.empty()) lua::raise(L, std::string(work_.call) + ": " + trouble_);
-}
+
+    /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
+    void run(lua_State* L) {
+        using std::chrono::milliseconds;
+        constexpr milliseconds look_again{20};
+        if (function_ != 0) return run_here(L);
+        terminal::Progress progress =
+            terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
+        std::vector<std::thread> threads;
+        threads.reserve(states_.size());
+        start(threads);
+        if (threads.empty())
+            lua::raise(L, std::string(work_.call) + ": the operating system refuses to start a thread");
+        std::unique_lock lock(ending_);
+        while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
+            progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
+            if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
+            if (work_.max_time > 0) watch(threads);
+            if (lua::interrupt_requested()) {
+                for (std::thread& thread : threads) lua::nudge(thread.native_handle());
+            }
+        }
+        lock.unlock();
+        for (std::thread& thread : threads) thread.join();
+        if (work_.look && !work_.ends) work_.look();
+        if (!trouble_.empty()) lua::raise(L, std::string(work_.call) + ": " + trouble_);
+    }
+
+private:
+    void run_here(lua_State* L) {
+        terminal::Progress progress =
+            terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
+        lua::WorkerWatch watch;
+        work_.after_point = [&] {
+            progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
+        };
+        lua_pushcfunction(L, lua::guarded<work_on_points>);
+        lua_pushvalue(L, function_);
+        if (work_.adapt) work_.adapt(L);
+        lua_pushlightuserdata(L, &work_);
+        lua_pushlightuserdata(L, &watch);
+        lua_call(L, 3, 0);
+    }
+
+    void start(std::vector<std::thread>& threads) {
+        const lua::SignalsForOthers blocked;
+        for (const lua::OwnedState& state : states_) {
+            {
+                const std::lock_guard lock(ending_);
+                ++running_;
+            }
+            lua::WorkerWatch& own = watches_.emplace_back();
+            own.since = std::numeric_limits<double>::infinity();
+            own.outer = lua::watch_here();
+            try {
+                threads.emplace_back([this, worker = state.get(), &own] { run_one(worker, own); });
+            } catch (const std::system_error&) {
+                const std::lock_guard lock(ending_);
+                --running_;
+                return;
+            }
+        }
+    }
+
+    void run_one(lua_State* worker, lua::WorkerWatch& watch) {
+        std::string trouble;
+        {
+            const lua::WorkerScope scope(worker, &watch);
+            lua_pushcfunction(worker, lua::guarded<work_on_points>);
+            lua_insert(worker, -2);
+            lua_pushlightuserdata(worker, &work_);
+            lua_pushlightuserdata(worker, &watch);
+            if (lua_pcall(worker, 3, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
+                trouble = lua_isstring(worker, -1) != 0 ? lua::text_at(worker, -1) : "a worker has failed";
+            }
+        }
+        const std::lock_guard lock(ending_);
+        if (!trouble.empty()) trouble_ = trouble;
+        --running_;
+        ended_.notify_one();
+    }
+    /// Gives up what has taken too long.
+    void watch(std::vector<std::thread>& threads) {
+        const double now = now_in_seconds();
+        for (std::size_t i = 0; i < threads.size(); ++i) {
+            lua::WorkerWatch& own = watches_[i];
+            const std::uint64_t task = own.task;
+            if (now - own.since <= work_.max_time) continue;
+            own.given_up = task;  // no other one, should it have ended meanwhile
+            lua::nudge(threads[i].native_handle());
+        }
+    }
+
+    SweepWork& work_;
+    std::vector<lua::OwnedState> states_;
+    std::deque<lua::WorkerWatch> watches_;  // of the threads
+    std::mutex ending_;
+    std::condition_variable ended_;
+    std::size_t running_ = 0;
+    std::string trouble_;
+    int function_ = 0;  // on the stack, of another language; 0: it is in the states
+};
 
 // ---- what Ctrl-C has broken off, for the same call to go on
 
@@ -496,20 +492,19 @@ private:
     void open_files() {
         lua::refuse_in_worker(L_, "a sweep with a file");
         if (const lua::Foreign* other = lua::foreign(L_, task_.function)) {
-            lua::raise(L_,
-                       {.sentence = fmt::format(
-                            "{}: file needs a Lua function, because a change in one of {} cannot be detected; save the "
-                            "result instead",
-                            task_.call, other->language),
-                        .call = task_.call,
-                        .option = "file"});
+            lua::fail(L_, task_.call,
+                      {.sentence = fmt::format(
+                           "file needs a Lua function, because a change in one of {} cannot be detected; save the "
+                           "result instead",
+                           other->language),
+                       .option = "file"});
         }
         const auto share = lua::value_or_raise(L_, task_.call, files::share_of_launcher());
         share_ = share.value_or(files::Share{});
         launched_ = share.has_value();
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
         files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.taken);
-        if (const auto wrong = files_->open()) lua::raise(L_, text::in_call(task_.call, *wrong));
+        if (const auto wrong = files_->open()) lua::fail(L_, task_.call, *wrong);
         if (!files_->is_finished()) points_ = files_->points(share_);
     }
 
@@ -548,7 +543,7 @@ private:
         set_partial_sweep(L_, task_, *results_);
         trouble_->sentence += fmt::format(
             "; finished points are kept in '{}' and dinal.partial, and the same call continues", files_->folder());
-        lua::raise(L_, text::in_call(task_.call, *trouble_));
+        lua::fail(L_, task_.call, *trouble_);
     }
 
     std::shared_ptr<SweepResults> finished() {
@@ -565,7 +560,7 @@ private:
             raise_if_all_failed(L_, task_, *results_);
         }
         if (const auto wrong = last ? files_->finish(task_.told(task_.grid, *results_)) : std::nullopt) {
-            lua::raise(L_, text::in_call(task_.call, *wrong));
+            lua::fail(L_, task_.call, *wrong);
         }
         return results_;
     }
@@ -612,11 +607,9 @@ void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked)
     if (lua::in_worker()) return;
     const auto share = options.value_or_fail(files::share_of_launcher());
     if (!share || share->size == 1) return;
-    options.fail(
-        {.sentence = fmt::format("this is process {} of {}, which share their work in a file: give one, file = "
-                                 "\"map.csv\"",
-                                 share->rank, share->size),
-         .option = "file"});
+    options.fail("file", fmt::format("this is process {} of {}, which share their work in a file: give one, file = "
+                                     "\"map.csv\"",
+                                     share->rank, share->size));
 }
 
 std::shared_ptr<SweepResults> swept(lua_State* L, const SweepTask& task) {
@@ -930,6 +923,151 @@ void SweepFiles::remove_folder(const std::string& folder) {
     }
     fs::remove(folder + "/mark", error);
     fs::remove(folder, error);
+}
+
+SweepResults::SweepResults(std::size_t points, std::size_t chunk_size)
+    : chunk_size_(chunk_size), done_(points, 0), done_in_chunk_((points + chunk_size - 1) / chunk_size) {}
+
+SweepResults::Piece SweepResults::piece(std::size_t first, std::size_t last) {
+    const std::lock_guard lock(changing_);
+    Piece piece{.columns = {}, .failures = {failures_.lower_bound(first), failures_.lower_bound(last)}};
+    for (const auto& [name, numbers] : columns_) piece.columns.emplace_back(name, numbers.data());
+    return piece;
+}
+
+double* SweepResults::column(std::string_view name) {
+    const std::lock_guard lock(changing_);
+    auto found = columns_.find(name);
+    if (found == columns_.end()) {
+        if (columns_.size() >= most_columns) return nullptr;
+        std::vector<double> numbers(done_.size(), std::numeric_limits<double>::quiet_NaN());
+        found = columns_.emplace(std::string(name), std::move(numbers)).first;
+    }
+    return found->second.data();
+}
+
+namespace {
+constexpr std::uint64_t nan_of_words = 0xFFF8'0000'0000'0000U;  ///< and the place of the word
+}
+
+double SweepResults::word(std::string_view text) {
+    const std::lock_guard lock(changing_);
+    auto found = places_.find(text);
+    if (found == places_.end()) {
+        words_.emplace_back(text);
+        found = places_.emplace(words_.back(), words_.size()).first;
+    }
+    return std::bit_cast<double>(nan_of_words | found->second);
+}
+
+std::optional<std::vector<std::string>> SweepResults::words(const std::vector<double>& numbers) const {
+    const std::lock_guard lock(changing_);
+    const auto place = [this](double x) {
+        const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), of_word = bits & ~nan_of_words;
+        return (bits & nan_of_words) == nan_of_words && of_word <= words_.size() ? of_word : 0;
+    };
+    if (std::none_of(numbers.begin(), numbers.end(), place)) return std::nullopt;
+    std::vector<std::string> words;
+    words.reserve(numbers.size());
+    for (const double x : numbers) {
+        const std::uint64_t at = place(x);
+        words.push_back(at > 0 ? words_[at - 1] : std::isnan(x) ? "" : fmt::format("{}", x));
+    }
+    return words;
+}
+
+void SweepResults::fail(std::size_t point, std::string message) {
+    std::replace_if(
+        message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    {
+        const std::lock_guard lock(changing_);
+        failures_[point] = std::move(message);
+    }
+    finish(point);
+}
+
+std::size_t SweepResults::done() const {
+    return static_cast<std::size_t>(std::count(done_.begin(), done_.end(), 1));
+}
+
+const double* SweepResults::find(std::string_view name) const {
+    const auto found = columns_.find(name);
+    return found == columns_.end() ? nullptr : found->second.data();
+}
+
+std::vector<std::size_t> SweepResults::done_points() const {
+    std::vector<std::size_t> points;
+    points.reserve(done_.size());
+    for (std::size_t point = 0; point < done_.size(); ++point) {
+        if (is_done(point)) points.push_back(point);
+    }
+    return points;
+}
+
+Data SweepResults::data(const SweepGrid& grid, const std::vector<std::size_t>& points) const {
+    Data data{.columns = grid.columns(points)};
+    for (const auto& [name, numbers] : columns_) {
+        std::vector<double> values(points.size());
+        std::transform(points.begin(), points.end(), values.begin(),
+                       [&all = numbers](std::size_t point) { return all[point]; });
+        auto words = this->words(values);
+        data.columns.push_back(words ? column_of(name, std::move(*words)) : column_of(name, std::move(values)));
+    }
+    std::vector<std::string> errors(points.size());
+    for (std::size_t row = 0; row < points.size() && !failures_.empty(); ++row) {
+        if (const auto failed = failures_.find(points[row]); failed != failures_.end()) errors[row] = failed->second;
+    }
+    data.columns.push_back(column_of("error", std::move(errors)));
+    return data;
+}
+
+SweepGrid::SweepGrid(std::vector<DataColumn> parameters)
+    : parameters_(std::move(parameters)), strides_(parameters_.size()) {
+    for (std::size_t i = parameters_.size(); i-- > 0;) {
+        strides_[i] = size_;
+        size_ *= parameters_[i].size();
+    }
+}
+
+std::string SweepGrid::text(std::size_t point) const {
+    std::string text;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        text += (i == 0 ? "" : ", ") + parameters_[i].name + " = " + parameters_[i].text(place(i, point));
+    }
+    return text;
+}
+
+void SweepGrid::set_fields(lua_State* L, std::size_t point) const {
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        const DataColumn& parameter = parameters_[i];
+        lua::push_text(L, parameter.name);
+        if (const lua::Vector* numbers = parameter.numbers()) {
+            lua_pushnumber(L, numbers->begin()[place(i, point)]);
+        } else {
+            lua::push_text(L, (*std::get<Words>(parameter.values))[place(i, point)]);
+        }
+        lua_rawset(L, -3);
+    }
+}
+
+std::vector<DataColumn> SweepGrid::columns(const std::vector<std::size_t>& points) const {
+    std::vector<DataColumn> columns;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        const DataColumn& parameter = parameters_[i];
+        if (const lua::Vector* numbers = parameter.numbers()) {
+            std::vector<double> values(points.size());
+            std::transform(points.begin(), points.end(), values.begin(),
+                           [&](std::size_t point) { return numbers->begin()[place(i, point)]; });
+            columns.push_back(column_of(parameter.name, std::move(values)));
+        } else {
+            const std::vector<std::string>& words = *std::get<Words>(parameter.values);
+            std::vector<std::string> values(points.size());
+            std::transform(points.begin(), points.end(), values.begin(),
+                           [&](std::size_t point) { return words[place(i, point)]; });
+            columns.push_back(column_of(parameter.name, std::move(values)));
+        }
+    }
+    return columns;
 }
 
 }  // namespace dinal::api

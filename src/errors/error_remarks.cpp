@@ -1,20 +1,215 @@
 #include "errors/error_remarks.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "errors/bare_value.hpp"
-#include "errors/excerpt.hpp"
 #include "errors/habits.hpp"
 #include "errors/misspelling.hpp"
 #include "errors/source_text.hpp"
+#include "lua/lua_headers.hpp"
+#include "lua/lua_message.hpp"
 #include "lua/tokens.hpp"
 #include "source/function_source.hpp"
+#include "terminal/display.hpp"
+#include "text/characters.hpp"
+#include "text/expected.hpp"
+#include "text/words.hpp"
 
 namespace dinal::errors {
+
 namespace {
+
+// A value that stands alone on a line of a script, as it may at the prompt.
+
+bool compiles(lua_State* L, const std::string& text) {
+    const bool good = luaL_loadbufferx(L, text.data(), text.size(), "=part", "t") == LUA_OK;
+    lua_pop(L, 1);
+    return good;
+}
+
+/// The line without a remark and semicolons behind it.
+std::string_view code_of(std::string_view line) {
+    std::size_t end = 0;
+    for (const lua::Token& token : lua::tokens(line)) {
+        if (token.kind != lua::TokenKind::comment && !token.is(";")) end = token.end();
+    }
+    return text::trimmed(line.substr(0, end), " \t");
+}
+
+bool is_value(lua_State* L, std::string_view code) {
+    return !code.empty() && compiles(L, "return " + std::string(code)) && !compiles(L, std::string(code));
+}
+
+/// "; a value alone is not a statement: print(6*7) shows it", for the line of the error or the one before it; or "".
+std::string bare_value(lua_State* L, const SourceText& source, int line, const lua::SyntaxMessage& message) {
+    luaL_checkstack(L, LUA_MINSTACK, "for a value alone on a line");
+    if (message.complaint != "syntax error" && message.complaint != "unexpected symbol") return "";
+    // A name is found out to be no statement only by what follows it, on a later line.
+    for (int number = line; number >= source.first_line && number + 2 > line; --number) {
+        const std::string_view code = code_of(source.line(number));
+        if (!is_value(L, code)) continue;
+        constexpr std::size_t longest = 40;
+        const std::string where = number == line ? "a value alone" : fmt::format("line {}, a value alone,", number);
+        return fmt::format("; {} is not a statement: print({}) shows it", where, code.size() > longest ? "..." : code);
+    }
+    return "";
+}
+
+// The line of source that an error is about, with a mark below it.
+
+/// A name stands there as it is or, when it is a key or a choice, in quotes.
+void add_name(std::vector<std::string>& names, std::string_view name) {
+    if (!name.empty()) {
+        names.insert(names.end(), {std::string(name), fmt::format("\"{}\"", name), fmt::format("'{}'", name)});
+    }
+}
+
+struct Mark {
+    std::size_t at = 0;
+    std::size_t size = 1;
+};
+
+/// A value of which there may be more than one in a statement.
+bool is_value(const lua::Token& token) {
+    return token.kind == lua::TokenKind::number || token.is("nil") || token.is("true") || token.is("false");
+}
+
+/// Where in the statement the first of the suspects stands. None when nothing is known but the line.
+std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    for (const std::string& name : names) {
+        const auto is_it = [&name](const lua::Token& token) {
+            return token.text == name && token.kind != lua::TokenKind::comment;
+        };
+        const auto found = std::find_if(all.begin(), all.end(), is_it);
+        if (found != all.end() && (!is_value(*found) || std::none_of(found + 1, all.end(), is_it))) {
+            return Mark{found->at, found->text.size()};
+        }
+    }
+    return std::nullopt;
+}
+
+/// The line, cut so that the mark is on the screen, and the mark below it.
+std::string excerpt_of(std::string_view line, int number, Mark mark, const terminal::Display& screen) {
+    std::string text = terminal::spelled(text::displayable(line), screen);
+    mark.at = terminal::spelled(text::displayable(line.substr(0, mark.at)), screen).size();
+    const std::string head = fmt::format("{:>4} | ", number);
+    const std::size_t room = std::max<std::size_t>(screen.width, head.size() + 12) - head.size() - 1;
+    std::size_t indent = std::min(text.find_first_not_of(' '), mark.at);
+    text.erase(0, indent);
+    mark.at -= indent;
+    if (text::columns(text) > room && mark.at + mark.size > room) {
+        const std::size_t cut = std::min(mark.at, mark.at + mark.size + 4 - std::min(room, mark.at + mark.size + 4));
+        text = "..." + text.substr(std::min(cut + 3, text.size()));
+        mark.at -= std::min(cut, mark.at);
+    }
+    text = text::cut_to_columns(text, room);
+    const std::size_t column = text::columns(text.substr(0, std::min(mark.at, text.size())));
+    const std::size_t size = std::clamp<std::size_t>(mark.size, 1, room > column ? room - column : 1);
+    const std::string carets(size, '^');
+    return fmt::format("\n{}{}\n     | {}{}{}{}", head, text, std::string(column, ' '), screen.colour ? "\x1b[31m" : "",
+                       carets, screen.colour ? "\x1b[0m" : "");
+}
+
+/// The excerpt with the mark at a place in the text that begins with the line of that number.
+std::string marked_excerpt(std::string_view text, int number, Mark mark) {
+    for (std::size_t end = text.find('\n'); end < mark.at && end != std::string_view::npos; end = text.find('\n')) {
+        mark.at -= end + 1;
+        text.remove_prefix(end + 1);
+        ++number;
+    }
+    return excerpt_of(text.substr(0, text.find('\n')), number, mark, terminal::display_of(STDERR_FILENO));
+}
+
+bool compiles_so_far(lua_State* L, std::string_view text) {
+    const int status = luaL_loadbufferx(L, text.data(), text.size(), "=part", "t");
+    const bool good = status == LUA_OK || lua::is_about_end(lua_tostring(L, -1));
+    lua_pop(L, 1);
+    return good;
+}
+
+/// The message has the beginning of a malformed number, and of a letter that is not plain its first byte: <\\206>.
+bool may_be(const lua::Token& token, std::string_view near) {
+    return token.text == near ||
+           (token.kind == lua::TokenKind::number && !near.empty() && token.text.starts_with(near)) ||
+           (near.starts_with("<\\") && static_cast<unsigned char>(token.text.front()) >= 0x80);
+}
+
+/// The token that the parser does not accept: the first one of that line and text with which the chunk is wrong
+/// however it goes on.
+std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, int line, std::string_view near) {
+    std::string text = source.text;
+    if (text.starts_with("#!")) {
+        text.replace(0, 2, "--");  // Lua skips such a line in files only
+    }
+    for (const lua::Token& token : lua::tokens(text)) {
+        if (token.line == line && may_be(token, near) &&
+            !compiles_so_far(L, std::string_view(text).substr(0, token.end()))) {
+            return Mark{token.at, token.text.size()};
+        }
+    }
+    return std::nullopt;
+}
+
+/// The words of the source that an error may be about, the likeliest first.
+std::vector<std::string> suspects(const text::Error& error) {
+    std::vector<std::string> names;
+    add_name(names, error.option.empty() ? error.culprit : error.option);
+    const std::string call = error.call.substr(0, error.call.find_first_of("({"));  // the tokens are views into it
+    for (const lua::Token& token : lua::tokens(call)) {
+        if (token.kind == lua::TokenKind::name) {
+            names.emplace_back(token.text);
+        }
+    }
+    return names;
+}
+
+std::vector<std::string> suspects(const lua::LuaMessage& message) {
+    std::vector<std::string> names;
+    for (const std::string_view quoted : message.quoted) {
+        add_name(names, quoted);
+    }
+    if (message.kind == "for iterator") {
+        names.emplace_back("in");
+    }
+    return names;
+}
+
+/// "\n  10 | x = sytem{}\n     |     ^^^^^", with the mark below the first of the suspects that stands there. Empty
+/// when the line is not there, or was typed just now and no part of it is known to be the culprit.
+std::string excerpt(const SourceText& source, int line, const std::vector<std::string>& suspects) {
+    const std::string_view statement = source.statement(line);
+    auto mark = marked(statement, suspects);
+    if (statement.empty() || (!mark && source.text.find('\n') == std::string::npos)) {
+        return "";  // the one line was typed just now
+    }
+    if (!mark) {
+        mark = marked(statement, {"error", "assert"});
+    }
+    const std::size_t begin = std::min(statement.find_first_not_of(" \t"), statement.size());
+    return marked_excerpt(statement, line, mark.value_or(Mark{begin, 1}));
+}
+
+/// The same for a chunk that does not compile, with the message in that line.
+std::string syntax_excerpt(lua_State* L, const SourceText& source, int line, const lua::SyntaxMessage& message) {
+    if (const auto mark = stumbled_at(L, source, line, message.near)) {
+        return marked_excerpt(source.text, source.first_line, *mark);
+    }
+    if (!message.opened.empty()) {
+        return excerpt(source, message.opened_line, {std::string(message.opened)});
+    }
+    const std::string_view text = source.line(line);
+    const std::size_t last = text.find_last_not_of(" \t\r");
+    return last == std::string_view::npos ? "" : marked_excerpt(text, line, {last + 1, 1});
+}
+
+// The remarks.
 
 std::string_view statement_of(const std::optional<SourceText>& source, int line) {
     return source ? source->statement(line) : std::string_view();

@@ -1,16 +1,23 @@
 #include "errors/habits.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <utility>
 #include <vector>
 
 #include "errors/misspelling.hpp"
+#include "lua/bind.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
+#include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::errors {
+
 namespace {
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 51> foreign_names = {{
@@ -67,13 +74,24 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> foreign_
     {"save", "; a run is saved by run:save(\"run.csv\")"},
 }};
 
-/// What tokens say in other languages. A word of a pattern is a token; n stands for any name, 1 for any name or number,
-/// s for a string, ^ for the beginning.
+/// What tokens say in other languages. A word of a pattern is a token; n stands for any name, # for any number, 1 for
+/// either, w for a word of any kind, s for a string, ^ for the beginning. In the cure {n} and its like are what stood
+/// there.
 struct ForeignTokens {
     std::string_view pattern;
-    bool compiles;  // so Lua complains of it only when it runs
+    Seen seen;
     std::string_view cure;
 };
+constexpr std::string_view loop_cure = "; a loop is: for i = 1, 10 do ... end";
+constexpr std::string_view function_cure = "; a function is written: function f(x) return 2*x end";
+constexpr std::string_view no_word_cure = "; a variable needs no word before it: x = 1";
+constexpr std::string_view module_cure = "; math and all of dinal are there already, other modules come with require";
+constexpr std::string_view print_cure = "; a value is shown by print(x)";
+constexpr std::string_view question_cure = "; write the name of a question in quotes: check(\"{#}\", 3.2)";
+constexpr std::string_view elseif_cure = "; did you mean 'elseif'?";
+constexpr std::string_view equals_cure = "; comparing is ==";
+constexpr std::string_view named_cure = "; a named value is written with =, I = 1";
+constexpr std::string_view operator_cure = "; is an operator missing there, such as *?";
 constexpr std::string_view slice_cure =
     "; a part of a vector is v:slice(first, last), of a list table.unpack(list, first, last)";
 constexpr std::string_view lambda_cure = "; a function is written: function(x) return 2*x end";
@@ -83,56 +101,103 @@ constexpr std::string_view last_cure = "; the last element of v is v[#v]";
 constexpr std::string_view elements_cure = "; * / and ^ act on each element of a vector";
 constexpr std::string_view conditions_cure =
     "; in Lua and, or and not are words; several conditions are v[v:find(function(x) return x > 0 and x < 1 end)]";
-constexpr std::array<ForeignTokens, 24> foreign = {{
-    {"1 : 1 : 1", false, "; evenly spaced values are vector.range(0, 1, 0.1) or vector.linspace(0, 1, 11)"},
-    {"^ % %", false, "; dinal has no magic commands; :time code prints the time that code takes"},
-    {"^ % matplotlib", false, "; dinal has no magic commands: run:plot() shows its picture in the page"},
-    {"^ ! n", false, "; dinal has no shell commands"},
-    {"load n .", false, "; write the name of a file in quotes: load \"file.csv\""},
-    {"[ end ]", false, last_cure},
-    {"( end )", false, last_cure},
-    {". *", false, elements_cure},
-    {". /", false, elements_cure},
-    {". ^", false, elements_cure},
-    {"[ 1 :", false, slice_cure},
-    {"[ : ", false, slice_cure},
-    {"[ - 1 :", false, slice_cure},
-    {"lambda n", false, lambda_cure},
-    {"lambda :", false, lambda_cure},
-    {"n =>", false, lambda_cure},
-    {"< >", false, "; in Lua 'not equal' is ~="},
-    {"1 for n in", false,
+constexpr ForeignTokens foreign[] = {
+    {"1 : 1 : 1", Seen::first, "; evenly spaced values are vector.range(0, 1, 0.1) or vector.linspace(0, 1, 11)"},
+    {"^ % %", Seen::first, "; dinal has no magic commands; :time code prints the time that code takes"},
+    {"^ % matplotlib", Seen::first, "; dinal has no magic commands: run:plot() shows its picture in the page"},
+    {"load n .", Seen::first, "; write the name of a file in quotes: load \"file.csv\""},
+    {"[ end ]", Seen::first, last_cure},
+    {"( end )", Seen::first, last_cure},
+    {". *", Seen::first, elements_cure},
+    {". /", Seen::first, elements_cure},
+    {". ^", Seen::first, elements_cure},
+    {"[ 1 :", Seen::first, slice_cure},
+    {"[ : ", Seen::first, slice_cure},
+    {"[ - 1 :", Seen::first, slice_cure},
+    {"lambda n", Seen::first, lambda_cure},
+    {"lambda :", Seen::first, lambda_cure},
+    {"n =>", Seen::first, lambda_cure},
+    {"< >", Seen::first, "; in Lua 'not equal' is ~="},
+    {"1 for n in", Seen::first,
      "; a list is filled by a loop: for i = 1, 10 do list[i] = i^2 end; a vector by v:map(function(x) return x^2 end)"},
-    {"^ # n", true, "; a comment begins with --"},
-    {"s %", true, format_cure},
-    {"f s", true, format_cure},
-    {". append", true, append_cure},
-    {": append", true, append_cure},
-    {". shape", true, "; the length of a vector, list or run is #v"},
-}};
+    {"^ hash n", Seen::running, "; a comment begins with --"},
+    {"s %", Seen::running, format_cure},
+    {"f s", Seen::running, format_cure},
+    {". append", Seen::running, append_cure},
+    {": append", Seen::running, append_cure},
+    {". shape", Seen::running, "; the length of a vector, list or run is #v"},
+    {"* *", Seen::first, "; a power is x^2"},
+    {"^ >", Seen::first, "; leave out the prompt > that stands in front"},
+    {"^ >>", Seen::first, "; leave out the prompt >> that stands in front"},
+    {"check ( #", Seen::first, question_cure},
+    {"check #", Seen::first, question_cure},
+    {"def 1", Seen::first, function_cure},
+    {"func 1", Seen::first, function_cure},
+    {"fn 1", Seen::first, function_cure},
+    {"var 1", Seen::first, no_word_cure},
+    {"let 1", Seen::first, no_word_cure},
+    {"const 1", Seen::first, no_word_cure},
+    {"int 1", Seen::first, no_word_cure},
+    {"float 1", Seen::first, no_word_cure},
+    {"double 1", Seen::first, no_word_cure},
+    {"global 1", Seen::first, no_word_cure},
+    {"import 1", Seen::first, module_cure},
+    {"from 1", Seen::first, module_cure},
+    {"using 1", Seen::first, module_cure},
+    {"include 1", Seen::first, module_cure},
+    {"elif w", Seen::first, elseif_cure},
+    {"elsif w", Seen::first, elseif_cure},
+    {"DO 1", Seen::first, loop_cure},
+    {"CALL 1", Seen::first, "; a call needs parentheses and no word before it: f(x)"},
+    {"PRINT w", Seen::first, print_cure},
+    {"^ PRINT", Seen::first, print_cure},
+    {"^ WRITE", Seen::first, print_cure},
+    {"clear w", Seen::first, "; :reset deletes your variables"},
+    {"close w", Seen::first, "; nothing needs to be closed: each plot is a picture of its own"},
+    {"hold w", Seen::first, "; several curves are one picture: plot{ { x, y }, { x, z } }"},
+    {"save w", Seen::first, "; a run is saved by run:save(\"run.csv\"), your inputs by :save lab.lua"},
+    {"help w", Seen::first, "; write ?name, or help \"name\""},
+    {"n : =", Seen::last, "; assigning is ="},
+    {"n : #", Seen::last, named_cure},
+    {"n : s", Seen::last, named_cure},
+    {"for (", Seen::last, loop_cure},
+    {"^ n ( n ) =", Seen::last, "; a function is written: {n} = function(t) return ... end"},
+    {"== =", Seen::last, equals_cure},
+    {"n #", Seen::between, "; is an operator missing there, such as *, or ( ), as in f({#})?"},
+    {"# 1", Seen::between, operator_cure},
+    {") {", Seen::last, "; a block has no braces and ends with end"},
+};
 
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
 bool fits(const lua::Token& token, std::string_view wanted) {
     const bool name = token.kind == lua::TokenKind::name;
     if (wanted == "n") return name;
+    if (wanted == "#") return token.kind == lua::TokenKind::number;
     if (wanted == "1") return name || token.kind == lua::TokenKind::number;
+    if (wanted == "w") return token.kind != lua::TokenKind::symbol;
+    if (wanted == "hash") return token.is("#");
     if (wanted == "s") return token.kind == lua::TokenKind::string;
     return token.is(wanted);
 }
 
-bool fits_at(const std::vector<lua::Token>& all, std::size_t place, std::string_view pattern) {
+/// The cure, if the pattern stands at that place.
+std::string cure_at(const std::vector<lua::Token>& all, std::size_t place, const ForeignTokens& one) {
+    std::string_view pattern = one.pattern;
     if (pattern.starts_with("^ ")) {
-        if (place > 0) return false;
+        if (place > 0) return "";
         pattern.remove_prefix(2);
     }
-    while (!pattern.empty()) {
+    std::string cure(one.cure);
+    for (; !pattern.empty(); ++place) {
         const std::string_view word = pattern.substr(0, pattern.find(' '));
-        if (place >= all.size() || !fits(all[place], word)) return false;
+        if (place >= all.size() || !fits(all[place], word)) return "";
+        const std::string mark = fmt::format("{{{}}}", word);
+        if (const std::size_t at = cure.find(mark); at != std::string::npos)
+            cure.replace(at, mark.size(), all[place].text);
         pattern.remove_prefix(std::min(word.size() + 1, pattern.size()));
-        ++place;
     }
-    return true;
+    return cure;
 }
 
 /// "k = 0,5" in braces is two entries of a table, f(1,43) two arguments.
@@ -227,11 +292,11 @@ bool is_number(std::string_view text) {
 
 }  // namespace
 
-std::string foreign_tokens(std::string_view statement, bool compiles) {
+std::string foreign_tokens(std::string_view statement, Seen seen) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (const ForeignTokens& one : foreign) {
-        for (std::size_t i = 0; one.compiles == compiles && i < all.size(); ++i) {
-            if (fits_at(all, i, one.pattern)) return std::string(one.cure);
+        for (std::size_t i = 0; one.seen == seen && i < all.size(); ++i) {
+            if (std::string cure = cure_at(all, i, one); !cure.empty()) return cure;
         }
     }
     return "";
@@ -242,7 +307,7 @@ std::string running_habit(const text::Error& error, std::string_view statement) 
         return decimal_comma(statement);
     }
     if (error.culprit == "append" || error.culprit == "shape") {
-        return foreign_tokens(statement, true);
+        return foreign_tokens(statement, Seen::running);
     }
     return file_without_quotes(error.culprit, statement);
 }
@@ -255,7 +320,7 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
         return std::string(format_cure);
     }
     const bool of_nil_or_text = message.type == "nil" || message.type == "string";
-    if (std::string cure = of_nil_or_text ? foreign_tokens(statement, true) : ""; !cure.empty()) {
+    if (std::string cure = of_nil_or_text ? foreign_tokens(statement, Seen::running) : ""; !cure.empty()) {
         return cure;
     }
     if (message.words.starts_with("attempt to perform bitwise operation")) {
@@ -284,6 +349,225 @@ std::string foreign_name(std::string_view name) {
     const auto* const found =
         std::find_if(foreign_names.begin(), foreign_names.end(), [name](const auto& n) { return n.first == name; });
     return found == foreign_names.end() ? "" : std::string(found->second);
+}
+
+// Habits from other languages that Lua does not compile. A rule looks at the message, at the token over which the
+// parser stumbled, and at the one before it.
+
+namespace {
+
+using Cure = std::pair<std::string_view, std::string_view>;
+
+/// What Lua complains of, "" for anything, and near what: "" for any word.
+struct Symptom {
+    std::string_view complaint;
+    std::string_view near;
+    std::string_view cure;
+};
+
+constexpr std::array<Symptom, 25> symptoms = {{
+    {"", "!", "; in Lua 'not equal' is ~= and 'not' is a word"},
+    {"", "+", "; in Lua that is x = x + 1"},
+    {"syntax error", "-", "; in Lua that is x = x - 1"},
+    {"syntax error", "*", "; in Lua that is x = x * 2"},
+    {"syntax error", "/", "; in Lua that is x = x / 2"},
+    {"", "&", "; in Lua that is the word and"},
+    {"", "|", "; in Lua that is the word or"},
+    {"", "?", "; in Lua that is: condition and this or that"},
+    {"", "#", "; a comment begins with --"},
+    {"unexpected symbol", "/", "; a comment begins with --"},
+    {"unexpected symbol", "//", "; a comment begins with --"},
+    {"unexpected symbol", "%", "; a comment begins with --"},
+    {"unexpected symbol", "@", "; a function is written: function(t) return 2*t end"},
+    {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
+    {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
+    {"'then' expected", "=", "; comparing is =="},
+    {"'then' expected", "{", "; in Lua: if x > 3 then ... end"},
+    {"'then' expected", ":", "; in Lua: if x > 3 then ... end"},
+    {"'then' expected", "is", "; comparing is =="},
+    {"'do' expected", "=", "; comparing is =="},
+    {"'do' expected", "", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
+    {"',' expected", ":", "; a loop is: for i = 1, 10 do ... end"},
+    {"')' expected", "=", "; write named options in braces: system{ I = 1, k = 4 }"},
+    {"unfinished string", "", "; its closing quote is missing"},
+    {"'}' expected", "", "; is a comma missing there?"},
+}};
+
+/// Letters and signs that word processors and books put in place of those that Lua knows.
+constexpr std::array<Cure, 14> printed_signs = {{
+    {"“", "\""},
+    {"”", "\""},
+    {"„", "\""},
+    {"«", "\""},
+    {"»", "\""},
+    {"‘", "'"},
+    {"’", "'"},
+    {"−", "-"},
+    {"–", "-"},
+    {"×", "*"},
+    {"·", "*"},
+    {"²", "^2"},
+    {"≤", "<="},
+    {"≥", ">="},
+}};
+
+/// "didn't expect" and where: the message, the token, what stands before it.
+struct Stumble {
+    const lua::SyntaxMessage& message;
+    std::vector<lua::Token> all = {};
+    std::size_t at = 0;  ///< of the token in `all`; 0 when it is not known or the first
+
+    [[nodiscard]] const lua::Token& token() const { return all[at]; }
+    [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
+};
+
+bool is_operand(const lua::Token& token) {
+    return token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::number;
+}
+
+/// The token of that text that is likeliest: the last one right behind a name or a number, else the first.
+Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement) {
+    Stumble stumble{message, lua::tokens(statement)};
+    for (std::size_t i = 1; i < stumble.all.size(); ++i) {
+        if (stumble.all[i].text == message.near &&
+            (stumble.at == 0 || (is_operand(stumble.all[i]) && is_operand(stumble.all[i - 1])))) {
+            stumble.at = i;
+        }
+    }
+    return stumble;
+}
+
+std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
+    if (!message.near.starts_with("<\\")) return "";
+    for (const auto& [sign, meant] : printed_signs) {
+        if (statement.find(sign) != std::string_view::npos) {
+            return "; instead of " + std::string(sign) + " write " + std::string(meant);
+        }
+    }
+    return "; names and signs of Lua are in plain letters: theta, pi, omega";
+}
+
+/// How the function on the top of the stack is called: with its options in braces, or in parentheses.
+std::string called_as(lua_State* L, std::string_view name) {
+    const lua::Documented found = lua::documented(L, -1);
+    const lua::Doc* doc = found.member != nullptr ? &found.member->doc : nullptr;
+    const std::string_view signature = doc != nullptr ? std::string_view(doc->signature) : std::string_view();
+    const std::size_t bracket = signature.find_first_of("({");
+    const bool braces = bracket != std::string_view::npos && signature[bracket] == '{';
+    return braces ? "; write its options in braces: " + std::string(name) + "{ ... }"
+                  : "; a call needs parentheses: " + std::string(name) + "(...)";
+}
+
+/// The same for a global function; "" when there is none of that name.
+std::string call_of_global(lua_State* L, std::string_view name) {
+    lua_pushglobaltable(L);
+    lua_pushlstring(L, name.data(), name.size());
+    lua_rawget(L, -2);
+    std::string call = lua_isfunction(L, -1) ? called_as(L, name) : "";
+    lua_pop(L, 2);
+    return call;
+}
+
+/// "print x", "run:save name", "retrun x", "def f", "2 x": two words where there should be one.
+std::string two_words(lua_State* L, const Stumble& stumble) {
+    if (stumble.at == 0 || stumble.token().kind == lua::TokenKind::symbol ||
+        stumble.before().kind != lua::TokenKind::name) {
+        return "";
+    }
+    const std::string_view first = stumble.before().text;
+    if (stumble.message.complaint == "function arguments expected") {
+        return "; a method is called with parentheses: " + std::string(first) + "(...)";
+    }
+    if (std::string call = call_of_global(L, first); !call.empty()) {
+        return call;
+    }
+    const bool long_enough = first.size() > 2;
+    return long_enough && stumble.message.complaint == "syntax error" ? text::did_you_mean(first, lua::keywords()) : "";
+}
+
+/// "if x then" with a slip in `then`; "fucntion(x)", which is a call, so that its end comes as a surprise.
+std::string misspelt_keyword(const Stumble& stumble) {
+    if (stumble.at > 0 && !stumble.message.expected.empty()) {
+        const std::array<std::string_view, 1> wanted = {stumble.message.expected};
+        return text::did_you_mean(stumble.token().text, wanted);
+    }
+    if (stumble.message.complaint == "<eof> expected" && stumble.message.near == "end") {
+        constexpr std::array<std::string_view, 1> wanted = {"function"};
+        for (std::size_t i = 0; i + 1 < stumble.all.size(); ++i) {
+            const lua::Token& token = stumble.all[i];
+            if (token.kind == lua::TokenKind::name && stumble.all[i + 1].is("(")) {
+                if (std::string hint =
+                        token.is("fun") ? "; did you mean 'function'?" : text::did_you_mean(token.text, wanted);
+                    !hint.empty()) {
+                    return hint;
+                }
+            }
+        }
+    }
+    return "";
+}
+
+/// "3t", "2pi"
+std::string missing_star(const Stumble& stumble) {
+    if (stumble.message.complaint != "malformed number") return "";
+    std::string_view word = stumble.message.near;
+    for (const lua::Token& token : stumble.all) {  // the message breaks off at 2p
+        word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
+    }
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
+    const std::string_view name = word.substr(digits);
+    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+    const bool product = digits > 0 && !name.empty() && is_letter(name.front()) && name != "e" && name != "E" &&
+                         std::count(word.begin(), word.end(), '.') < 2;
+    return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
+}
+
+/// "function(t) 3*t end"
+std::string missing_return(const Stumble& stumble) {
+    const auto& all = stumble.all;
+    const std::string_view complaint = stumble.message.complaint;
+    if (complaint != "unexpected symbol" && complaint != "syntax error") return "";
+    std::size_t body = 0;  // of the innermost function before the place
+    for (std::size_t i = 0; i < stumble.at; ++i) {
+        if (!all[i].is("function")) continue;
+        while (i < stumble.at && !all[i].is(")")) ++i;
+        body = i + 1;
+    }
+    if (body == 0 || body > stumble.at || (stumble.at + 1 < all.size() && all[stumble.at + 1].is("="))) return "";
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(body);
+    const auto place = all.begin() + static_cast<std::ptrdiff_t>(stumble.at);
+    const lua::Token& token = stumble.token();
+    const bool value = token.kind == lua::TokenKind::number || token.kind == lua::TokenKind::string;
+    const bool sign = token.kind == lua::TokenKind::symbol &&
+                      (std::string_view("+-*/^%<>").find(token.text.front()) != std::string_view::npos ||
+                       token.is("..") || token.is("==") || token.is("~="));
+    const bool expression = (value || sign) && std::none_of(first, place, [](const lua::Token& other) {
+                                return other.kind == lua::TokenKind::keyword || other.is("=") || other.is(";");
+                            });
+    return expression ? "; is the word return missing there?" : "";
+}
+
+}  // namespace
+
+std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
+    const Stumble stumble = stumble_in(message, statement);
+    const bool expression = message.expected.empty() || message.expected == ")";
+    for (std::string advice :
+         {foreign_tokens(statement, Seen::first), printed_sign(message, statement), two_words(L, stumble),
+          misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble),
+          foreign_tokens(statement, Seen::last), expression ? foreign_tokens(statement, Seen::between) : ""}) {
+        if (!advice.empty()) {
+            return advice;
+        }
+    }
+    if (message.opened == "{") {
+        return "; is a comma missing there, or a brace?";
+    }
+    const auto* const symptom = std::find_if(symptoms.begin(), symptoms.end(), [&message](const Symptom& s) {
+        return (s.complaint.empty() || s.complaint == message.complaint) && (s.near.empty() || s.near == message.near);
+    });
+    return symptom == symptoms.end() ? "" : std::string(symptom->cure);
 }
 
 }  // namespace dinal::errors

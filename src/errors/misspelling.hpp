@@ -36,4 +36,17 @@ std::vector<std::string> member_names(lua_State* L);
 /// purpose.
 std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text);
 
+// What others write as a function, or as a row that is not there: max(v) for v:max(), and how many rows there are.
+
+/// The method that an argument has and that was called as a function: "; did you mean 'run.theta:max()'?", or "". To
+/// be asked while the call still stands on the stack.
+std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
+
+/// Of an index behind which there is nothing: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
+struct MissingElement {
+    std::string end_of_sentence, culprit;
+};
+MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
+                               std::string_view statement);
+
 }  // namespace dinal::errors

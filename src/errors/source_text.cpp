@@ -14,13 +14,6 @@ bool is_digit(char c) {
     return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-int opens(const lua::Token& token) {
-    if (token.is("(") || token.is("{") || token.is("[")) {
-        return 1;
-    }
-    return token.is(")") || token.is("}") || token.is("]") ? -1 : 0;
-}
-
 }  // namespace
 
 std::optional<Message> parse_message(std::string_view message) {
@@ -76,7 +69,7 @@ std::string_view SourceText::statement(int number) const {
         if (depth <= 0 && token.at > first.size()) {
             return rest.substr(0, std::max(first.size(), token.at - 1));
         }
-        depth += opens(token);
+        depth += token.nesting();
     }
     return rest.substr(0, longest);
 }

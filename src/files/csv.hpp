@@ -1,6 +1,7 @@
 // Comma separated values: our own files read back exactly, those of strangers are read when they can be understood.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,5 +42,15 @@ text::Expected<Table> table_of(ReadColumns content);
 /// Comments (each line behind "# "), the line of names, the rows. read_columns gives back the same bits.
 text::Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn> columns,
                                   std::span<const std::string> comments = {}, Gaps gaps = Gaps::refused);
+
+// Columns of numbers as lines of text, for the writers of this folder.
+
+/// A whole file: what `head` writes, then one line for each row, the shortest text of each number that reads back as
+/// the same double, `separator` between. Fails when columns differ in length, or hold a gap that is refused.
+text::Expected<Written> write_rows(const std::string& path, std::span<const NamedColumn> columns, char separator,
+                                   const std::function<void(OutputFile&)>& head, Gaps gaps = Gaps::refused);
+
+/// A word that reads back as the same word, and not as a number or a comment.
+std::string field_of(std::string_view word);
 
 }  // namespace dinal::files

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "files/csv.hpp"
 #include "files/text_input.hpp"
-#include "files/write_rows.hpp"
 #include "text/words.hpp"
 
 namespace dinal::files {

@@ -34,10 +34,9 @@ std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-        const std::vector<std::string_view> known(names.begin(), names.end());
         return text::Error{.sentence = "there is no column '" + std::string(name) + "' among " + list_of(names),
                            .culprit = std::string(name),
-                           .cure = text::did_you_mean(name, known)};
+                           .cure = text::did_you_mean(name, names)};
     }
     return static_cast<Eigen::Index>(found - names.begin());
 }

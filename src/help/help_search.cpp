@@ -4,17 +4,27 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "help/help_text.hpp"
 #include "help/lua_words.hpp"
 #include "help/signature.hpp"
-#include "help/topics.hpp"
 #include "lua/tokens.hpp"
 #include "text/characters.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"
 
 namespace dinal::help {
+
+// Words that are no names of dinal, and that somebody asks help about all the same.
+
+/// A few lines about the topic that has most of the words, whose case does not matter; empty if there is none.
+std::string_view topic(std::string_view words);
+
+/// Our word for one of another language, friction for Reibung; else the word itself.
+std::string_view in_english(std::string_view word);
 
 namespace {
 
@@ -128,11 +138,6 @@ std::vector<Hit> mentioning(std::string_view words) {
     return in_name;
 }
 
-std::string likely(std::string_view word, const std::vector<std::string>& known) {
-    const std::vector<std::string_view> views(known.begin(), known.end());
-    return text::did_you_mean(word, views);
-}
-
 /// A name or an option, else one of the longer words of all summaries.
 std::string likely(std::string_view word) {
     constexpr std::size_t shortest = 6;
@@ -154,8 +159,8 @@ std::string likely(std::string_view word) {
             }
         }
     }
-    const std::string hint = likely(word, names);
-    return hint.empty() ? likely(word, words) : hint;
+    const std::string hint = text::did_you_mean(word, names);
+    return hint.empty() ? text::did_you_mean(word, words) : hint;
 }
 
 std::string no_help(std::string_view words) {
@@ -302,6 +307,258 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
         return no_help(rest.empty() ? words : rest);
     }
     return about + (about.empty() || found.empty() ? "" : "\n") + found;
+}
+
+namespace {
+
+struct Topic {
+    std::string_view words;  // in lower case; one of them is enough
+    std::string_view text;
+    std::string_view more = {};  // two of them are enough
+};
+
+// No line is longer than 77 columns. A test looks for every name that stands here.
+constexpr std::array<Topic, 52> topics = {{
+    {"degrees degree deg radians radian angle angles",
+     "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\nmakes radians of 90 degrees, "
+     "math.deg(x) degrees of radians, and of a whole\ncolumn 180/math.pi*run.theta. Lags are in radians as well.\n"},
+    {"tutorial tour start lesson course",
+     "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\nsheets in docs/lab are a course "
+     "of seven afternoons, and the programs in\nexamples show one idea each.\n"},
+    {"dinal1989 fortran 1989",
+     "dinal is named after DINAL, the Fortran program of a report of 1989 about a\n"
+     "governor with friction. integrator.dinal1989 is its listing, step by step;\n"
+     "run:save \"name.dat\" writes its record; docs/report.md reads the report again.\n"},
+    {"readdin",
+     "READDIN picked two columns out of the record of DINAL, in 1989, for the\n"
+     "plotter. run:columns does that; load reads such a record.\n"},
+    {"draar",
+     "DRAAR drew the two columns that READDIN had picked, in 1989, on a plotter.\n"
+     "run:plot and plot do that.\n"},
+    {"governor flyball sleeve hunting",
+     "A governor is an oscillator with friction inside a loop: docs/governor.md and\n"
+     "examples/270-governor.lua, or sheet 6 of the course in docs/lab. The rotor is\n"
+     "one of the states of a run: help(sys.simulate) has the option states.\n"},
+    {"noise noisy random",
+     "vector.normal and vector.random make random numbers with a seed, to add noise to\na record; identify finds "
+     "a system from a noisy record, and fit.noise is the\nnoise it found. A noisy M is a table: "
+     "excitation.samples.\n"},
+    {"fit fitting regression estimate calibrate",
+     "identify finds the system that made a record, with standard errors: identify{ data = load \"decay.csv\" }.\n"},
+    {"matlab octave python numpy scipy simulink modelica",
+     "docs/guide.md has a table for those who come from MATLAB or SciPy: indices\n"
+     "begin at 1, options stand in braces, a power is x^2, and a vector v has its\n"
+     "functions behind a colon: v:max(). Python reads what run:save \"run.csv\"\n"
+     "writes.\n"},
+    {"kernel jupyter notebook ipython",
+     "dinal --jupyter-install, typed to a shell, makes a kernel for Jupyter:\n"
+     "docs/notebook.md.\n"},
+    {"safe sandbox",
+     "dinal --safe runs the script of a stranger: it sees one folder, and --max-time\n"
+     "and --max-memory limit what it takes: docs/safe-mode.md.\n"},
+    {"fourier fft psd welch periodogram",
+     "run:spectrum() returns frequencies and amplitudes, and\n"
+     "run:spectrum{ of = \"velocity\", method = \"welch\" } a power density;\n"
+     "run:spectrum():plot() draws it.\n",
+     "frequency frequencies content analysis"},
+    {"export pandas spreadsheet",
+     "run:save \"run.csv\" writes a run, d:save \"d.csv\" data; run:columns{ \"t\", \"theta\" }\n"
+     "chooses columns. pandas.read_csv(\"run.csv\", comment=\"#\") reads it\n"
+     "(docs/csv-elsewhere.md).\n",
+     "csv excel save write file disk results columns"},
+    {"import excel semicolon separator delimiter xlsx",
+     "load \"file.csv\" reads columns, or a run that run:save wrote, and\n"
+     "excitation.samples \"force.csv\" an M. Columns are separated by commas, semicolons\n"
+     "or tabs; with the last two 1,5 is a number. A line of units below the names is\n"
+     "understood. Save a spreadsheet as CSV first.\n",
+     "read load open csv file data record measurement measured decimal comma"},
+    {"compare comparison overlay superimpose",
+     "Keep both runs in variables, a and b, and plot both:\n"
+     "plot{ { a.t, a.theta, label = \"a\" }, { b.t, b.theta, label = \"b\" } }.\n"
+     "Numbers: a:at(1.5), a.theta:max(), (a.theta - b.theta):abs():max() on equal rows.\n",
+     "two runs both several curves same one plot picture difference"},
+    {"graph figure picture diagram svg png pdf latex",
+     "run:plot() draws a run, plot{ { x, y } } vectors, d:plot() data. With\n"
+     "file = \"a.svg\" (png, pdf, tex, gp) a plot goes into a file; xlabel, ylabel, title,\n"
+     "xlim, ylim shape it.\n",
+     "plot draw save file label axis axes title limits"},
+    {"portrait", "run:phase_plot() draws velocity over theta, with the dead zone.\n", "phase plane space"},
+    {"resonance frf bode",
+     "sys:response{ over = { frequency = vector.linspace(.1, 2, 50) } } finds the steady\n"
+     "amplitude for each frequency; :plot() draws it. sys:steady finds one.\n",
+     "amplitude frequency response curve harmonic forced"},
+    {"stationary",
+     "sys:steady{ M = excitation.harmonic{ frequency = .4 } } finds the steady motion\n"
+     "directly; run:steady() does from a run. s.amplitude, s.lag, s.stable describe it.\n",
+     "steady state periodic motion amplitude"},
+    {"squeal selfexcited self-excited",
+     "sys:steady{ belt = .2 } finds the limit cycle, with s.period and s.amplitude;\n"
+     "examples/250-belt-squeal.lua shows one.\n",
+     "limit cycle belt stick-slip oscillation"},
+    {"eigenfrequency eigenvalue natural",
+     "sys.omega0 and sys.T0 are the natural frequency and period without damping,\n"
+     "sys.omega1 is the damped frequency.\n",
+     "frequency period own"},
+    {"decrement dashpot",
+     "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
+     "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
+     "viscous damping ratio zeta"},
+    {"adhesion static stiction coulomb",
+     "Rd is the torque of friction while the mass slides, Re (>= Rd) the largest torque\n"
+     "that holds it at rest. run.events lists each stick and slip; friction.coulomb,\n"
+     "friction.stribeck and friction.law give other laws.\n",
+     "stick sticking stuck friction dry breakaway coefficient law"},
+    {"accuracy accurate precise precision tolerance exactly",
+     "The default integrator is accurate to rounding; integrator.spectral{ tolerance = 1e-9 }\nchanges it. dt "
+     "only sets the rows. integrator.rk4{ h = .01 } has a step size.\n",
+     "step size error steps integrator"},
+    {"study studies grid parallel parametric",
+     "sweep{ over = { Re = { .4, .5 } }, run = function(p) return { x = p.Re } end } runs all\n"
+     "combinations, on all cores; docs/many-machines.md is about clusters.\n",
+     "parameter parameters vary variation sweep many runs values loop"},
+    {"optimise optimize optimisation optimization",
+     "minimise{ over = { Re = { .1, 2 } }, run = function(p) return cost end } finds the least\n"
+     "value; identify fits a system to a record.\n",
+     "best minimum minimal least tune"},
+    {"animate animation movie video", "run:animate() shows the motion; file = \"motion.svg\" writes it.\n",
+     "moving motion show"},
+    {"controller pid feedback actuator",
+     "M may depend on the motion: M = function(t, theta, velocity) return -2*theta end.\n"
+     "excitation.sampled has a memory and a sampling time, excitation.relay switches,\n"
+     "excitation.delayed has a dead time; states = { z = ... } integrates equations of your own.\n",
+     "control loop integral memory state states delay relay"},
+    {"hit kick hammer impulse",
+     "excitation.pulse, excitation.half_sine and excitation.gaussian are pulses; an impulse is\n"
+     "a velocity0.\n",
+     "pulse short force shock"},
+    {"bounce collision obstacle",
+     "system{ walls = { lower = -1, upper = 1, restitution = .5 } } bounces at walls; impacts are\n"
+     "events of the run.\n",
+     "wall walls gap impact impacts restitution"},
+    {"multibody coupled clutch gear masses",
+     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md.\n",
+     "two several bodies mass chain degrees freedom"},
+    {"measured measurement",
+     "M from a table: excitation.samples{ t = { 0, 1 }, M = { 0, 2 } } or excitation.samples \"force.csv\".\n"
+     "A measured motion: identify{ data = load \"decay.csv\" } finds the system.\n",
+     "table samples force file csv record data"},
+    {"dimension dimensions si newton",
+     "Any consistent units: units of a system name them, system{ ..., units = { theta = \"rad\" } }, and\n"
+     "plots and files show them. nondimensional{} counts in T0 and M0/k.\n",
+     "unit units metre kg"},
+    {"abort cancel endless hang hangs interrupt",
+     "Ctrl-C stops a run or a loop; dinal.partial then holds the rows so far.\n", "stop running loop run"},
+    {"slow performance benchmark faster",
+     "A Lua function that is a formula is read and costs nothing extra: run:explain() says\n"
+     "whether M was read. Native terms (excitation.harmonic) are fastest; sweep uses all cores.\n",
+     "fast speed time takes long"},
+    {"homework assignment submit marks grade sheet",
+     "lab.number(4711), lab.given(1) and check(\"1a\", 3.2) are the course; docs/lab has its sheets.\n"
+     "dinal --report 1-4711.lua, in a shell, makes the page to hand in.\n",
+     "lab hand in report page course number answer make"},
+    {"chaos chaotic feigenbaum",
+     "bifurcation{ over = ..., at = ... } draws how the steady motion changes with a parameter;\n"
+     "run:poincare{ period = 1 } cuts a run once a period.\n",
+     "poincare section map bifurcation period doubling"},
+    {"dissipation dissipated work losses",
+     "run:energy() returns where the energy went: its total, and each half cycle.\n", "energy loss lost power"},
+    {"story describe", "run:explain() tells a run in words: turns, sticking, what stopped it.\n",
+     "explain words happened happens why run"},
+    {"seed reproducible", "vector.random{ n = 100, seed = 1 } and sweep{ ..., seed = 1 } repeat the same numbers.\n",
+     "random same numbers"},
+    {"history undo commands",
+     ":history lists what was typed, :edit changes the last input in an editor, :save lab.lua\n"
+     "writes what ran without error into a script.\n",
+     "session save typed previous line"},
+    {"settings options arguments",
+     "help \"simulate\" lists the options of a call with their defaults; Shift-Tab shows them\n"
+     "while you type.\n",
+     "which list"},
+    {"ode45 solve_ivp odeint lsim ode integrate solver",
+     "sys:simulate{ M = M, theta0 = 1, t_end = 20 } makes a run; no tolerance and no event\n"
+     "function is needed. docs/guide.md has a table of what MATLAB and SciPy call it.\n"},
+    {"initial",
+     "theta0 and velocity0 of sys:simulate{ theta0 = 1, velocity0 = 0, t_end = 20 } are the state\n"
+     "at t_start; run:continue{ t_end = 40 } begins where a run ended.\n",
+     "start condition conditions position velocity value values"},
+    {"conveyor",
+     "sys:simulate{ belt = .2, t_end = 20 } lets the mass rub on a belt of that velocity, and\n"
+     "sys:steady{ belt = .2 } finds its limit cycle; belt may be a function of t.\n",
+     "belt moving speed run"},
+    {"square rectangular",
+     "excitation.square{ amplitude = 1, period = 2 } is a square wave; excitation.sawtooth and\n"
+     "excitation.triangle are others.\n",
+     "wave periodic pulse train"},
+    {"heaviside",
+     "excitation.step{ amplitude = 1, at = 0 } is a step:\n"
+     "sys:simulate{ M = excitation.step{ amplitude = 1 }, t_end = 20 }:plot().\n",
+     "step response jump load sudden"},
+    {"zoom legend",
+     "plot and run:plot have xlim = { 2, 3 } and ylim to show a part, label for the name of a\n"
+     "curve: plot{ { x, y, label = \"a\" }, xlim = { 2, 3 } }.\n",
+     "range part axis curve name label"},
+    {"maximum average rms",
+     "A column is a vector: run.theta:max(), :min(), :mean(), :abs(); run.theta[run.t > 10]:max()\n"
+     "of a part.\n",
+     "max min mean value column peak largest"},
+    {"turning",
+     "run.events lists turns, sticks, slips and rest: run.events[1].t, #run.events, and the\n"
+     "last one is run.events[#run.events]; run.events.kind is a column.\n",
+     "list events event last first count number stops turns when"},
+    {"quit exit leave", "Ctrl-D or :quit leaves dinal; os.exit() ends a script.\n", "close program"},
+    {"shell ls pwd terminal",
+     "dinal has no shell commands: Ctrl-Z suspends it, and fg brings it back. load and\nexcitation.samples read "
+     "files.\n"},
+}};
+
+/// Words of other languages, and ours for the same.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> foreign = {{
+    {"reibung rozamiento friccion fricción frottement attrito", "friction"},
+    {"feder muelle resorte ressort molla", "spring"},
+    {"daempfung dämpfung amortiguamiento amortissement smorzamento", "damping"},
+    {"schwinger oscilador oscillateur oscillatore sistema système", "system"},
+    {"erregung anregung excitacion excitación eccitazione", "excitation"},
+    {"resonanz resonancia résonance risonanza", "resonance"},
+    {"energie energía energia énergie", "energy"},
+    {"hilfe ayuda aide aiuto", "help"},
+}};
+
+bool has_word(std::string_view words, std::string_view wanted) {
+    for (std::size_t begin = 0; begin < words.size();) {  // not tokens: a letter of these may be none of Lua
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        if (words.substr(begin, end - begin) == wanted) return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+}  // namespace
+
+std::string_view in_english(std::string_view word) {
+    const std::string wanted = text::lower(word);
+    const auto* const found =
+        std::find_if(foreign.begin(), foreign.end(), [&](const auto& row) { return has_word(row.first, wanted); });
+    return found == foreign.end() ? word : found->second;
+}
+
+std::string_view topic(std::string_view words) {
+    const std::string wanted = text::lower(words);
+    const Topic* best = nullptr;
+    int most = 1;
+    for (const Topic& one : topics) {
+        int fits = 0;
+        for (std::size_t begin = 0; begin < wanted.size();) {
+            const std::size_t end = std::min(wanted.find(' ', begin), wanted.size());
+            const std::string_view word = std::string_view(wanted).substr(begin, end - begin);
+            fits += has_word(one.words, word) ? 2 : has_word(one.more, word) ? 1 : 0;
+            begin = end + 1;
+        }
+        if (fits > most) {
+            best = &one;
+            most = fits;
+        }
+    }
+    return best == nullptr ? std::string_view() : best->text;
 }
 
 }  // namespace dinal::help

@@ -5,6 +5,7 @@
 #include "errors/error_remarks.hpp"
 #include "help/help.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
 #include "source/value_text.hpp"
@@ -95,21 +96,11 @@ int unknown_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING || std::string_view(lua_tostring(L, 2)) == "partial") {
         return 0;
     }
-    std::vector<std::string>
-        owned;  // the strings in the table move nowhere, but a view must not outlive its stack slot
-    lua_pushnil(L);
-    while (lua_next(L, 1) != 0) {
-        if (lua_type(L, -2) == LUA_TSTRING) {
-            owned.emplace_back(lua_tostring(L, -2));
-        }
-        lua_pop(L, 1);
-    }
-    const std::vector<std::string_view> names(owned.begin(), owned.end());
     const std::string_view wrong = lua_tostring(L, 2);
     lua::raise(L, {.sentence = "there is no dinal." + std::string(wrong),
                    .call = "dinal",
                    .culprit = std::string(wrong),
-                   .cure = text::did_you_mean(wrong, names)});
+                   .cure = text::did_you_mean(wrong, lua::text_keys(L, 1))});
 }
 
 }  // namespace

@@ -289,6 +289,16 @@ Documented documented(lua_State* L, int index) {
 
 namespace detail {
 
+std::string signature_of_running(lua_State* L) {
+    lua_Debug frame{};
+    lua_getstack(L, 0, &frame);
+    lua_getinfo(L, "f", &frame);
+    const Documented found = documented(L, -1);
+    lua_pop(L, 1);
+    const std::string_view signature = found.member != nullptr ? found.member->doc.signature : "object:method()";
+    return std::string(signature.substr(0, signature.find(" ->")));
+}
+
 void raise_no_object(lua_State* L, std::string_view call) {
     raise(L, {.sentence = "use a colon: " + std::string(call), .call = std::string(call)});
 }

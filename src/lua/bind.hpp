@@ -92,6 +92,11 @@ struct Class {
 [[noreturn]] void raise(lua_State* L, const text::Error& error);
 [[noreturn]] void raise(lua_State* L, std::string_view sentence);
 
+/// Raises the error as one of that call: "CALL: SENTENCE".
+[[noreturn]] inline void fail(lua_State* L, std::string_view call, text::Error error) {
+    raise(L, text::in_call(call, std::move(error)));
+}
+
 /// Raises "WANTED, got VALUE" and the end of the sentence, about the value at `index` that was given to the call.
 [[noreturn]] void raise_got(lua_State* L, int index, std::string_view call, std::string_view wanted,
                             std::string_view end = "");
@@ -123,6 +128,8 @@ std::string written(lua_State* L, int index);
 namespace detail {
 int raise_message_on_top(lua_State* L);
 [[noreturn]] void raise_no_object(lua_State* L, std::string_view call);
+/// "run:explain()": how the function of ours that runs is called.
+std::string signature_of_running(lua_State* L);
 void push_message(lua_State* L, const char* text);
 }  // namespace detail
 

@@ -9,6 +9,16 @@
 
 namespace dinal::lua {
 
+std::vector<std::string> text_keys(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    std::vector<std::string> keys;
+    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) == LUA_TSTRING) keys.emplace_back(text_at(L, -2));
+    }
+    std::sort(keys.begin(), keys.end());
+    return keys;
+}
+
 bool is_name(std::string_view text) {
     const std::vector<Token> all = tokens(text);
     return all.size() == 1 && all.front().kind == TokenKind::name && all.front().text.size() == text.size();

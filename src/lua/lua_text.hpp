@@ -16,6 +16,9 @@ inline std::string_view text_at(lua_State* L, int index) {
     return {start, size};
 }
 
+/// The texts among the keys of the table at `index`, sorted.
+std::vector<std::string> text_keys(lua_State* L, int index);
+
 /// A name as in `t.name = 1`, and no keyword.
 bool is_name(std::string_view text);
 

@@ -43,7 +43,7 @@ public:
         push(name);
         const auto* found = test<T>(L_, -1);
         if (found == nullptr && (!lua_isnil(L_, -1) || row(name).otherwise == text::needed)) {
-            lua_isnil(L_, -1) ? missing(name) : wrong(name, row(name).wanted);
+            lua_isnil(L_, -1) ? missing(name) : wrong(name);
         }
         lua_pop(L_, 1);
         return found;
@@ -68,6 +68,7 @@ public:
     }
     /// Raises "CALL: NAME must be WANTED, got ...".
     [[noreturn]] void wrong(std::string_view name, std::string_view wanted) const;
+    [[noreturn]] void wrong(std::string_view name) const { wrong(name, row(name).wanted); }
     /// Raises "CALL needs NAME, for example EXAMPLE".
     [[noreturn]] void missing(std::string_view name) const;
 

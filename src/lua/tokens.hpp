@@ -18,6 +18,10 @@ struct Token {
 
     [[nodiscard]] std::size_t end() const { return at + text.size(); }
     [[nodiscard]] bool is(std::string_view other) const { return kind != TokenKind::string && text == other; }
+    /// 1 of a bracket that opens, -1 of one that closes.
+    [[nodiscard]] int nesting() const {
+        return is("(") || is("{") || is("[") ? 1 : is(")") || is("}") || is("]") ? -1 : 0;
+    }
 };
 
 /// All tokens of a text, which need not compile; white space is left out. They refer to the text.

@@ -18,6 +18,7 @@
 #include "lua/formula_reader.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::lua {
@@ -28,18 +29,13 @@ namespace {
 
 /// Any other name than those in the table of the states.
 int no_such_state(lua_State* L) {
-    std::vector<std::string> names;
-    for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) {
-        if (lua_type(L, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(L, -2));
-    }
-    std::sort(names.begin(), names.end());
-    const std::vector<std::string_view> known(names.begin(), names.end());
+    const std::vector<std::string> names = text_keys(L, 1);
     lua_settop(L, 2);
     const std::string wanted = written(L, 2);
     raise(L, {.sentence = fmt::format("there is no {} '{}'; there is {}", lua_tostring(L, lua_upvalueindex(1)), wanted,
                                       fmt::join(names, ", ")),
               .culprit = wanted,
-              .cure = text::did_you_mean(wanted, known)});
+              .cure = text::did_you_mean(wanted, names)});
 }
 
 /// Pushes a table with a number in each of these fields; any other one is an error that names them: "there is no state

@@ -35,6 +35,9 @@ public:
 
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
+    void check() {
+        if (failed()) raise_error();
+    }
 
 private:
     friend class LuaFunction;

@@ -2,21 +2,27 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "lua/bind.hpp"
 
 namespace dinal::lua {
 
+/// What a getter returns that has pushed its value by itself.
+struct Pushed {};
+
 /// Pushes a number, a flag, a text, a list of such, a table of such by their names, or an object of a class; nil for an
 /// optional that is empty.
 template <class Value>
 void push_value(lua_State* L, const Value& value) {
-    if constexpr (std::is_same_v<Value, bool>) {
+    if constexpr (std::is_same_v<Value, Pushed>) {
+        return;
+    } else if constexpr (std::is_same_v<Value, bool>) {
         lua_pushboolean(L, value ? 1 : 0);
     } else if constexpr (std::is_integral_v<Value>) {
         lua_pushinteger(L, static_cast<lua_Integer>(value));
@@ -27,6 +33,7 @@ void push_value(lua_State* L, const Value& value) {
     } else if constexpr (requires { value.has_value(); }) {
         value ? push_value(L, *value) : lua_pushnil(L);
     } else if constexpr (requires {
+                             typename Value::value_type;
                              value.begin();
                              value.size();
                          }) {
@@ -39,7 +46,7 @@ void push_value(lua_State* L, const Value& value) {
         for (const auto& element : value) {
             if constexpr (named) {
                 push_value(L, element.second);
-                lua_setfield(L, -2, element.first.c_str());
+                lua_setfield(L, -2, std::string(element.first).c_str());
             } else {
                 push_value(L, element);
                 lua_rawseti(L, -2, ++i);
@@ -57,27 +64,90 @@ void set_value(lua_State* L, const char* name, const Value& value) {
     lua_setfield(L, -2, name);
 }
 
-/// Pushes a table of these numbers by their names.
-inline void push_numbers(lua_State* L, std::initializer_list<std::pair<const char*, double>> numbers) {
-    lua_createtable(L, 0, static_cast<int>(numbers.size()));
-    for (const auto& [name, number] : numbers) set_value(L, name, number);
+/// What becomes a table of numbers by their names.
+using NamedNumbers = std::vector<std::pair<const char*, double>>;
+
+/// The string at `index`, or those of a list; none when something else is there or among them.
+inline std::optional<std::vector<std::string>> strings_at(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    std::vector<std::string> all;
+    if (lua_type(L, index) == LUA_TSTRING) return std::vector<std::string>{lua_tostring(L, index)};
+    if (!lua_istable(L, index)) return lua_isnil(L, index) ? std::optional(all) : std::nullopt;
+    for (std::size_t i = 1; i <= lua_rawlen(L, index); ++i) {
+        const bool text = lua_rawgeti(L, index, static_cast<lua_Integer>(i)) == LUA_TSTRING;
+        if (text) all.emplace_back(lua_tostring(L, -1));
+        lua_pop(L, 1);
+        if (!text) return std::nullopt;
+    }
+    return all;
+}
+
+/// Pushes a copy of the table at `index`, without its places up to `listed`.
+inline void push_copy(lua_State* L, int index, lua_Integer listed = 0) {
+    index = lua_absindex(L, index);
+    lua_newtable(L);
+    for (lua_pushnil(L); lua_next(L, index) != 0;) {
+        const bool left_out = lua_isinteger(L, -2) != 0 && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= listed;
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        left_out ? lua_pop(L, 2) : lua_rawset(L, -4);
+    }
 }
 
 namespace detail {
+/// The object that the running function was called on.
+template <class Object>
+const Object& own(lua_State* L) {
+    if (const auto* object = lua::test<Object>(L, 1)) return *object;
+    raise_no_object(L, signature_of_running(L));
+}
+
 template <class Object, auto get>
-int read_field(lua_State* L) {
-    const Object& object = self<Object>(L, 1, "object.field");
-    if constexpr (std::is_invocable_v<decltype(get), const Object&>) {
+int read_value(lua_State* L) {
+    const auto& object = own<Object>(L);
+    if constexpr (std::is_invocable_v<decltype(get), lua_State*, const Object&>) {
+        const Object kept = object;  // what is called may drop the last reference
+        push_value(L, std::invoke(get, L, kept));
+    } else if constexpr (std::is_invocable_v<decltype(get), const Object&>) {
         push_value(L, std::invoke(get, object));
     } else {
         push_value(L, std::invoke(get, *object));  // a handle, which leads to the object
     }
     return 1;
 }
+
+template <class Object, auto get>
+inline char kept_key = 0;
+
+template <class Object, auto get>
+int read_kept(lua_State* L) {
+    static_cast<void>(own<Object>(L));
+    if (lua_getiuservalue(L, 1, 1) != LUA_TTABLE) {
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, 1, 1);
+    }
+    if (lua_rawgetp(L, -1, &kept_key<Object, get>) == LUA_TNIL) {
+        read_value<Object, get>(L);
+        lua_pushvalue(L, -1);
+        lua_rawsetp(L, -4, &kept_key<Object, get>);
+    }
+    return 1;
+}
 }  // namespace detail
 
-/// A field that is a member of the C++ object, or what a function makes of it.
+/// A field that is a member of the C++ object, or what a function makes of it, or of the Lua state and it.
 template <class Object, auto get>
-inline constexpr Binding a_value = a_field<detail::read_field<Object, get>>;
+inline constexpr Binding a_value = a_field<detail::read_value<Object, get>>;
+/// The same, made when it is first asked for and then kept with the object, so that a loop over it is no trap.
+template <class Object, auto get>
+inline constexpr Binding a_kept_value = a_field<detail::read_kept<Object, get>>;
+/// A method without arguments.
+template <class Object, auto get>
+inline constexpr Binding a_question = a_method<detail::read_value<Object, get>>;
+template <class Object, auto get>
+inline constexpr Binding a_text = a_metamethod<detail::read_value<Object, get>>("__tostring");
+template <class Object, auto get>
+inline constexpr Binding a_length = a_metamethod<detail::read_value<Object, get>>("__len");
 
 }  // namespace dinal::lua

@@ -14,10 +14,11 @@ std::vector<double> new_numbers(lua_State* L, std::size_t n) {
     return std::vector<double>(n);
 }
 
-void push_vector(lua_State* L, std::vector<double> values) {
+int push_vector(lua_State* L, std::vector<double> values) {
     const std::size_t bytes = values.size() * sizeof(double);
     push(L, Vector(std::move(values)));
     note_external_memory(L, bytes);
+    return 1;
 }
 
 std::string key_beside_list(lua_State* L, int index) {

@@ -39,8 +39,9 @@ private:
 /// n zeros. Where memory is limited, garbage makes room for them.
 std::vector<double> new_numbers(lua_State* L, std::size_t n);
 
-/// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes.
-void push_vector(lua_State* L, std::vector<double> values);
+/// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes;
+/// returns 1, as a function with one result.
+int push_vector(lua_State* L, std::vector<double> values);
 
 /// "x" or "[2]": a field of the table at `index` besides 1 to #t, which no list has; empty when there is none.
 std::string key_beside_list(lua_State* L, int index);

@@ -26,7 +26,6 @@
 #include "prompt/commands.hpp"
 #include "prompt/completion.hpp"
 #include "prompt/output.hpp"
-#include "prompt/question.hpp"
 #include "prompt/script.hpp"
 #include "prompt/session.hpp"
 #include "terminal/progress.hpp"

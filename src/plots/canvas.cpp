@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "plots/line.hpp"
+#include "plots/figure.hpp"
 
 namespace dinal::plots {
 namespace {

@@ -1,11 +1,14 @@
 #include "plots/figure.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "plots/shades.hpp"
 
 namespace dinal::plots {
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -162,6 +165,195 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
         }
     }
     return kinds;
+}
+
+namespace {
+
+constexpr double closest_turns = 3;  // places from one turn of a curve to the next
+constexpr double turns_to_a_step = 4;
+
+/// The points that are seen, from first to last.
+struct Seen {
+    std::size_t first = 0, last = 0, turns = 0;
+};
+
+Seen seen_of(const Curve& curve, Interval window) {
+    const auto x = curve.x.values.first(curve.size()), y = curve.y.values.first(curve.size());
+    Seen seen;
+    seen.first = static_cast<std::size_t>(std::lower_bound(x.begin(), x.end(), window.low) - x.begin());
+    seen.last = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), window.high) - x.begin());
+    double direction = 0;
+    for (std::size_t i = seen.first + 1; i < seen.last; ++i) {
+        const double change = y[i] - y[i - 1];
+        if (change * direction < 0) ++seen.turns;
+        if (change != 0) direction = change;
+    }
+    return seen;
+}
+
+/// Steps of equal width with the lowest and the highest value in each.
+Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
+    const auto x = curve.x.values, y = curve.y.values;
+    const double from = x[seen.first], length = x[seen.last - 1] - from;
+    constexpr double none = std::numeric_limits<double>::infinity();
+    std::vector<double> middle(steps), low(steps, none), high(steps, -none);
+    for (std::size_t i = seen.first; i < seen.last; ++i) {
+        const auto step =
+            std::min(steps - 1, static_cast<std::size_t>((x[i] - from) / length * static_cast<double>(steps)));
+        low[step] = std::min(low[step], y[i]);
+        high[step] = std::max(high[step], y[i]);
+    }
+    for (std::size_t step = 0; step < steps; ++step) {
+        middle[step] = from + length * (static_cast<double>(step) + 0.5) / static_cast<double>(steps);
+        if (low[step] > high[step]) low[step] = high[step] = std::nan("");
+    }
+    middle.front() = from;
+    middle.back() = from + length;
+    Curve band = curve;
+    band.style = Style::fill;
+    band.x = Numbers::own(std::move(middle));
+    band.y = Numbers::own(std::move(high));
+    band.base = Numbers::own(std::move(low));
+    return band;
+}
+
+/// Turns of swings that are a good part of the height: noise on a slow curve has none.
+std::size_t large_turns(const Curve& curve, const Seen& seen) {
+    if (seen.last <= seen.first) return 0;
+    const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
+    double least = std::numeric_limits<double>::infinity(), greatest = -least;
+    for (const double value : y) {
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
+    }
+    constexpr double good_part = 0.1;
+    const double smallest = good_part * (greatest - least);
+    std::size_t turns = 0;
+    double low = y.front(), high = y.front();  // since the last turn
+    int direction = 0;
+    for (const double value : y) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+        const bool down = direction >= 0 && value < high - smallest, up = direction <= 0 && value > low + smallest;
+        if (!down && !up) continue;
+        turns += direction != 0 ? 1 : 0;
+        direction = down ? -1 : 1;
+        low = high = value;
+    }
+    return turns;
+}
+
+/// A line up and down in each place, between the lowest and the highest value from one turn before it to one turn
+/// after.
+Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::size_t places) {
+    const auto x = curve.x.values, y = curve.y.values;
+    const double from = x[seen.first], length = x[seen.last - 1] - from;
+    const double reach = length / static_cast<double>(turns);
+    std::vector<double> across, up;
+    std::size_t begin = seen.first;
+    for (std::size_t place = 0; place < places; ++place) {
+        const double middle = from + length * (static_cast<double>(place) + 0.5) / static_cast<double>(places);
+        const double centre = std::clamp(middle, from + reach, from + length - reach);
+        while (begin < seen.last && x[begin] < centre - reach) ++begin;
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t i = begin; i < seen.last && x[i] <= centre + reach; ++i) {
+            low = std::min(low, y[i]);
+            high = std::max(high, y[i]);
+        }
+        if (low > high) low = high = std::nan("");
+        const double drawn_at = place == 0 ? from : place + 1 == places ? from + length : middle;
+        for (const double end : {low, high}) {
+            across.push_back(drawn_at);
+            up.push_back(end);
+        }
+    }
+    Curve all = curve;
+    all.x = Numbers::own(std::move(across));
+    all.y = Numbers::own(std::move(up));
+    return all;
+}
+
+/// What may be drawn otherwise when it is too dense: a line over increasing x.
+bool is_line_over_x(const Curve& curve) {
+    const auto x = curve.x.values.first(curve.size());
+    return curve.style == Style::line && std::is_sorted(x.begin(), x.end());
+}
+
+Seen seen_in(const Figure& figure, const Curve& curve) {
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    return seen_of(curve, figure.x.limits.value_or(Interval{-anywhere, anywhere}));
+}
+
+}  // namespace
+
+std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width) {
+    std::vector<Figure> all(figures.begin(), figures.end());
+    for (Figure& figure : all) {
+        for (Curve& curve : figure.curves) {
+            if (!is_line_over_x(curve) || figure.x.logarithmic) continue;
+            constexpr double closest = 2.5;  // places from one turn to the next
+            const Seen seen = seen_in(figure, curve);
+            const std::size_t turns = large_turns(curve, seen);
+            if (static_cast<double>(turns) * closest > width) {
+                curve = envelope(curve, seen, turns, static_cast<std::size_t>(width));
+            }
+        }
+    }
+    return all;
+}
+
+std::vector<Figure> with_bands(std::span<const Figure> figures, double width) {
+    std::vector<Figure> all(figures.begin(), figures.end());
+    for (Figure& figure : all) {
+        for (Curve& curve : figure.curves) {
+            if (!curve.behind || !is_line_over_x(curve)) continue;
+            const Seen seen = seen_in(figure, curve);
+            const auto turns = static_cast<double>(seen.turns);
+            if (turns * closest_turns > width) {
+                const double steps = std::clamp(turns / turns_to_a_step, 2.0, width);
+                curve = stepped_band(curve, seen, static_cast<std::size_t>(steps));
+            }
+        }
+    }
+    return all;
+}
+
+std::vector<std::size_t> drawing_order(const Figure& figure) {
+    std::vector<std::size_t> order;
+    for (const bool behind : {true, false}) {
+        for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+            if (figure.curves[i].behind == behind) order.push_back(i);
+        }
+    }
+    return order;
+}
+
+bool clip(Line& line, Box sheet, double slack) {
+    const Point from = line.from;
+    const double dx = line.to.x - from.x;
+    const double dy = line.to.y - from.y;
+    double begin = 0;
+    double end = 1;
+    const std::array<std::array<double, 2>, 4> sides{{{-dx, from.x + slack},
+                                                      {dx, sheet.width + slack - from.x},
+                                                      {-dy, from.y + slack},
+                                                      {dy, sheet.height + slack - from.y}}};
+    for (const auto& [direction, distance] : sides) {
+        if (direction == 0) {
+            if (distance < 0) {
+                return false;
+            }
+        } else if (direction < 0) {
+            begin = std::max(begin, distance / direction);
+        } else {
+            end = std::min(end, distance / direction);
+        }
+    }
+    if (!(begin <= end)) {
+        return false;
+    }
+    line = {{from.x + begin * dx, from.y + begin * dy}, {from.x + end * dx, from.y + end * dy}};
+    return true;
 }
 
 }  // namespace dinal::plots

@@ -147,4 +147,31 @@ struct Box {
 };
 Box equal_box(View& view, Box most);
 
+// Points and straight lines on a sheet, in dots or pixels.
+
+struct Point {
+    double x, y;
+};
+
+struct Line {
+    Point from, to;
+};
+
+/// Cuts the line to the sheet, which reaches from -slack to its size and slack (Liang and Barsky); false when nothing
+/// is left.
+bool clip(Line& line, Box sheet, double slack);
+
+// What swings too densely to be seen behind another curve, as the band that it fills.
+
+/// The figures with bands in place of the curves behind others (Curve::behind) that turn back more often than the eye
+/// can follow on `width`: in places that it parts, such as dots of a text or pixels of a sheet.
+std::vector<Figure> with_bands(std::span<const Figure> figures, double width);
+
+/// The figures with envelopes in place of all curves that turn nearly every second of these places: drawn as they are,
+/// they would be noise.
+std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width);
+
+/// The places of the curves, those behind others first.
+std::vector<std::size_t> drawing_order(const Figure& figure);
+
 }  // namespace dinal::plots

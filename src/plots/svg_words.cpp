@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plots/line.hpp"
+#include "plots/figure.hpp"
 #include "plots/shades.hpp"
 #include "text/characters.hpp"
 #include "text/html.hpp"

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "plots/bands.hpp"
 #include "plots/canvas.hpp"
 #include "plots/figure.hpp"
 #include "plots/shades.hpp"
@@ -277,26 +276,6 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
 
 // ---- lines of text with known widths and colours
 
-/// A colour is 0 for none, 1, 2, ... for the palette of curves.
-class TextLine {
-public:
-    explicit TextLine(bool colours) : colours_(colours) {}
-    void add(std::string_view text, std::uint8_t colour = 0);
-    void append(const TextLine& line);
-    /// Blanks up to this width; nothing when it is wider already.
-    void pad(std::size_t width);
-    [[nodiscard]] std::size_t width() const { return width_; }
-    [[nodiscard]] std::string text() const;
-
-private:
-    bool colours_;
-    std::uint8_t colour_ = 0;
-    std::size_t width_ = 0;
-    std::string text_;
-};
-
-using TextBlock = std::vector<TextLine>;
-
 // The terminal's own colours: it knows its background. The first curve is plain; none of the others needs a good eye
 // for red and green, since letters tell the curves apart, too.
 constexpr std::array<std::string_view, 6> escapes{"\x1b[39m", "\x1b[36m", "\x1b[33m",
@@ -307,46 +286,60 @@ std::size_t place(std::uint8_t colour) {
     return colour == 0 ? 0 : (colour - 1U) % escapes.size();
 }
 
-void TextLine::add(std::string_view text, std::uint8_t colour) {
-    if (text.empty()) {
-        return;
+/// A colour is 0 for none, 1, 2, ... for the palette of curves.
+class TextLine {
+public:
+    explicit TextLine(bool colours) : colours_(colours) {}
+    void add(std::string_view text, std::uint8_t colour = 0) {
+        if (text.empty()) {
+            return;
+        }
+        if (colours_ && place(colour) != place(colour_)) {
+            text_ += place(colour) == 0 ? reset : escapes[place(colour)];
+        }
+        colour_ = colour;
+        text_ += text;
+        width_ += text::columns(text);
     }
-    if (colours_ && place(colour) != place(colour_)) {
-        text_ += place(colour) == 0 ? reset : escapes[place(colour)];
-    }
-    colour_ = colour;
-    text_ += text;
-    width_ += text::columns(text);
-}
 
-void TextLine::append(const TextLine& line) {
-    text_ += line.text_;
-    if (colours_ && place(line.colour_) != 0) {
-        text_ += reset;
+    void append(const TextLine& line) {
+        text_ += line.text_;
+        if (colours_ && place(line.colour_) != 0) {
+            text_ += reset;
+        }
+        width_ += line.width();
     }
-    width_ += line.width();
-}
-
-void TextLine::pad(std::size_t width) {
-    if (width > width_) {
-        add(std::string(width - width_, ' '));
-    }
-}
-
-std::string TextLine::text() const {
-    constexpr std::string_view empty_braille = "\xE2\xA0\x80";
-    std::string_view text = text_;
-    for (;;) {
-        if (text.ends_with(' ')) {
-            text.remove_suffix(1);
-        } else if (text.ends_with(empty_braille)) {
-            text.remove_suffix(empty_braille.size());
-        } else {
-            break;
+    /// Blanks up to this width; nothing when it is wider already.
+    void pad(std::size_t width) {
+        if (width > width_) {
+            add(std::string(width - width_, ' '));
         }
     }
-    return std::string(text) + (colours_ && place(colour_) != 0 ? std::string(reset) : "");
-}
+
+    [[nodiscard]] std::size_t width() const { return width_; }
+    [[nodiscard]] std::string text() const {
+        constexpr std::string_view empty_braille = "\xE2\xA0\x80";
+        std::string_view text = text_;
+        for (;;) {
+            if (text.ends_with(' ')) {
+                text.remove_suffix(1);
+            } else if (text.ends_with(empty_braille)) {
+                text.remove_suffix(empty_braille.size());
+            } else {
+                break;
+            }
+        }
+        return std::string(text) + (colours_ && place(colour_) != 0 ? std::string(reset) : "");
+    }
+
+private:
+    bool colours_;
+    std::uint8_t colour_ = 0;
+    std::size_t width_ = 0;
+    std::string text_;
+};
+
+using TextBlock = std::vector<TextLine>;
 
 /// Blocks beside each other, two columns between them.
 TextBlock beside(const std::vector<TextBlock>& blocks, bool colours) {

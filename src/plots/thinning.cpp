@@ -35,11 +35,59 @@ class Corners {
 public:
     Corners(std::vector<std::size_t>& kept, double tolerance) : kept_(kept), tolerance_(tolerance) {}
 
-    void add(std::size_t i, Point point);
-    void finish();  ///< the piece ends here; the next point begins another one
+    void add(std::size_t i, Point point) {
+        if (!open_) {
+            begin(i, point);
+            return;
+        }
+        const double dx = point.x - corner_.x;
+        const double dy = point.y - corner_.y;
+        const double distance = std::hypot(dx, dy);
+        if (distance <= tolerance_ && reach_ <= tolerance_) {
+            last_ = i;
+            last_point_ = point;
+            return;
+        }
+        const double direction = std::atan2(dy, dx);
+        const double half = std::asin(std::min(1.0, tolerance_ / distance));
+        const double turn = has_cone_ ? std::remainder(direction - middle_, 2 * std::numbers::pi) : 0;
+        if (has_cone_ && (turn < low_ || turn > high_ || distance < reach_ - tolerance_)) {
+            const std::size_t corner = last_;
+            const Point corner_point = last_point_;
+            begin(corner, corner_point);
+            add(i, point);
+            return;
+        }
+        if (!has_cone_) {
+            has_cone_ = true;
+            middle_ = direction;
+            low_ = -half;
+            high_ = half;
+        } else {
+            low_ = std::max(low_, turn - half);
+            high_ = std::min(high_, turn + half);
+        }
+        reach_ = std::max(reach_, distance);
+        last_ = i;
+        last_point_ = point;
+    }
+    /// The piece ends here; the next point begins another one.
+    void finish() {
+        if (open_ && last_ != kept_.back()) {
+            kept_.push_back(last_);
+        }
+        open_ = false;
+    }
 
 private:
-    void begin(std::size_t i, Point point);
+    void begin(std::size_t i, Point point) {
+        kept_.push_back(i);
+        open_ = true;
+        has_cone_ = false;
+        corner_ = last_point_ = point;
+        last_ = i;
+        reach_ = 0;
+    }
 
     std::vector<std::size_t>& kept_;
     double tolerance_;
@@ -49,59 +97,6 @@ private:
     std::size_t last_ = 0;
     double middle_ = 0, low_ = 0, high_ = 0, reach_ = 0;
 };
-
-void Corners::add(std::size_t i, Point point) {
-    if (!open_) {
-        begin(i, point);
-        return;
-    }
-    const double dx = point.x - corner_.x;
-    const double dy = point.y - corner_.y;
-    const double distance = std::hypot(dx, dy);
-    if (distance <= tolerance_ && reach_ <= tolerance_) {
-        last_ = i;
-        last_point_ = point;
-        return;
-    }
-    const double direction = std::atan2(dy, dx);
-    const double half = std::asin(std::min(1.0, tolerance_ / distance));
-    const double turn = has_cone_ ? std::remainder(direction - middle_, 2 * std::numbers::pi) : 0;
-    if (has_cone_ && (turn < low_ || turn > high_ || distance < reach_ - tolerance_)) {
-        const std::size_t corner = last_;
-        const Point corner_point = last_point_;
-        begin(corner, corner_point);
-        add(i, point);
-        return;
-    }
-    if (!has_cone_) {
-        has_cone_ = true;
-        middle_ = direction;
-        low_ = -half;
-        high_ = half;
-    } else {
-        low_ = std::max(low_, turn - half);
-        high_ = std::min(high_, turn + half);
-    }
-    reach_ = std::max(reach_, distance);
-    last_ = i;
-    last_point_ = point;
-}
-
-void Corners::finish() {
-    if (open_ && last_ != kept_.back()) {
-        kept_.push_back(last_);
-    }
-    open_ = false;
-}
-
-void Corners::begin(std::size_t i, Point point) {
-    kept_.push_back(i);
-    open_ = true;
-    has_cone_ = false;
-    corner_ = last_point_ = point;
-    last_ = i;
-    reach_ = 0;
-}
 
 /// A grid of square cells over the sheet, and how often each was touched: a million lines above one another are no more
 /// ink than a few.

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "plots/line.hpp"
+#include "plots/figure.hpp"
 
 namespace dinal::plots {
 

@@ -115,9 +115,9 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
 std::optional<lua::Token> open_bracket(std::string_view text) {
     std::vector<lua::Token> open;
     for (const lua::Token& token : lua::tokens(text)) {
-        if (token.is("(") || token.is("{") || token.is("[")) {
+        if (token.nesting() > 0) {
             open.push_back(token);
-        } else if ((token.is(")") || token.is("}") || token.is("]")) && !open.empty()) {
+        } else if (token.nesting() < 0 && !open.empty()) {
             open.pop_back();
         }
     }

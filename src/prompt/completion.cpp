@@ -326,12 +326,6 @@ std::string signature_hint(lua_State* L, std::string_view before) {
 
 namespace {
 
-bool opens(const lua::Token& token) {
-    return token.is("(") || token.is("{") || token.is("[");
-}
-bool closes_bracket(const lua::Token& token) {
-    return token.is(")") || token.is("}") || token.is("]");
-}
 bool separates(const lua::Token& token) {
     return token.is(".") || token.is(":");
 }
@@ -379,14 +373,14 @@ std::span<const lua::Token> TypedText::expression_before(std::size_t end) const 
                 break;
             }
             --begin;
-        } else if (closes_bracket(last)) {
+        } else if (last.nesting() < 0) {
             int depth = 0;
             do {
                 --begin;
-                depth += closes_bracket(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
+                depth -= tokens_[begin].nesting();
             } while (depth > 0 && begin > 0);
             const bool called =
-                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || closes_bracket(tokens_[begin - 1]));
+                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || tokens_[begin - 1].nesting() < 0);
             if (!called) {
                 break;
             }
@@ -403,9 +397,9 @@ std::span<const lua::Token> TypedText::expression_before(std::size_t end) const 
 std::vector<std::size_t> TypedText::open_brackets() const {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
-        if (opens(tokens_[i])) {
+        if (tokens_[i].nesting() > 0) {
             open.push_back(i);
-        } else if (closes_bracket(tokens_[i]) && !open.empty()) {
+        } else if (tokens_[i].nesting() < 0 && !open.empty()) {
             open.pop_back();
         }
     }
@@ -456,7 +450,7 @@ void TypedText::find_call() {
     }
     int depth = 0;
     for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {
-        depth += opens(tokens_[i]) ? 1 : closes_bracket(tokens_[i]) ? -1 : 0;
+        depth += tokens_[i].nesting();
         if (depth == 0 && tokens_[i].kind == lua::TokenKind::name && tokens_[i + 1].is("=")) {
             call.given.push_back(tokens_[i].text);
         }
@@ -475,10 +469,6 @@ void TypedText::find_call() {
 namespace {
 
 constexpr int most_metatables = 10;  // an __index may lead to itself
-
-bool closes(const lua::Token& token) {
-    return token.is(")") || token.is("}") || token.is("]");
-}
 
 /// One that means what stands between its quotes.
 bool is_plain_string(const lua::Token& token) {
@@ -640,7 +630,7 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
         const lua::Token& token = expression[i];
         if (token.kind == lua::TokenKind::name) {
             walk.go_to_field(token.text);
-        } else if (token.kind == lua::TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
+        } else if (token.kind == lua::TokenKind::string || token.nesting() > 0) {
             const lua::Token* key =
                 i + 2 < expression.size() && expression[i + 2].is("]") ? &expression[i + 1] : nullptr;
             if (!token.is("[")) {
@@ -654,9 +644,7 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
             }
             int depth = token.kind == lua::TokenKind::string ? 0 : 1;
             while (depth > 0 && i + 1 < expression.size()) {
-                ++i;
-                const lua::Token& inner = expression[i];
-                depth += inner.is("(") || inner.is("{") || inner.is("[") ? 1 : closes(inner) ? -1 : 0;
+                depth += expression[++i].nesting();
             }
         }
     }

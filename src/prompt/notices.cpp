@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "errors/meant_method.hpp"
 #include "errors/misspelling.hpp"
 #include "errors/source_text.hpp"
 #include "help/help_text.hpp"
@@ -27,11 +26,10 @@ namespace dinal::prompt {
 namespace {
 
 /// Commands of shells, notebooks and other languages, and what does the same here.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> words_and_cures = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> words_and_cures = {{
     {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
     {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
     {"who whos", ":who lists your variables"},
-    {"ls dir pwd cd", "dinal has no shell commands; Ctrl-Z suspends dinal, and fg brings it back"},
     {"man", "help \"name\" explains a name"},
     {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them to a script"},
     {"save", ":save lab.lua writes your inputs to a script, run:save(\"run.csv\") writes a run"},
@@ -117,8 +115,7 @@ std::string element_notice(lua_State* L, const Chunk& chunk) {
     const std::vector<std::string> names =
         owner.kind == Meaning::Kind::value && lua_istable(L, -1) ? errors::member_names(L) : std::vector<std::string>();
     lua_settop(L, top);
-    const std::vector<std::string_view> views(names.begin(), names.end());
-    const std::string hint = text::did_you_mean(all.back().text, views);
+    const std::string hint = text::did_you_mean(all.back().text, names);
     if (!hint.empty()) return fmt::format("there is no '{}' in it{}", all.back().text, hint);
     constexpr std::size_t few = 8;
     return names.empty() || names.size() > few
@@ -165,13 +162,6 @@ std::string python_block(const std::vector<lua::Token>& all) {
 }
 
 }  // namespace
-
-std::string shell_notice(const std::string& text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
-    return all.size() > 1 && all[0].is("dinal") && all[1].kind == lua::TokenKind::comment
-               ? "that is a command for the shell: leave dinal with :quit first"
-               : "";
-}
 
 std::string unfinished_notice(lua_State* L, const std::string& text) {
     if (std::string notice = colon_notice(L, text); !notice.empty()) return notice;

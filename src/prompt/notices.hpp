@@ -14,9 +14,6 @@ std::string name_notice(lua_State* L, const Chunk& chunk);
 /// The expression, which is nil, is an element or a field that is not there: run.theta[0], run.events[1].theat.
 std::string element_notice(lua_State* L, const Chunk& chunk);
 
-/// "dinal --report a.lua": nothing for the prompt, and for Lua a name and a comment.
-std::string shell_notice(const std::string& text);
-
 /// A line that Lua takes for the beginning of a longer one, and hardly is: "run:events" waits for arguments that a
 /// field never gets and a method may have been expected to do without; "5%".
 std::string unfinished_notice(lua_State* L, const std::string& text);

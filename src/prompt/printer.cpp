@@ -127,37 +127,6 @@ std::string scalar_text(lua_State* L, int index, Place place, const terminal::Di
 
 // ---- The items of a Lua table in the order in which they are shown.
 
-/// 1, 2, ... n, then other numbers, the time t (events have one), other names, and the rest.
-// NOTE: the keys that are not 1 to n stand in a Lua table that this leaves on the stack. No destructor may take it off:
-// while a Lua error unwinds, its message is what is on the top.
-class TableItems {
-public:
-    TableItems(lua_State* L, int index);
-
-    [[nodiscard]] std::size_t size() const { return listed_ + others_; }
-    /// Of a huge table not all can be shown.
-    [[nodiscard]] std::size_t shown() const { return listed_ + order_.size(); }
-    /// Item i is one of 1, 2, ... n.
-    [[nodiscard]] bool in_list(std::size_t i) const { return i < listed_; }
-
-    /// Pushes the key and the value of item i.
-    void push(std::size_t i) const;
-
-private:
-    using Key = std::tuple<int, double, std::string, lua_Integer>;  // rank, number, name, place in the table of keys
-
-    void collect();
-    void add_key();
-    [[nodiscard]] bool key_is_listed() const;
-
-    lua_State* L_;
-    int table_;
-    int keys_ = 0;
-    std::size_t listed_;
-    std::size_t others_ = 0;
-    std::vector<Key> order_;
-};
-
 constexpr std::size_t most_sorted_keys = 500;  // beyond, the first that Lua finds are shown
 
 /// How many of 1, 2, ... there are. NOTE: not the border of rawlen, which may lie behind holes.
@@ -173,54 +142,77 @@ std::size_t list_length(lua_State* L, int index) {
     return static_cast<std::size_t>(border);
 }
 
-TableItems::TableItems(lua_State* L, int index) : L_(L), table_(index), listed_(list_length(L, index)) {
-    lua_newtable(L_);
-    keys_ = lua_gettop(L_);
-    collect();
-    std::sort(order_.begin(), order_.end());
-}
-
-void TableItems::push(std::size_t i) const {
-    if (in_list(i)) {
-        lua_pushinteger(L_, static_cast<lua_Integer>(i) + 1);
-    } else {
-        lua_rawgeti(L_, keys_, std::get<lua_Integer>(order_[i - listed_]));
+/// 1, 2, ... n, then other numbers, the time t (events have one), other names, and the rest.
+// NOTE: the keys that are not 1 to n stand in a Lua table that this leaves on the stack. No destructor may take it off:
+// while a Lua error unwinds, its message is what is on the top.
+class TableItems {
+public:
+    TableItems(lua_State* L, int index) : L_(L), table_(index), listed_(list_length(L, index)) {
+        lua_newtable(L_);
+        keys_ = lua_gettop(L_);
+        collect();
+        std::sort(order_.begin(), order_.end());
     }
-    lua_pushvalue(L_, -1);
-    lua_rawget(L_, table_);
-}
 
-bool TableItems::key_is_listed() const {
-    const lua_Integer i = lua_isinteger(L_, -2) != 0 ? lua_tointeger(L_, -2) : 0;
-    return i >= 1 && static_cast<std::size_t>(i) <= listed_;
-}
+    [[nodiscard]] std::size_t size() const { return listed_ + others_; }
+    /// Of a huge table not all can be shown.
+    [[nodiscard]] std::size_t shown() const { return listed_ + order_.size(); }
+    /// Item i is one of 1, 2, ... n.
+    [[nodiscard]] bool in_list(std::size_t i) const { return i < listed_; }
 
-void TableItems::collect() {
-    lua_pushnil(L_);
-    while (lua_next(L_, table_) != 0) {
-        if (!key_is_listed()) {
-            ++others_;
-            if (others_ <= most_sorted_keys) {
-                add_key();
-            }
+    /// Pushes the key and the value of item i.
+    void push(std::size_t i) const {
+        if (in_list(i)) {
+            lua_pushinteger(L_, static_cast<lua_Integer>(i) + 1);
+        } else {
+            lua_rawgeti(L_, keys_, std::get<lua_Integer>(order_[i - listed_]));
         }
-        lua_pop(L_, 1);
+        lua_pushvalue(L_, -1);
+        lua_rawget(L_, table_);
     }
-}
 
-void TableItems::add_key() {
-    const auto place = static_cast<lua_Integer>(others_);
-    lua_pushvalue(L_, -2);
-    if (lua_type(L_, -1) == LUA_TNUMBER) {
-        order_.emplace_back(0, lua_tonumber(L_, -1), "", place);
-    } else if (lua_type(L_, -1) == LUA_TSTRING) {
-        const std::string_view name = lua::text_at(L_, -1);
-        order_.emplace_back(name == "t" ? 1 : 2, 0, std::string(name), place);
-    } else {
-        order_.emplace_back(3, 0, "", place);
+private:
+    using Key = std::tuple<int, double, std::string, lua_Integer>;  // rank, number, name, place in the table of keys
+
+    void collect() {
+        lua_pushnil(L_);
+        while (lua_next(L_, table_) != 0) {
+            if (!key_is_listed()) {
+                ++others_;
+                if (others_ <= most_sorted_keys) {
+                    add_key();
+                }
+            }
+            lua_pop(L_, 1);
+        }
     }
-    lua_rawseti(L_, keys_, place);
-}
+
+    void add_key() {
+        const auto place = static_cast<lua_Integer>(others_);
+        lua_pushvalue(L_, -2);
+        if (lua_type(L_, -1) == LUA_TNUMBER) {
+            order_.emplace_back(0, lua_tonumber(L_, -1), "", place);
+        } else if (lua_type(L_, -1) == LUA_TSTRING) {
+            const std::string_view name = lua::text_at(L_, -1);
+            order_.emplace_back(name == "t" ? 1 : 2, 0, std::string(name), place);
+        } else {
+            order_.emplace_back(3, 0, "", place);
+        }
+        lua_rawseti(L_, keys_, place);
+    }
+
+    [[nodiscard]] bool key_is_listed() const {
+        const lua_Integer i = lua_isinteger(L_, -2) != 0 ? lua_tointeger(L_, -2) : 0;
+        return i >= 1 && static_cast<std::size_t>(i) <= listed_;
+    }
+
+    lua_State* L_;
+    int table_;
+    int keys_ = 0;
+    std::size_t listed_;
+    std::size_t others_ = 0;
+    std::vector<Key> order_;
+};
 
 constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
 constexpr std::size_t most_lines = 24;        // of one value,

@@ -16,7 +16,7 @@
 #include "api/lab_course.hpp"
 #include "api/report.hpp"
 #include "files/confinement.hpp"
-#include "files/temporaries.hpp"
+#include "files/file.hpp"
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"

@@ -215,7 +215,7 @@ void other_to_lua(lua_State* L, py::handle value, int depth) {
         if (!array) throw py::error_already_set();
         std::vector<double> numbers = lua::new_numbers(L, static_cast<std::size_t>(array.size()));
         std::copy_n(array.data(), array.size(), numbers.begin());
-        return lua::push_vector(L, std::move(numbers));
+        return static_cast<void>(lua::push_vector(L, std::move(numbers)));
     }
     const py::object plain = hooks().attr("plain")(value);
     if (!plain.is(value)) return to_lua(L, plain, depth + 1);

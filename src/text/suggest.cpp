@@ -156,14 +156,13 @@ int distance(std::string_view word, std::string_view name, Likeness likeness) {
 
 }  // namespace
 
-std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known,
-                                     Likeness likeness) {
+std::vector<std::string> suggestions(std::string_view word, const KnownNames& known, Likeness likeness) {
     std::vector<std::string> best;
     if (word.size() > longest_word) {
         return best;
     }
     int fewest = far;
-    for (const std::string_view name : known) {
+    for (const std::string_view name : known.names) {
         const int count = distance(word, name, likeness);
         if (count < fewest) {
             fewest = count;
@@ -179,7 +178,7 @@ std::vector<std::string> suggestions(std::string_view word, std::span<const std:
     return best;
 }
 
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> known, Likeness likeness) {
+std::string did_you_mean(std::string_view word, const KnownNames& known, Likeness likeness) {
     const std::vector<std::string> best = suggestions(word, known, likeness);
     if (best.empty()) {
         return {};

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "plots/bands.hpp"
 #include "plots/paper_layout.hpp"
 #include "plots/shades.hpp"
 #include "support/catch.hpp"

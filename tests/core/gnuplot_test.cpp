@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "plots/gnuplot_data.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/paper_layout.hpp"
 #include "plots/svg_words.hpp"

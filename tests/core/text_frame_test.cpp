@@ -1,4 +1,4 @@
-#include "plots/animation/text_frame.hpp"
+#include "plots/animation/scene.hpp"
 
 #include "support/catch.hpp"
 #include "text/characters.hpp"

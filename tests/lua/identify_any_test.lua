@@ -1,14 +1,14 @@
 -- Identification from a guess: any parameter, any measured quantity. Run by dinal.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+local test, near, equal, raises_here, fits = support.test, support.near, support.equal, support.raises_here, support.fits
 
 local function noise(n, std, seed) return vector.normal { n = n, std = std, seed = seed } end
 
 --- Every fitted value lies within five of its errors, and the errors say something.
 local function found(fit, truth, most)
+    fits(fit, truth, 5)
     for name, value in pairs(truth) do
-        near(fit[name], value, 5 * fit.std_error[name])
         assert(fit.std_error[name] > 0 and fit.std_error[name] < (most or 0.1) * math.abs(value), name .. " " .. fit.std_error[name])
     end
 end
@@ -23,7 +23,7 @@ test("velocities alone tell the system, with gaps in them", function()
     for i, x in ipairs(run.velocity + noise(#run, 0.01, 1)) do v[i] = i % 7 == 0 and 0 / 0 or x end
     local fit = identify { data = { t = run.t, velocity = v }, M = M, system = guess, free = { "I", "k", "C", "Rd" }, measured = "velocity" }
     found(fit, { I = 1, k = 4, C = 0.1, Rd = 0.1 })
-    near(fit.theta0, 0.3, 5 * fit.std_error.theta0)
+    fits(fit, { theta0 = 0.3 }, 5)
     near(fit.noise, 0.01, 0.001)
     equal(fit.system.k, fit.k)
     equal(#fit.residual, 801 - 801 // 7)
@@ -33,7 +33,7 @@ test("angles and accelerations of unequal noise are weighed", function()
     local d = data { t = run.t, x = run.theta + noise(#run, 0.02, 2), a = run.acceleration + noise(#run, 0.05, 3) }
     local fit = identify { data = d, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd", "offset" }, measured = { theta = "x", acceleration = "a" } }
     found(fit, { k = 4, C = 0.1, Rd = 0.1 })
-    near(fit.offset, 0, 5 * fit.std_error.offset)
+    fits(fit, { offset = 0 }, 5)
     local alone = identify { data = d, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd", "offset" }, measured = { theta = "x" } }
     assert(fit.std_error.k < alone.std_error.k)
 end)
@@ -57,7 +57,7 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     -- with another law the residual is no noise, and the errors know that
     fit = identify { data = record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
     assert(tostring(fit):find "correlated from sample to sample", tostring(fit))
-    near(fit.k, 4, 4 * fit.std_error.k)
+    fits(fit, { k = 4 })
 
     local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }

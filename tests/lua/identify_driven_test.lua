@@ -1,7 +1,8 @@
 -- identify: driven records whose mass stands, at first or on its way, or that are cut off; searches that flew away.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, near, raises_here, judge = support.test, support.equal, support.near, support.raises_here, support.judge
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+local judge, fits = support.judge, support.fits
 
 local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
 local function noisy(run, seed, std) return run.theta + vector.normal{ n = #run, seed = seed, std = std } end
@@ -16,7 +17,7 @@ test("a first velocity is found although the mass would stand at every small one
             local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.02) }, M = sweeping, I = 0.5, C = 0.5, Rd = 1.5,
                 Re = 2.2, offset = 0, theta0 = -0.4 }
             equal(#fit.silent, 0)
-            near(fit.velocity0, velocity, 4 * fit.std_error.velocity0)
+            fits(fit, { velocity0 = velocity })
             assert(fit.noise < 0.02 * (1 + 3 / (2 * #run)^0.5), fit.noise)
         end
     end
@@ -124,8 +125,7 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
     for _, ends in ipairs{ 0.5, 0.4, 0.3 } do
         local seen = noisy(run, 1, 0.002):map(function(x) return math.max(-ends, math.min(ends, x)) end)
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
-        near(fit.k, 40, 4 * fit.std_error.k)
-        near(fit.Rd, 1.2, 4 * fit.std_error.Rd)
+        fits(fit, { k = 40, Rd = 1.2 })
         assert(tostring(fit):find "samples have the extreme values of the record", ends)
     end
     local exact = identify{ data = run, M = two }
@@ -138,7 +138,7 @@ test("no search flies away: swings that no sample shows are none", function()
     local run = s:simulate{ theta0 = 0.709, t_end = 15.4, dt = 0.02 }
     for seed = 1, 8 do  -- every third one ended overdamped, with I of 1e-6
         local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.014) + 0.09 }, k = 4.74, velocity0 = 0 }
-        near(fit.I, 0.4, 4 * fit.std_error.I)
+        fits(fit, { I = 0.4 })
         assert(fit.noise < 0.016, fit.noise)
     end
     local two = excitation.harmonic{ amplitude = 10, frequency = 0.45 } + excitation.harmonic{ amplitude = 5, frequency = 1.3 }
@@ -205,7 +205,7 @@ test("a record from rest with Re > Rd is explained as well as by the truth", fun
         local noise = vector.normal{ n = #run, seed = case.seed, std = case.std }
         local fit = identify{ data = { t = run.t, theta = run.theta + noise }, M = M }
         assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), i)
-        near(fit.k, sys.k, 4 * fit.std_error.k, i)
+        fits(fit, { k = sys.k })
     end
 end)
 

@@ -108,7 +108,7 @@ test("a run in motion is on the page, and beside Markdown", function()
     r:animate(run)
     local page = saved(r, ".html")
     equal(select(2, page:gsub("<title>A run in motion, t = 1 to 3</title>", "")), 1)
-    assert(page:find('id="p2-floor"', 1, true) and page:find('url(#p2-floor)', 1, true) and page:find('dur="1.000s"', 1, true))
+    assert(page:find('id="p2-floor0"', 1, true) and page:find('url(#p2-floor0)', 1, true) and page:find('dur="1.000s"', 1, true))
     local text, name = saved(r, ".md")
     for i = 1, 2 do
         local picture = name:gsub("%.md$", ("-%d.svg"):format(i))
@@ -133,9 +133,11 @@ test("the end of CDATA in a label leaves the picture well formed", function()
 end)
 
 test("what cannot be reported is told in a sentence", function()
-    raises_here(function() report{} end, "report needs title")
-    raises_here(function() report{ title = 3 } end, "title must be")
-    raises_here(function() report{ title = " " } end, "report: the title is empty")
+    support.refuses(report, {
+        { {}, "report needs title" },
+        { { title = 3 }, "title must be" },
+        { { title = " " }, "report: the title is empty" },
+    })
     local r = report{ title = "x" }
     raises_here(function() r:text() end, "what is added must be text, got nil")
     raises_here(function() r:table(3) end, "r:table takes data")

@@ -134,6 +134,11 @@ function support.program()
     return arg[first]
 end
 
+--- Each of these numbers of the fit is within so many of its errors (4) of the truth.
+function support.fits(fit, truth, errors)
+    for name, value in pairs(truth) do support.near(fit[name], value, (errors or 4) * fit.std_error[name]) end
+end
+
 -- What z = (found - true) / error must be: 95 % of all within 1.96, and its root mean square, which is the ratio to the
 -- bound of Cramer and Rao (errors are computed from the derivatives at the fit), at most 1.3.
 function support.judge()

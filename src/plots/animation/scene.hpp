@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "model/extras.hpp"
+#include "plots/canvas.hpp"
 #include "plots/figure.hpp"
-#include "plots/line.hpp"
 #include "plots/run_figure.hpp"
 
 namespace dinal::plots::animation {
@@ -65,5 +65,27 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
 
 /// Where a spring of that many windings has its corners: fractions of its length, and of its width from -1 to 1.
 std::vector<Point> spring_corners(int windings);
+
+// An animation as SVG that a browser plays by itself: SMIL, no script.
+
+/// The mass, its spring, walls and surface, and below them theta over t with a dot that goes along. Repeats for ever.
+std::string animated_svg(const Scene& scene);
+
+/// Blocks on a floor, or on belts, with what links them; or discs on one axis. Below, the angles over t.
+std::string animated_svg(const RigScene& rig);
+
+/// "A run in motion, t = 0 to 10"
+std::string title_of(const Scene& scene);
+
+// One frame of an animation in characters.
+
+struct FrameFormat {
+    int columns = 80;  ///< no line is longer
+    Charset charset = Charset::braille;
+    bool colours = false;
+};
+
+/// Always as many lines: time and place, two of the mass on its spring between its walls, the surface, a scale.
+std::vector<std::string> text_frame(const Scene& scene, const Frame& frame, const FrameFormat& format);
 
 }  // namespace dinal::plots::animation

@@ -1,12 +1,16 @@
 #include "files/file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -14,9 +18,73 @@
 #include <utility>
 
 #include "files/confinement.hpp"
-#include "files/temporaries.hpp"
 
 namespace dinal::files {
+
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{4} << 30;  // /dev/zero never ends
+
+text::Error can_not_read(const std::string& path, const std::string& why) {
+    return {.sentence = "cannot read '" + path + "': " + why, .culprit = path};
+}
+
+bool (*stop_question)() noexcept = nullptr;
+
+}  // namespace
+
+void Descriptor::close() {
+    if (number_ >= 0) {
+        ::close(std::exchange(number_, -1));
+    }
+}
+
+text::Expected<std::string> read_file(const std::string& path) {
+    if (path.find('\0') != std::string::npos) {
+        return can_not_read(path.substr(0, path.find('\0')), "its name contains a NUL byte");
+    }
+    if (const auto why = outside(path, Access::read)) {
+        return can_not_read(path, *why);
+    }
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    struct stat status {};
+    if (file.number() < 0 || ::fstat(file.number(), &status) != 0) {
+        return can_not_read(path, std::generic_category().message(errno));
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return can_not_read(path, "it is a folder, not a file");
+    }
+    std::string text;
+    std::size_t length = 0;
+    std::size_t room = std::max<std::size_t>(static_cast<std::size_t>(status.st_size) + 1, 4096);
+    for (;;) {
+        if (length >= largest_file || room > largest_file + 1) {
+            return can_not_read(path, "it is larger than 4 GiB");
+        }
+        text.resize(room);
+        const ssize_t count = ::read(file.number(), text.data() + length, room - length);
+        if (count < 0) {
+            return can_not_read(path, std::generic_category().message(errno));
+        }
+        if (count == 0) {
+            text.resize(length);
+            return text;
+        }
+        length += static_cast<std::size_t>(count);
+        if (length == room) {
+            room = std::min(2 * room, largest_file + 1);
+        }
+    }
+}
+
+void set_stop_question(bool (*question)() noexcept) noexcept {
+    stop_question = question;
+}
+
+bool shall_stop() noexcept {
+    return stop_question != nullptr && stop_question();
+}
+
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;  // stays in the second-level cache
@@ -273,6 +341,70 @@ std::optional<text::Error> Journal::add(std::string_view line) const {
         return std::nullopt;
     }
     return can_not_write(path_, reason(written < 0 ? errno : ENOSPC));
+}
+
+namespace {
+
+constexpr int slots = 64;  // as many files may be written at once; of more than that some would be left behind
+constexpr std::size_t longest_name = 4096;
+
+enum class Use { free, filling, taken };
+static_assert(std::atomic<Use>::is_always_lock_free, "a signal handler may use lock-free atomics only");
+
+struct Slot {
+    std::atomic<Use> use = Use::free;
+    std::array<char, longest_name> name{};
+};
+std::array<Slot, slots> noted_names;
+
+extern "C" void end_by_signal(int signal) {
+    for (Slot& slot : noted_names) {
+        if (slot.use == Use::taken) static_cast<void>(::unlink(slot.name.data()));
+    }
+    struct sigaction action {};
+    action.sa_handler = SIG_DFL;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
+    static_cast<void>(::raise(signal));  // when the handler has returned
+}
+
+extern "C" void do_nothing(int) {}
+
+void install(int signal, void (*handler)(int), int flags) {
+    struct sigaction action {};
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) return;
+    action.sa_handler = handler;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = flags;
+    ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void note_temporary(const std::string& name) {
+    if (name.size() >= longest_name) return;
+    for (Slot& slot : noted_names) {
+        Use free = Use::free;
+        if (!slot.use.compare_exchange_strong(free, Use::filling)) continue;
+        std::copy(name.begin(), name.end(), slot.name.begin());
+        slot.name[name.size()] = '\0';
+        slot.use = Use::taken;
+        return;
+    }
+}
+
+void forget_temporary(const std::string& name) {
+    for (Slot& slot : noted_names) {
+        if (slot.use == Use::taken && name == slot.name.data()) {
+            slot.use = Use::free;
+            return;
+        }
+    }
+}
+
+void clean_up_on_signals() {
+    for (const int signal : {SIGTERM, SIGHUP, SIGQUIT}) install(signal, end_by_signal, SA_RESTART);
+    install(SIGXFSZ, do_nothing, SA_RESTART);  // and the write fails with EFBIG
 }
 
 }  // namespace dinal::files
