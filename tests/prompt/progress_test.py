@@ -3,41 +3,24 @@
 import re
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from home import PROGRAM
-from session import AT_ONCE, CTRL_C, PATIENCE, environment, processor_time
+from home import PROGRAM, AtHome
+from screen import Screen
+from session import AT_ONCE, CTRL_C, PATIENCE, processor_time
 
 import pexpect
-
-try:
-    import pyte
-except ImportError:
-    sys.exit("the tests of the progress line need pyte: apt-get install python3-pyte")
 
 # Longer than any test waits; a native excitation, so that nothing but the stepping loop runs.
 LONG = "nondimensional{ zeta = 0.1 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 1e9, times = {} }"
 LINE = re.compile(r" *\d+% ")
 
 
-class Terminal:
-    """A program on a screen of so many columns."""
-
-    def __init__(self, arguments, columns=80, rows=12, **variables):
-        self.home = tempfile.TemporaryDirectory()
-        self.child = pexpect.spawn(PROGRAM, arguments, env=environment(self.home.name, **variables), cwd=self.home.name,
-                                   dimensions=(rows, columns), timeout=PATIENCE)
-        self.child.delaybeforesend = None
-        self.screen = pyte.Screen(columns, rows)
-        self.stream = pyte.ByteStream(self.screen)
-
-    def close(self):
-        self.child.close(True)
-        self.home.cleanup()
+class Program(Screen):
+    """It may end before anything is seen."""
 
     def read(self, seconds):
         try:
@@ -71,9 +54,9 @@ def progress_lines(lines):
     return [line for line in lines if "% " in line]
 
 
-class TerminalTest(unittest.TestCase):
+class TerminalTest(AtHome):
     def start(self, *arguments, **options):
-        terminal = Terminal(list(arguments), **options)
+        terminal = Program(PROGRAM, self.home, *arguments, **{"height": 12, **options})
         self.addCleanup(terminal.close)
         return terminal
 
@@ -94,7 +77,7 @@ class TheLine(TerminalTest):
         self.assertEqual(terminal.until_the_end(), ["done"])
 
     def test_it_fits_every_window_also_one_that_changes(self):
-        terminal = self.start("-e", LONG, columns=132)
+        terminal = self.start("-e", LONG, width=132)
         terminal.until(progress_lines)
         for columns, pattern in [(80, "left$"), (40, "left$"), (20, "left$"), (10, "0%$"), (60, "left$")]:
             with self.subTest(columns):
@@ -190,7 +173,7 @@ class AtThePrompt(TerminalTest):
         terminal.until(lambda lines: re.fullmatch("interrupted +true +true +true", lines[-2]))
 
     def test_the_session_goes_on(self):
-        terminal, _ = self.interrupted_run(columns=40, LC_ALL="C")
+        terminal, _ = self.interrupted_run(width=40, LC_ALL="C")
         terminal.child.send("6*7\r")
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
 

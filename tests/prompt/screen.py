@@ -10,8 +10,8 @@ from session import PATIENCE, environment
 CTRL_C, CTRL_D, CTRL_R, TAB, UP, LEFT, ENTER = "\x03", "\x04", "\x12", "\t", "\x1b[A", "\x1b[D", "\r"
 
 
-class Terminal:
-    """Every look at the screen waits until it shows what is looked for."""
+class Screen:
+    """A program, and what it has drawn."""
 
     def __init__(self, program, home, *arguments, width=80, height=30, **variables):
         self.screen = pyte.Screen(width, height)
@@ -20,6 +20,16 @@ class Terminal:
                                    dimensions=(height, width), timeout=PATIENCE)
         self.child.delaybeforesend = None
         self.raw = b""
+
+    def close(self):
+        self.child.close(force=True)
+
+
+class Terminal(Screen):
+    """Every look at the screen waits until it shows what is looked for."""
+
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
         self.wait(lambda: self.lines() and self.lines()[-1] == ">")
 
     def lines(self):
@@ -81,6 +91,3 @@ class Terminal:
         """A window with another width, which cuts what stands behind."""
         self.screen.resize(columns=width)
         self.child.setwinsize(self.screen.lines, width)
-
-    def close(self):
-        self.child.close(force=True)

@@ -23,6 +23,13 @@ Load load_of(Shape shape, std::vector<double> breaks = {}, double quickest = 0) 
             quickest};
 }
 
+/// A native term, told as the Lua text that makes it.
+template <class Term>
+Ingredient term_of(const Term& term, Load load) {
+    return {text::lua_text(Term::about.call.name, Term::about.call.options, term, text::Defaults::written),
+            native(term), std::move(load)};
+}
+
 /// From, from + step, ... all over the window, also when they are delayed later on.
 std::vector<double> every(double from, double step, const Units& u, std::vector<double> parts = {0}) {
     std::vector<double> times;
@@ -64,39 +71,34 @@ Ingredient short_term(Lot& lot, const Units& u) {
     const double width = u.period * lot.power_of_ten(-3, 0.3);
     switch (lot.of(6)) {
         case 0:
-            return {fmt::format("constant {:.17g}", a), native(model::Constant{a}),
-                    load_of([=](auto, auto) { return a; })};
+            return term_of(model::Constant{a}, load_of([=](auto, auto) { return a; }));
         case 1:
-            return {fmt::format("step {:.17g} at {:.17g}", a, at), native(model::Step{a, at}),
-                    load_of([=](auto, auto inside) { return inside < at ? 0 : a; }, {at})};
+            return term_of(model::Step{a, at}, load_of([=](auto, auto inside) { return inside < at ? 0 : a; }, {at}));
         case 2:
-            return {fmt::format("pulse {:.17g} at {:.17g} width {:.17g}", a, at, width),
-                    native(model::Pulse{a, at, width}),
-                    load_of([=](auto, auto in) { return in < at || in >= at + width ? 0 : a; }, {at, at + width})};
+            return term_of(
+                model::Pulse{a, at, width},
+                load_of([=](auto, auto in) { return in < at || in >= at + width ? 0 : a; }, {at, at + width}));
         case 3:
-            return {fmt::format("half_sine {:.17g} at {:.17g} width {:.17g}", a, at, width),
-                    native(model::HalfSine{a, at, width}),
-                    load_of(
-                        [=](auto t, auto in) -> real {
-                            return in < at || in >= at + width ? 0 : a * std::sin(pi * (t - at) / width);
-                        },
-                        {at, at + width})};
+            return term_of(model::HalfSine{a, at, width},
+                           load_of(
+                               [=](auto t, auto in) -> real {
+                                   return in < at || in >= at + width ? 0 : a * std::sin(pi * (t - at) / width);
+                               },
+                               {at, at + width}));
         case 4: {
             const double slope = a / width;
-            return {fmt::format("ramp slope {:.17g} at {:.17g} width {:.17g}", slope, at, width),
-                    native(model::Ramp{slope, at, width}),
-                    load_of(
-                        [=](auto t, auto in) -> real {
-                            return in < at ? 0 : slope * (in < at + width ? t - at : static_cast<real>(width));
-                        },
-                        {at, at + width})};
+            return term_of(model::Ramp{slope, at, width},
+                           load_of(
+                               [=](auto t, auto in) -> real {
+                                   return in < at ? 0 : slope * (in < at + width ? t - at : static_cast<real>(width));
+                               },
+                               {at, at + width}));
         }
         default: {
             const double tau = u.period * (lot.once_in(4) ? -lot.between(8, 20) : lot.power_of_ten(-1.5, 1));
-            return {
-                fmt::format("exponential {:.17g} at {:.17g} tau {:.17g}", a, at, tau),
-                native(model::Exponential{a, tau, at}),
-                load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at})};
+            return term_of(
+                model::Exponential{a, tau, at},
+                load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
         }
     }
 }
@@ -109,25 +111,25 @@ Ingredient periodic_term(Lot& lot, const Units& u) {
     switch (lot.of(3)) {
         case 0: {
             const double duty = lot.between(0.05, 0.95);
-            return {fmt::format("square {:.17g} period {:.17g} duty {:.17g} at {:.17g}", a, period, duty, at),
-                    native(model::Square{a, period, duty, at}),
-                    load_of([=](auto, auto in) { return (in - at) / period - cycle(in) < duty ? a : -a; },
-                            every(at, period, u, {0, duty}))};
+            return term_of(model::Square{a, period, duty, at},
+                           load_of([=](auto, auto in) { return (in - at) / period - cycle(in) < duty ? a : -a; },
+                                   every(at, period, u, {0, duty})));
         }
         case 1:
-            return {fmt::format("sawtooth {:.17g} period {:.17g} at {:.17g}", a, period, at),
-                    native(model::Sawtooth{a, period, at}),
-                    load_of([=](auto t, auto in) -> real { return -a + 2 * a * ((t - at) / period - cycle(in)); },
-                            every(at, period, u))};
+            return term_of(
+                model::Sawtooth{a, period, at},
+                load_of([=](auto t, auto in) -> real { return -a + 2 * a * ((t - at) / period - cycle(in)); },
+                        every(at, period, u)));
         default:
-            return {fmt::format("triangle {:.17g} period {:.17g} at {:.17g}", a, period, at),
-                    native(model::Triangle{a, period, at}),
-                    load_of(
-                        [=](auto t, auto in) -> real {
-                            const real x = (t - at) / period - cycle(in), middle = (in - at) / period - cycle(in);
-                            return middle < 0.25L ? 4 * a * x : middle < 0.75L ? a * (2 - 4 * x) : a * (4 * x - 4);
-                        },
-                        every(at, period, u, {0.25, 0.75}))};
+            return term_of(model::Triangle{a, period, at}, load_of(
+                                                               [=](auto t, auto in) -> real {
+                                                                   const real x = (t - at) / period - cycle(in),
+                                                                              middle = (in - at) / period - cycle(in);
+                                                                   return middle < 0.25L   ? 4 * a * x
+                                                                          : middle < 0.75L ? a * (2 - 4 * x)
+                                                                                           : a * (4 * x - 4);
+                                                               },
+                                                               every(at, period, u, {0.25, 0.75})));
     }
 }
 
@@ -142,10 +144,8 @@ Ingredient chirp(Lot& lot, const Units& u) {
                                                  : duration * ((f0 + f1) / 2) + f1 * (x - duration);
         return a * std::sin(2 * pi * cycles + phase);
     };
-    return {fmt::format("chirp {:.17g} from {:.17g} to {:.17g} duration {:.17g} at {:.17g} phase {:.17g}", a, f0, f1,
-                        duration, at, phase),
-            native(model::Chirp{a, f0, f1, duration, at, phase}),
-            load_of(shape, {at, at + duration}, 6.3 * std::max(f0, f1))};
+    return term_of(model::Chirp{a, f0, f1, duration, at, phase},
+                   load_of(shape, {at, at + duration}, 6.3 * std::max(f0, f1)));
 }
 
 Ingredient polynomial(Lot& lot, const Units& u) {
@@ -157,8 +157,7 @@ Ingredient polynomial(Lot& lot, const Units& u) {
         for (auto x = c.rbegin(); x != c.rend(); ++x) sum = sum * (t - at) + *x;
         return sum;
     };
-    return {fmt::format("polynomial {:.17g} at {:.17g}", fmt::join(c, ", "), at), native(model::Polynomial{c, at}),
-            load_of(shape, {}, 3 / length)};
+    return term_of(model::Polynomial{c, at}, load_of(shape, {}, 3 / length));
 }
 
 Ingredient table(Lot& lot, const Units& u) {
@@ -179,10 +178,9 @@ Ingredient table(Lot& lot, const Units& u) {
 Ingredient sine(Lot& lot, const Units& u) {
     const double a = u.torque * lot.between(0.2, 1.5), phase = lot.once_in(2) ? 0 : lot.between(0, 6.2);
     const double omega = (lot.once_in(5) ? 1 : lot.between(0.05, 3)) * (6.283185307179586 / u.period);
-    return {
-        fmt::format("harmonic {:.17g} omega {:.17g} phase {:.17g}", a, omega, phase),
-        native(model::Harmonic{a, omega, phase}),
-        load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega)};
+    return term_of(
+        model::Harmonic{a, omega, phase},
+        load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega));
 }
 
 }  // namespace
@@ -213,17 +211,15 @@ Ingredient random_resonant_term(Lot& lot, const Units& u, double damping_ratio) 
     if (damping_ratio < 1 && !lot.once_in(4)) {
         const double a = u.torque * lot.between(0.05, 0.5), phase = lot.between(0, 6.2);
         const double omega = w0 * detuned * std::sqrt((1 - damping_ratio) * (1 + damping_ratio));
-        return {fmt::format("harmonic {:.17g} omega {:.17g} phase {:.17g}", a, omega, phase),
-                native(model::Harmonic{a, omega, phase}),
-                load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {},
-                        omega)};
+        return term_of(model::Harmonic{a, omega, phase},
+                       load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); },
+                               {}, omega));
     }
     const double zeta = damping_ratio, root = zeta > 1 ? std::sqrt((zeta - 1) * (zeta + 1)) : 0;
     const double rate = w0 * detuned * (root > 0 && lot.once_in(2) ? 1 / (zeta + root) : std::max(zeta + root, 0.1));
     const double a = u.torque * lot.between(-1, 1), at = u.window.start, tau = 1 / rate;
-    return {fmt::format("exponential {:.17g} at {:.17g} tau {:.17g}", a, at, tau),
-            native(model::Exponential{a, tau, at}),
-            load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at})};
+    return term_of(model::Exponential{a, tau, at},
+                   load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
 }
 
 /// A narrow one is as great as it must be to be felt. The oracle, which takes some steps between breaks, is told of
@@ -237,8 +233,7 @@ Ingredient random_bump(Lot& lot, const Units& u, double width) {
         const real x = (t - at) / width;
         return a * std::exp(-x * x / 2);
     };
-    return {fmt::format("gaussian {:.17g} at {:.17g} width {:.17g}", a, at, width),
-            native(model::Gaussian{a, at, width}), load_of(shape, steps)};
+    return term_of(model::Gaussian{a, at, width}, load_of(shape, steps));
 }
 
 /// Smooth, with jumps, with kinks; with its jumps announced or not.
