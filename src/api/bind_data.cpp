@@ -18,6 +18,7 @@
 #include "api/picture.hpp"
 #include "files/csv.hpp"
 #include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/options.hpp"
 #include "lua/values.hpp"
 #include "lua/worker_state.hpp"
@@ -224,53 +225,6 @@ std::string data_card(lua_State* L, int index, const terminal::Display& screen) 
     lua::fail(L, "data", std::move(error));
 }
 
-/// The column whose values are on the top of the stack.
-DataColumn column_on_top(lua_State* L, const std::string& name) {
-    if (const auto* vector = lua::test<lua::Vector>(L, -1)) return {name, *vector};
-    if (!lua_istable(L, -1)) {
-        fail_data(L, {.sentence = fmt::format("{} must be a vector, or a table of numbers or of strings, got {}", name,
-                                              lua::describe(L, -1)),
-                      .option = name,
-                      .culprit = lua::written(L, -1)});
-    }
-    const std::size_t n = lua_rawlen(L, -1);
-    std::vector<std::string> words;
-    std::vector<double> numbers;
-    for (std::size_t i = 1; i <= n; ++i) {
-        const int type = lua_rawgeti(L, -1, static_cast<lua_Integer>(i));
-        if (type == LUA_TSTRING && numbers.empty()) {
-            words.emplace_back(lua_tostring(L, -1));
-        } else if (type == LUA_TNUMBER && words.empty()) {
-            numbers.push_back(lua_tonumber(L, -1));
-        } else {
-            fail_data(
-                L, {.sentence = fmt::format("{}[{}] must be a {}, got {}", name, i,
-                                            words.empty() ? "number" : "string as those before", lua::describe(L, -1)),
-                    .option = name,
-                    .culprit = lua::written(L, -1)});
-        }
-        lua_pop(L, 1);
-    }
-    if (const std::string key = lua::key_beside_list(L, -1); !key.empty()) {
-        fail_data(L, {.sentence = fmt::format("{} must be a list such as {{ 1, 2, 3 }}, but it has {}", name, key),
-                      .option = name});
-    }
-    return words.empty() ? column_of(name, std::move(numbers)) : column_of(name, std::move(words));
-}
-
-/// { "r", v } at the top of the stack.
-DataColumn listed_column(lua_State* L, lua_Integer place) {
-    const bool pair = lua_istable(L, -1) && lua_rawgeti(L, -1, 1) == LUA_TSTRING;
-    if (!pair) {
-        fail_data(L, {fmt::format("item {} must be a name and its column, {{ \"r\", v }}; or name it, r = v", place)});
-    }
-    const std::string name = lua_tostring(L, -1);
-    lua_rawgeti(L, -2, 2);
-    DataColumn column = column_on_top(L, name);
-    lua_pop(L, 2);
-    return column;
-}
-
 void check_columns(lua_State* L, const Data& data) {
     if (data.columns.empty()) {
         fail_data(L, {"there is no column; for example data{ r = { 0.5, 1 }, A = { 1.3, 4 } }"});
@@ -295,23 +249,11 @@ int data_make(lua_State* L) {
                     .call = "data"});
     }
     Data data;
-    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, 2));
-    for (lua_Integer i = 1; i <= listed; ++i) {
-        lua_rawgeti(L, 2, i);
-        data.columns.push_back(listed_column(L, i));
-        lua_pop(L, 1);
-    }
-    const auto first_named = static_cast<std::ptrdiff_t>(data.columns.size());
-    lua_pushnil(L);
-    while (lua_next(L, 2) != 0) {
-        if (lua_type(L, -2) == LUA_TSTRING) {
-            data.columns.push_back(column_on_top(L, lua_tostring(L, -2)));
-        }
-        lua_pop(L, 1);
-    }
-    // A Lua table does not know in which order it was written.
-    std::sort(data.columns.begin() + first_named, data.columns.end(),
-              [](const DataColumn& a, const DataColumn& b) { return a.name < b.name; });
+    data.columns = columns_in(
+        L, 2, [L](const std::string& name) { return read_column(L, "data", name); },
+        [L](lua_Integer i) {
+            fail_data(L, {fmt::format("item {} must be a name and its column, {{ \"r\", v }}; or name it, r = v", i)});
+        });
     check_columns(L, data);
     return push_data(L, std::move(data));
 }
@@ -336,6 +278,63 @@ constexpr lua::Member data_module_members[] = {
 };
 
 }  // namespace
+
+DataColumn read_column(lua_State* L, const char* call, const std::string& name) {
+    if (const auto* vector = lua::test<lua::Vector>(L, -1)) return {name, *vector};
+    if (!lua_istable(L, -1)) {
+        lua::fail(L, call,
+                  {.sentence = fmt::format("{} must be a vector, or a table of numbers or of strings, got {}", name,
+                                           lua::describe(L, -1)),
+                   .option = name,
+                   .culprit = lua::written(L, -1)});
+    }
+    const std::size_t n = lua_rawlen(L, -1);
+    std::vector<std::string> words;
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i <= n; ++i) {
+        const int type = lua_rawgeti(L, -1, static_cast<lua_Integer>(i));
+        if (type == LUA_TSTRING && numbers.empty()) {
+            words.emplace_back(lua::text_at(L, -1));
+        } else if (type == LUA_TNUMBER && words.empty()) {
+            numbers.push_back(lua_tonumber(L, -1));
+        } else {
+            lua::fail(
+                L, call,
+                {.sentence = fmt::format("{}[{}] must be a {}, got {}", name, i,
+                                         words.empty() ? "number" : "string as those before", lua::describe(L, -1)),
+                 .option = name,
+                 .culprit = lua::written(L, -1)});
+        }
+        lua_pop(L, 1);
+    }
+    if (const std::string key = lua::key_beside_list(L, -1); !key.empty()) {
+        lua::fail(L, call,
+                  {.sentence = fmt::format("{} must be a list such as {{ 1, 2, 3 }}, but it has {}", name, key),
+                   .option = name});
+    }
+    return words.empty() ? column_of(name, std::move(numbers)) : column_of(name, std::move(words));
+}
+
+std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<DataColumn(const std::string&)>& read,
+                                   const std::function<void(lua_Integer)>& no_pair) {
+    std::vector<DataColumn> columns;
+    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, table));
+    for (lua_Integer i = 1; i <= listed; ++i) {
+        lua_rawgeti(L, table, i);
+        if (!lua_istable(L, -1) || lua_rawgeti(L, -1, 1) != LUA_TSTRING) no_pair(i);
+        const std::string name(lua::text_at(L, -1));
+        lua_rawgeti(L, -2, 2);
+        columns.push_back(read(name));
+        lua_pop(L, 3);
+    }
+    for (const std::string& name : lua::text_keys(L, table)) {
+        lua::push_text(L, name);
+        lua_rawget(L, table);
+        columns.push_back(read(name));
+        lua_pop(L, 1);
+    }
+    return columns;
+}
 
 int data_functions::column(lua_State* L) {
     const DataHandle& data = self(L, "d:column(\"r\")");

@@ -237,10 +237,6 @@ constexpr lua::Member picture_members[] = {
       "print(select(2, tostring(p):gsub(\"\\n\", \"\")))  --> 9"}},
 };
 
-}  // namespace
-
-namespace {
-
 bool is_column(lua_State* L, int index) {
     if (lua::test<lua::Vector>(L, index) != nullptr) return true;
     const bool number = lua_istable(L, index) && lua_rawgeti(L, index, 1) == LUA_TNUMBER;

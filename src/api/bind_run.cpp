@@ -371,7 +371,6 @@ lua::Pushed events(lua_State* L, const RunHandle& run) {
     return {};
 }
 
-/// One word for each way to end.
 }  // namespace
 
 std::string_view status_word(model::Outcome outcome) {

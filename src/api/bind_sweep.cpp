@@ -579,38 +579,17 @@ bool is_option(const text::Call& call, std::string_view name) {
 
 /// The values on the top of the stack.
 DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::string& name) {
-    bool of_words = false;
-    if (lua_istable(L, -1)) {
-        of_words = lua_rawgeti(L, -1, 1) == LUA_TSTRING;
-        lua_pop(L, 1);
-    }
-    if (of_words) {
-        std::vector<std::string> words;
-        for (std::size_t i = 1; i <= lua_rawlen(L, -1); ++i) {
-            if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i)) != LUA_TSTRING) {
-                fail_sweep(L, call,
-                           {.sentence = fmt::format("{}[{}] must be a string as those before, got {}", name, i,
-                                                    lua::describe(L, -1)),
-                            .option = name,
-                            .culprit = lua::written(L, -1)});
-            }
-            words.emplace_back(lua::text_at(L, -1));
-            lua_pop(L, 1);
-        }
-        if (const std::string key = lua::key_beside_list(L, -1); !key.empty()) {
-            fail_sweep(
-                L, call,
-                {.sentence = fmt::format("{} must be a list such as {{ \"a\", \"b\" }}, but it has {}", name, key),
-                 .option = name});
-        }
-        return column_of(name, std::move(words));
-    }
     if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {
         fail_sweep(L, call,
                    {.sentence = fmt::format("over.{} must be a vector or a table of values, got {}", name,
                                             lua::describe(L, -1)),
                     .option = "over",
                     .culprit = name});
+    }
+    if (lua_istable(L, -1)) {
+        const bool of_words = lua_rawgeti(L, -1, 1) == LUA_TSTRING;
+        lua_pop(L, 1);
+        if (of_words) return read_column(L, call.name, name);
     }
     std::vector<double> numbers = lua::numbers_at(L, -1, call.name, name);
     if (numbers.empty()) {
@@ -619,18 +598,14 @@ DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::str
     return column_of(name, std::move(numbers));
 }
 
-/// { "r", v } on the top of the stack, the place-th of them.
-DataColumn listed_parameter(lua_State* L, const text::Call& call, lua_Integer place) {
-    if (!lua_istable(L, -1) || lua_rawgeti(L, -1, 1) != LUA_TSTRING) {
-        fail_sweep(L, call,
-                   {fmt::format("over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", place)});
-    }
-    const std::string name(lua::text_at(L, -1));
-    lua_pop(L, 1);
-    lua_rawgeti(L, -1, 2);
-    DataColumn parameter = parameter_on_top(L, call, name);
-    lua_pop(L, 1);
-    return parameter;
+/// Those of the table at this index: { r = values }, in the order of their names, or { { "r", values } }, as listed.
+std::vector<DataColumn> parameters_in(lua_State* L, int table, const text::Call& call) {
+    return columns_in(
+        L, table, [&](const std::string& name) { return parameter_on_top(L, call, name); },
+        [&](lua_Integer i) {
+            lua::fail(L, call.name,
+                      {fmt::format("over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", i)});
+        });
 }
 
 /// Names the new form of a call that has its parameters among its options.
@@ -664,23 +639,6 @@ std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call) {
     std::vector<DataColumn> parameters;
     if (lua_istable(L, -1)) parameters = parameters_in(L, lua_gettop(L), call);
     lua_pop(L, 1);
-    return parameters;
-}
-
-std::vector<DataColumn> parameters_in(lua_State* L, int table, const text::Call& call) {
-    std::vector<DataColumn> parameters;
-    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, table));
-    for (lua_Integer i = 1; i <= listed; ++i) {
-        lua_rawgeti(L, table, i);
-        parameters.push_back(listed_parameter(L, call, i));
-        lua_pop(L, 1);
-    }
-    for (const std::string& name : lua::text_keys(L, table)) {
-        lua::push_text(L, name);
-        lua_rawget(L, table);
-        parameters.push_back(parameter_on_top(L, call, name));
-        lua_pop(L, 1);
-    }
     return parameters;
 }
 

@@ -107,6 +107,15 @@ struct ColumnUnits {
     [[nodiscard]] std::string of(std::string_view column) const;
 };
 
+/// The column whose values, numbers or strings, are on the top of the stack; `call` raises what is wrong with them.
+DataColumn read_column(lua_State* L, const char* call, const std::string& name);
+
+/// The columns in the table at `table`, each read from the top of the stack: first those that are listed, { "r", v },
+/// then the named ones by their names, since a table does not know in which order it was written. `no_pair` raises that
+/// item i is no such pair.
+std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<DataColumn(const std::string&)>& read,
+                                   const std::function<void(lua_Integer)>& no_pair);
+
 /// The data as a Lua object on the top of the stack; returns 1, as a function with one result.
 int push_data(lua_State* L, Data data);
 

@@ -120,9 +120,6 @@ inline constexpr lua::Doc sweep_doc{
 /// The parameters that the option `over` of the table at 1 names, with their values.
 std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call);
 
-/// Those of the table at this index: { r = values }, in the order of their names, or { { "r", values } }, as listed.
-std::vector<DataColumn> parameters_in(lua_State* L, int table, const text::Call& call);
-
 /// The one or two names under `over` of a response, and their lists of numbers; raises errors.
 std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options, const text::Call& call);
 

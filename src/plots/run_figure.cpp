@@ -160,10 +160,6 @@ std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
     return marks;
 }
 
-}  // namespace
-
-namespace {
-
 /// The names in groups that measure the same, in the order of their first members.
 std::vector<std::vector<std::string>> by_measure(const std::vector<std::string>& names) {
     std::vector<std::vector<std::string>> groups;
