@@ -82,7 +82,6 @@ public:
     void pass_over(Segment& segment) const;
     /// What torques may be off by because the slopes of belts are differences.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
-    [[nodiscard]] double fastest_belt(std::size_t joint) const { return fastest_belt_[joint]; }
     /// The multipliers of what holds, at the nodes.
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
     /// The limits of what sticks, where they change.
