@@ -257,6 +257,7 @@ Data looks_as_rows(const SweepGrid& grid, const SweepResults& results, std::size
         }
     }
     std::vector<std::size_t> points;
+    points.reserve(rows.size());
     for (const Row& row : rows) points.push_back(row.point);
     Data data{.columns = grid.columns(points)};
     for (DataColumn& column : table_of(rows, ListColumn{"theta", &Row::theta}, ListColumn{"velocity", &Row::velocity},

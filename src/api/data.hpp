@@ -80,6 +80,7 @@ struct ListColumn {
         using Value = std::decay_t<std::invoke_result_t<const Get&, decltype(*std::begin(list))>>;
         constexpr bool number = std::is_convertible_v<Value, double>;
         std::vector<std::conditional_t<number, double, std::string>> values;
+        values.reserve(static_cast<std::size_t>(std::distance(std::begin(list), std::end(list))));
         for (const auto& element : list) values.emplace_back(std::invoke(get, element));
         if constexpr (number) {
             return column_of(name, std::move(values), unit);

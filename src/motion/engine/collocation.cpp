@@ -182,12 +182,12 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
     };
     for (std::size_t i = 0; i < n_; ++i) {
-        std::copy(&s.loads[i][first], &s.loads[i][0] + end, &s.driven[i][first]);
+        std::copy(s.loads[i].data() + first, s.loads[i].data() + end, s.driven[i].data() + first);
         const Signal& load = mechanics_.loads()[i];
         if (load.asks_the_motion()) {
             each_node([&](std::size_t j, const Moment& at) { s.driven[i][j] += load.of_motion(at); });
         }
-        std::copy(&s.driven[i][first], &s.driven[i][0] + end, &s.torques[i][first]);
+        std::copy(s.driven[i].data() + first, s.driven[i].data() + end, s.torques[i].data() + first);
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         const model::Joint& own = mechanics_.system().joints[joint];
@@ -204,7 +204,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         if (own.second < 0) continue;
         for (std::size_t j = first; j < end; ++j) s.torques[index(own.second)][j] += torque[j];
     }
-    for (std::size_t g = 0; g < frame.groups(); ++g) std::fill(&found_[g][first], &found_[g][0] + end, 0.0);
+    for (std::size_t g = 0; g < frame.groups(); ++g) std::fill(found_[g].data() + first, found_[g].data() + end, 0.0);
     for (std::size_t i = 0; i < n_; ++i) {
         const Nodes& torque = s.torques[i];
         double sum = 0;

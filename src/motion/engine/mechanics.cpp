@@ -175,7 +175,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 }
 
 Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking)
-    : system_(system), drive_(drive), asking_(asking), base_(drive.base, &asking) {
+    : system_(system), drive_(drive), base_(drive.base, &asking) {
     for (const model::Excitation& load : drive.loads) {
         loads_.emplace_back(load, &asking);
         nonlinear_ |= loads_.back().asks_the_motion();

@@ -232,7 +232,6 @@ private:
 
     const model::Assembly& system_;
     const Drive& drive_;
-    const Asking& asking_;
     std::vector<Signal> loads_, belts_;
     Signal base_;
     std::vector<Contact> contacts_;
