@@ -81,6 +81,7 @@ private:
     [[nodiscard]] bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
     bool get_nowhere(Outcome outcome);
+    void forget_chatter();
     std::string state_driven_back();
     bool end_at(double x);
     bool ask_after_break();
@@ -1020,6 +1021,7 @@ void Engine::run() {
     result_.located = has_pieces_;
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
     result_.noise = lost ? 0 : solver_->noise();
+    if (outcome_ == Outcome::chattering) forget_chatter();
     keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
@@ -1044,6 +1046,16 @@ void Engine::run() {
     if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
+}
+
+/// Of stops and slips that follow each other at once, and lead nowhere, the first one is told.
+void Engine::forget_chatter() {
+    constexpr double soon = 1e-6;
+    std::vector<JointEvent>& events = result_.events;
+    const auto follows = [&](const JointEvent& e, const JointEvent& before) {
+        return e.kind <= EventKind::rest && e.t - before.t <= soon * pace_;
+    };
+    while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
 }
 
 void Engine::choose() {
