@@ -17,6 +17,11 @@ struct Roughness {
     }
 };
 
+/// Noise is at most this part of the torques; the steps of what is rougher are located.
+inline constexpr double most_noise = 1e-5;
+/// The same part of M where it depends on the motion: steps greater than those of single precision are located.
+inline constexpr double most_noise_of_motion = 1.2e-7;
+
 /// A stretch is this part of the time scale of a motion.
 inline constexpr double rough_stretch = 1e-3;
 

@@ -17,9 +17,9 @@ constexpr int many_iterations = 4;       // slopes that need so many no longer s
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
 constexpr std::size_t most_factors = 24;
-/// The widest gaps between nodes, by the node before: in the middle of these functions are asked once more, but on
-/// stretches so short nothing hides.
+/// The widest gaps between nodes, by the node before. Users' functions are asked in the middle of these, too.
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
+/// In units of the longest stretch: on one shorter than this no pulse can hide.
 constexpr double too_short_to_look = 1e-6;
 const double smallest = std::numeric_limits<double>::min() / rounding;
 
@@ -41,12 +41,13 @@ const Integration& integration() {
     return weights;
 }
 
-/// The eigenvalues of the integration to the nodes but the first, one of each conjugate pair, and their coefficients in
-/// what has given values at the nodes: real and imaginary parts.
+/// The eigenvalues of the matrix that integrates values at the nodes but the first, one of each conjugate pair, and the
+/// change to the basis of its eigenvectors and back. There each eigenvalue has a coefficient; real and imaginary parts
+/// of the complex ones stand next to each other.
 struct IntegrationModes {
     using Matrix = Eigen::Matrix<double, node_count - 1, node_count - 1>;
     std::vector<std::complex<double>> values{};
-    std::vector<std::pair<int, int>> places{};  ///< of the parts of a coefficient; -1 where it is real
+    std::vector<std::pair<int, int>> places{};  ///< of both parts of a coefficient; the second is -1 where it is real
     Matrix from_nodes, to_nodes;
 };
 const IntegrationModes& integration_modes() {
@@ -235,7 +236,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
     return good;
 }
 
-/// The same where these stay as they are at the first node.
+/// The first guess: accelerations and rates stay as they are at the first node.
 void Collocation::guess(Segment& s, const Frame& frame) {
     const auto since = [&s](std::size_t j) { return s.h * (1 + cheb::nodes[j]); };
     for (std::size_t i = 0; i < n_; ++i) {
@@ -649,7 +650,8 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
-/// What is integrated is so as a series, too: what goes beyond its last term looks like lower ones at the nodes.
+/// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the
+/// last one are added to those that they equal at the nodes.
 void Collocation::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
     for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
     const bool integrated = step_length_ == 0 && !mechanics_.has_belts();
@@ -782,12 +784,7 @@ void Collocation::add_turns(const Segment& s, std::vector<double>& places) const
         const bool users = joint.friction.function != nullptr ||
                            (joint.friction.bristle() == nullptr && law.depends_on_speed() && law.ranges() == 0);
         if (joint.spring.none() && !users) continue;
-        const Nodes& a = s.y[n_ + index(joint.first)];
-        Nodes velocity = a;
-        for (std::size_t j = 0; joint.second >= 0 && j < node_count; ++j) {
-            velocity[j] -= s.y[n_ + index(joint.second)][j];
-        }
-        for (std::size_t j = 0; users && j < node_count; ++j) velocity[j] -= s.belts[i][j];
+        const Nodes velocity = mechanics_.slips(i, s.y, users ? s.belts[i] : Nodes{});
         const Series series = cheb::fit(velocity);
         for (std::size_t j = 0; j + 1 < node_count; ++j) {
             if (!(velocity[j] * velocity[j + 1] < 0)) continue;
@@ -855,8 +852,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
 }
 
 bool Collocation::found_noise(const Segment& s) {
-    // What is rougher is made of steps that can be found; of what depends on the motion, if single precision is not.
-    constexpr double most_noise = 1e-5, most_noise_of_motion = 1.2e-7, stays = 0.3, alike = 0.1, varies = 8, above = 3;
+    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
     bool found = false;
     std::vector<double> y, loads;
     for (std::size_t i = 0; i < n_; ++i) {

@@ -339,16 +339,12 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
                                std::size_t first, std::size_t end, Nodes& out) const {
     const Joint& own = system_.joints[joint];
     const double C = own.damping, k = own.stiffness;
-    Nodes angle = y[index(own.first)], slip = y[bodies() + index(own.first)];
-    if (own.second >= 0) {
-        angle = difference(angle, y[index(own.second)]), slip = difference(slip, y[bodies() + index(own.second)]);
-    }
-    for (std::size_t j = first; j < end; ++j) out[j] = C * slip[j] + k * angle[j];
+    const Nodes angle = between(joint, y), velocity = between(joint, std::span(y).subspan(bodies()));
+    for (std::size_t j = first; j < end; ++j) out[j] = C * velocity[j] + k * angle[j];
     if (!own.spring.none()) {
         for (std::size_t j = first; j < end; ++j) out[j] += own.spring.torque(angle[j]);
     }
-    if (has_belt(joint)) slip = difference(slip, belt);
-    add_native_friction(joint, mode, slip, first, end, out);
+    add_native_friction(joint, mode, has_belt(joint) ? difference(velocity, belt) : velocity, first, end, out);
 }
 
 void Mechanics::add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first,

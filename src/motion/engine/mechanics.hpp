@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "model/assembly.hpp"
@@ -147,7 +147,7 @@ public:
     /// and this velocity of its belt.
     void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
                         std::size_t first, std::size_t end, Nodes& out) const;
-    /// What of it is friction.
+    /// Adds the part of native_torques() that is friction.
     void add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first, std::size_t end,
                              Nodes& out) const;
     /// What friction takes while it slides, without sign.
@@ -166,6 +166,16 @@ public:
     /// How great torques are at a joint: of its springs and its friction.
     [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
 
+    /// What the first body of a joint has at nodes, or as a series, less what the second one has.
+    [[nodiscard]] Nodes between(std::size_t joint, std::span<const Nodes> of_bodies) const {
+        const model::Joint& own = system_.joints[joint];
+        const Nodes& first = of_bodies[index(own.first)];
+        return own.second < 0 ? first : difference(first, of_bodies[index(own.second)]);
+    }
+    /// How fast a joint slips on its belt, at nodes.
+    [[nodiscard]] Nodes slips(std::size_t joint, const std::vector<Nodes>& y, const Nodes& belt) const {
+        return difference(between(joint, std::span(y).subspan(bodies())), belt);
+    }
     [[nodiscard]] double angle(std::size_t joint, std::span<const double> y) const;
     [[nodiscard]] double velocity(std::size_t joint, std::span<const double> y) const;
 
@@ -180,11 +190,11 @@ public:
     /// Signals of all kinds, for what must be told to each, or asked of each.
     template <class F>
     void for_each_signal(F f) {
-        each_signal(*this, f);
+        for (Signal* s : signals_) f(*s);
     }
     template <class F>
     void for_each_signal(F f) const {
-        each_signal(*this, f);
+        for (const Signal* s : signals_) f(*s);
     }
     /// The user's functions of the motion that are held to pieces at this time.
     template <class F>
@@ -221,11 +231,6 @@ private:
         std::optional<Piecewise> law = {};  ///< the user's function
         bool varies = false, native = false;
     };
-    template <class Self, class F>
-    static void each_signal(Self& self, F& f) {
-        for (Signal* s : self.signals_)
-            f(static_cast<std::conditional_t<std::is_const_v<Self>, const Signal&, Signal&>>(*s));
-    }
 
     /// Calls it with each function of the user's.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;

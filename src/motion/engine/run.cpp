@@ -192,9 +192,10 @@ private:
     std::vector<double> y_, low_;         ///< what the angles have rounded off
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
     Mode mode_, entered_, left_;          ///< now, when the decision in progress began, and before a release
-    /// What a decision asks each joint at slip 0.
+    /// What a decision knows of a joint.
     struct Asked {
-        bool asked = false, taken_back = false, was_held = false, was_creeping = false;
+        bool asked = false;  ///< it is at slip 0
+        bool taken_back = false, was_held = false, was_creeping = false;
         Motion slid = Motion::stuck;    ///< which way it slid until now; stuck: it did not
         Motion let_go = Motion::stuck;  ///< the way of what came to its limit at this instant, too
         int leant = 0;
@@ -1408,10 +1409,8 @@ std::vector<Kept::Acting> Engine::acting() {
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
         } else if (mechanics_.is_native(j) && mechanics_.rubs(j) && mode_.leans[j] == 0) {
-            const Joint& own = problem_.system.joints[j];
-            Nodes slip = difference(segment_.y[n() + index(own.first)], segment_.belts[j]);
-            if (own.second >= 0) slip = difference(slip, segment_.y[n() + index(own.second)]);
-            mechanics_.add_native_friction(j, mode_, slip, 0, node_count, all[j].friction);
+            const Nodes slips = mechanics_.slips(j, segment_.y, segment_.belts[j]);
+            mechanics_.add_native_friction(j, mode_, slips, 0, node_count, all[j].friction);
             for (double& torque : all[j].friction) torque = -torque;
         } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
@@ -1576,8 +1575,7 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     const bool leans = mode_.leans[joint] != 0;
     const double first = how.leaving ? 0 : (leans ? 0 : a[0] - b[0]) - belt[0];
     Series series{};
-    if (!leans) series = segment_.series[n() + index(own.first)];
-    if (!leans && own.second >= 0) series = difference(series, segment_.series[n() + index(own.second)]);
+    if (!leans) series = mechanics_.between(joint, std::span(segment_.series).subspan(n()));
     if (mechanics_.has_belt(joint)) {
         Nodes change{};
         for (std::size_t j = 0; j < node_count; ++j) change[j] = belt[j] - belt[0];
@@ -1700,11 +1698,8 @@ void Engine::watch_walls(std::size_t joint, Ending& ending) const {
         const double place = own.walls->at(wall);
         if (!std::isfinite(place)) continue;
         const double begin = wall * gap(joint, place);
-        Nodes change{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            const double second = own.second < 0 ? 0 : segment_.moved[index(own.second)][j];
-            change[j] = -wall * (segment_.moved[index(own.first)][j] - second);
-        }
+        Nodes change = mechanics_.between(joint, segment_.moved);
+        for (double& way : change) way *= -wall;
         // What begins at the wall is known as well as its way from there.
         const bool leaving = at_wall_[joint] != 0 && std::fabs(begin) <= 4 * rounding * std::fabs(place);
         const double far = leaving ? greatest(change) : std::max(reach_[joint], std::fabs(place - origin_[joint]));
@@ -1725,12 +1720,11 @@ void Engine::watch_corner(std::size_t joint, Ending& ending) const {
     if (law.ranges() < 2 || own.friction.function != nullptr || mode_.leans[joint] != 0) return;
     const model::SpeedRange range = law.range(how.range);
     const double sign = model::sign_of(how.way);
-    Nodes speed{};
     const Nodes none{};
     const Nodes& a = segment_.y[n() + index(own.first)];
     const Nodes& b = own.second < 0 ? none : segment_.y[n() + index(own.second)];
-    for (std::size_t j = 0; j < node_count; ++j) speed[j] = sign * (a[j] - b[j] - segment_.belts[joint][j]);
-    const Series series = cheb::fit(speed);
+    Series series = cheb::fit(mechanics_.slips(joint, segment_.y, segment_.belts[joint]));
+    for (double& c : series) c *= sign;
     const auto no = [](double) { return false; };
     for (const int side : {1, -1}) {
         const double corner = side > 0 ? range.to : range.from;
@@ -1748,12 +1742,7 @@ void Engine::watch_corner(std::size_t joint, Ending& ending) const {
 
 /// The rate of bristles has a corner where the slip is 0: a stretch ends there.
 void Engine::watch_bristles(std::size_t joint, Ending& ending) {
-    const Joint& own = problem_.system.joints[joint];
-    Nodes values{};
-    for (std::size_t j = 0; j < node_count; ++j) {
-        const double second = own.second < 0 ? 0 : segment_.y[n() + index(own.second)][j];
-        values[j] = segment_.y[n() + index(own.first)][j] - second - segment_.belts[joint][j];
-    }
+    const Nodes values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
     std::vector<double> y;
     const auto exact = [&](double x) {
         segment_.state(x, y);

@@ -120,11 +120,10 @@ private:
                                                                                          F call) const {
         if (!law_) return call(time(at), asking_->state(at.y), asking_->states(at.y));
         if (law_->alone) return call(speed, model::State{}, std::span<const double>());
-        thread_local std::vector<double> with_speed;
-        with_speed.assign(1, speed);
+        with_speed_.assign(1, speed);
         const auto states = asking_->states(at.y);
-        with_speed.insert(with_speed.end(), states.begin(), states.end());
-        return call(time(at), asking_->state(at.y), std::span<const double>(with_speed));
+        with_speed_.insert(with_speed_.end(), states.begin(), states.end());
+        return call(time(at), asking_->state(at.y), std::span<const double>(with_speed_));
     }
 
     const Asking* asking_;
@@ -132,6 +131,7 @@ private:
     double delay_;
     bool has_pieces_, crossed_ = false;
     std::optional<Law> law_ = {};
+    mutable std::vector<double> with_speed_ = {};  ///< the states that a law is given
     model::terms::Piece piece_ = {};
 };
 

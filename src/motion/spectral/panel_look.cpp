@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "motion/roughness.hpp"
 #include "motion/spectral/corner_look.hpp"
 #include "motion/spectral/panel_solver.hpp"
 
@@ -19,13 +20,6 @@ static_assert(widest_left < chebyshev::widest_gap);
 constexpr double too_short_to_look = 1e-6;
 /// By so much more than its error M must miss its series.
 constexpr double clearly_off = 64;
-
-/// Noise is at most this part of the torques; what is rougher is made of steps that can be found.
-constexpr double most_noise = 1e-5;
-/// Of M, where it depends on the motion: steps that are greater than those of single precision are located.
-constexpr double most_noise_of_motion = 1.2e-7;
-/// How long the stretches are on which M is looked at for noise, as a part of the panel.
-constexpr double short_stretch = 1e-3;
 
 }  // namespace
 
@@ -133,22 +127,12 @@ bool PanelSolver::found_noise() {
     }
     const bool stalled = before.from == panel_.start.hi && panel_.h < 0.95 * before.h && tail > 0.3 * before.tail;
     if (!stalled) return false;
-    int rough = 0;
-    double most = tail;
-    for (const double x : {-0.9, 0.1, 0.8}) {
-        chebyshev::Samples values{};
-        for (std::size_t j = 0; j < points; ++j) {
-            const double here = x + short_stretch * chebyshev::nodes[j];
-            values[j] = excitation_.value(panel_.time(here), of_motion ? state_at(here) : panel_.begin);
-            if (!std::isfinite(values[j])) return false;
-        }
-        const double here = chebyshev::tail(chebyshev::fit(values));
-        rough += here > tail / 10 ? 1 : 0;
-        most = std::max(most, here);
-    }
-    if (rough < 2) return false;
+    const auto M = [&](double t) { return excitation_.value(t, of_motion ? state_at(panel_.x(t)) : panel_.begin); };
+    const std::array<double, 3> starts{panel_.time(-0.9), panel_.time(0.1), panel_.time(0.8)};
+    const Roughness rough = roughness(M, starts, rough_stretch * 2 * panel_.h);
+    if (!(rough.usual > tail / 10)) return false;
     constexpr double above = 3;  // of two coefficients, what others may be
-    noise_ = above * most;
+    noise_ = above * std::max(tail, rough.most);
     return true;
 }
 
