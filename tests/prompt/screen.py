@@ -22,7 +22,10 @@ class Screen:
         self.raw = b""
 
     def close(self):
-        self.child.close(force=True)
+        try:
+            self.child.close(force=True)
+        except pexpect.ExceptionPexpect:
+            self.child.wait()  # it was killed, but a busy machine has not ended it yet
 
 
 class Terminal(Screen):
