@@ -531,7 +531,8 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
         tell(*spot);
         if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
         std::vector<Special> specials = specials_before(*spot, ahead);
-        if (on[n] * ahead[n] < 0) {
+        // Where a branch begins at a Hopf point it is upright, and its slope is rounding.
+        if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > least_slope) {
             const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
             if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
                 const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {

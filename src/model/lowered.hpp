@@ -47,11 +47,6 @@ public:
         return friction_remainder(way, state) + spring(state.theta);
     }
     [[nodiscard]] bool has_spring() const { return spring_ != nullptr; }
-    [[nodiscard]] bool has_friction_remainder() const { return friction_ != nullptr; }
-    /// The law, if it changes with the speed and names its corners; else null.
-    [[nodiscard]] const Friction* law_with_corners() const {
-        return friction_ != nullptr && friction_->ranges() > 0 ? friction_ : nullptr;
-    }
     /// Of the friction alone, 0 at velocity zero.
     [[nodiscard]] double friction_remainder(Motion way, const State& state) const {
         if (friction_ == nullptr) return 0;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/chebyshev.hpp"
 
 namespace dinal::motion {
 
@@ -13,7 +13,7 @@ double belt_from(const model::Excitation& belt, double t) {
 
 BeltSlope belt_slope(const model::Excitation& belt, double t, double stretch) {
     constexpr double rounding = std::numeric_limits<double>::epsilon();
-    using namespace spectral::chebyshev;
+    using namespace chebyshev;
     if (belt.constant_from() <= t) return {0, 0};
     constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
     constexpr double clearly_worse = 8;  // two looks on, what is no smoother in shorter stretches is worse by 16

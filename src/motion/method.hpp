@@ -42,7 +42,7 @@ struct OwnRule {
 ///     const;
 /// what these forbid besides, and
 ///     OwnRule own_rule() const;
-///     Trajectory run_more(const Problem& problem) const;   a problem with extras
+///     static constexpr bool knows_more = true;    it runs problems with more in them (Problem::more), too
 ///     static constexpr bool asks_in_order = true;          M at ever later times only: it may remember something
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
@@ -77,8 +77,7 @@ public:
     /// It asks M in order of time, so nobody needs to know whether M remembers something.
     [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
     /// It runs problems with states of their own, events of the user, belts, bases and controllers with a memory.
-    [[nodiscard]] bool knows_more() const { return common_->run_more != nullptr; }
-    [[nodiscard]] Trajectory run_more(const Problem& problem) const { return common_->run_more(method_, problem); }
+    [[nodiscard]] bool knows_more() const { return common_->knows_more; }
 
 private:
     struct Common {
@@ -89,8 +88,7 @@ private:
         Resolution (*resolution)(const void* method, const model::Oscillator& system);
         Trajectory (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
-        Trajectory (*run_more)(const void* method, const Problem& problem);
-        bool asks_in_order;
+        bool knows_more, asks_in_order;
     };
     template <class M>
     static constexpr bool is_in_order() {
@@ -101,11 +99,11 @@ private:
         }
     }
     template <class M>
-    static constexpr auto more_of() -> Trajectory (*)(const void*, const Problem&) {
-        if constexpr (requires(const M& method, const Problem& problem) { method.run_more(problem); }) {
-            return [](const void* method, const Problem& problem) { return as<M>(method).run_more(problem); };
+    static constexpr bool is_for_more() {
+        if constexpr (requires { M::knows_more; }) {
+            return M::knows_more;
         } else {
-            return nullptr;
+            return false;
         }
     }
     template <class M>
@@ -138,7 +136,7 @@ private:
                 return std::nullopt;
             }
         },
-        more_of<M>(),
+        is_for_more<M>(),
         is_in_order<M>()};
 
     const void* method_;

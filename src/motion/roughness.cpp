@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/chebyshev.hpp"
 
 namespace dinal::motion {
 
 Roughness roughness(const std::function<double(double)>& function, const std::array<double, 3>& starts, double length) {
-    namespace cheb = spectral::chebyshev;
+    namespace cheb = chebyshev;
     Roughness found;
     std::array<double, 3> tails{};
     std::size_t stretch = 0;

@@ -228,7 +228,8 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     }
     problem.extras = oath ? &oath->extras() : &extras;
     problem.carried = past.carried;
-    Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
+    problem.more = more;
+    Trajectory trajectory = method.run(problem);
     trajectory.initial = initial;
     // A native M is a number at all times: then the spring had none, as the motion went beyond all bounds.
     const bool own_spring = system.spring().as<model::springs::PolynomialSpring>() != nullptr;

@@ -78,8 +78,9 @@ struct Problem {
     const Limits& limits;
     std::optional<model::Motion> before = {};  ///< of a run that goes on: what the mass did until now
     std::size_t course_bytes = 0;              ///< what the course may take
-    const model::Extras* extras = nullptr;     ///< of a run with more in it
-    const Carried* carried = nullptr;          ///< of a run with more in it that goes on
+    const model::Extras* extras = nullptr;
+    bool more = false;                 ///< the extras have something, or there are walls or controllers with a memory
+    const Carried* carried = nullptr;  ///< of a run that goes on: what its integrator left
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's

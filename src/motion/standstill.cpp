@@ -71,13 +71,6 @@ bool Standstill::creep(const Moment& now) {
     return true;
 }
 
-double Standstill::clearly_beyond(const Moment& now) const {
-    constexpr double crest = 1e-6;
-    const double over = std::max(excess(now.M, now.theta), 0.0), all = torques(now);
-    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
-    return over > crest * all ? 0 : 2 * over + rounding * all;
-}
-
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
     if (phase_ != Phase::creeping && model::held_against(system_, most_M_, now.theta)) return true;
@@ -99,8 +92,7 @@ bool Standstill::jumps(double t, double theta) const {
 
 double Standstill::arrived_at(const Moment& now) const {
     const double k = system_.stiffness();
-    if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring() || wall_ != model::Motion::stuck)
-        return now.theta;
+    if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring()) return now.theta;
     const double rounding = rounding_of_torques * std::max(torques(now), torques_before_);
     if (phase_ != Phase::creeping) {  // most are clearly on one side of the limit
         const double torque = now.M - k * now.theta;
@@ -175,9 +167,6 @@ bool Standstill::never_left(const Moment& now) {
             events_->pop_back();
         } else if (last.kind == model::EventKind::turn) {
             last.kind = model::EventKind::stick;
-        } else if ((last.kind == model::EventKind::switched || last.kind == model::EventKind::user) &&
-                   motion_ != model::Motion::stuck && !at_start(now.t)) {
-            tell(model::EventKind::stick, now);
         }
     } else if (at_start(now.t)) {
         began_stuck_ = true;
@@ -191,7 +180,7 @@ bool Standstill::never_left(const Moment& now) {
 }
 
 void Standstill::go_on() {
-    if (phase_ == Phase::leaving) phase_ = Phase::moving, wall_ = model::Motion::stuck;
+    if (phase_ == Phase::leaving) phase_ = Phase::moving;
     if (phase_ == Phase::held) phase_ = Phase::stuck;
 }
 

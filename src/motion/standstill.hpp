@@ -39,13 +39,12 @@ public:
     /// Which way the mass moves, or creeps; before it has moved at all without dry friction, `stuck`.
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Without dry friction the mass swings through zero: its turns are told by turned(), and nothing is asked.
-    [[nodiscard]] bool passes() const { return !system_.dry() && wall_ == model::Motion::stuck; }
-    /// Which way a mass at rest would go under M, or that it sticks. A wall holds whatever pulls against it. Of one
-    /// that creeps: the way it is on, or the other way when it comes to a stop.
+    [[nodiscard]] bool passes() const { return !system_.dry(); }
+    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way
+    /// it is on, or the other way when it comes to a stop.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
         if (phase_ == Phase::creeping) return pulled_on(M, theta);
-        const model::Motion way = model::motion_from_standstill(system_, M, theta);
-        return way == wall_ ? model::Motion::stuck : way;
+        return model::motion_from_standstill(system_, M, theta);
     }
     /// What M - k theta must pass towards this side before something happens: the breakaway torque, or, of a mass that
     /// creeps, what it is under, but for rounding.
@@ -55,10 +54,6 @@ public:
     }
     /// How far M is past the limit; positive exactly when the law lets go.
     [[nodiscard]] double excess(double M, double theta) const;
-    /// How far M must pass the limit before a mass is let go that did not get under way here: twice as far as it is
-    /// now, so that a crest which only comes out of the rounding is tried some fifty times at most. A feedback that is
-    /// clearly beyond the limit at rest, and holds in motion, is none.
-    [[nodiscard]] double clearly_beyond(const Moment& now) const;
     /// M cannot move it any more, whatever comes: it is constant, or nowhere great enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which a feedback that jumps at velocity zero is asked for this motion: not beyond zero, and at zero
@@ -83,16 +78,6 @@ public:
     /// The velocity is down to what is rounding. Where more than the friction of sliding would hold a standing mass,
     /// and that alone balances M and the spring, the mass is on its way for ever, and creeps: else this is false.
     bool creep(const Moment& now);
-
-    /// The mass stands at a wall that is in the way of this motion, until it gets under way; `stuck`: at none.
-    void lean(model::Motion against) { wall_ = against; }
-    /// That wall.
-    [[nodiscard]] model::Motion leans() const { return wall_; }
-    /// A wall has thrown it back, so that standstills at once are no sign of chatter.
-    void thrown(model::Motion motion) {
-        motion_ = motion, phase_ = Phase::moving, wall_ = model::Motion::stuck;
-        at_once_in_a_row_ = 0;
-    }
 
     // What returns false has seen standstills without end.
 
@@ -152,7 +137,6 @@ private:
     std::vector<model::Event>* events_;
 
     model::Motion motion_;
-    model::Motion wall_ = model::Motion::stuck;
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // which way it moved before it stuck,
     double M_stuck_ = 0;                         // and under which M

@@ -106,10 +106,14 @@ std::string chatter_text(const Trajectory& run) {
         }
     }
     if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
+        constexpr double next_to_none = 1e-6;  // of the greatest speed in the rows
+        double fastest = std::fabs(run.initial.velocity);
+        for (Eigen::Index i = 0; i < run.size(); ++i) fastest = std::max(fastest, std::fabs(run.rows(i, 2)));
+        const double speed = std::fabs(run.state_at_stop.velocity);
         return fmt::format(
             "switched endlessly at one time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or "
             "is too steep; a line over some small range of speeds would not",
-            std::fabs(run.state_at_stop.velocity));
+            speed > next_to_none * fastest ? speed : 0.0);
     }
     if (run.state_count() > 0) {  // what cures a jump of M does not cure that of a rate
         return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "

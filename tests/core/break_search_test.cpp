@@ -4,13 +4,13 @@
 #include <functional>
 #include <optional>
 
-#include "motion/spectral/break_search.hpp"
+#include "motion/break_search.hpp"
 #include "support/catch.hpp"
 
 namespace dinal::break_search_test {
 
-using motion::spectral::find_break;
-using motion::spectral::PassedBreaks;
+using motion::find_break;
+using motion::PassedBreaks;
 
 namespace {
 

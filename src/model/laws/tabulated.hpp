@@ -18,10 +18,7 @@ struct Tabulated {
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v >= speed.back()) return torque.back();
         const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // below speed 0 the first line goes on
-        const auto i = static_cast<std::size_t>(above - speed.begin());
-        if (i == speed.size()) return torque.back();
-        const double part = (v - speed[i - 1]) / (speed[i] - speed[i - 1]);
-        return torque[i - 1] + part * (torque[i] - torque[i - 1]);
+        return range(static_cast<std::size_t>(above - speed.begin()) - 1).at(v);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
     /// None when a line is too steep for a number.

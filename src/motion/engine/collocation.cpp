@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/break_search.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/roughness.hpp"
-#include "motion/spectral/break_search.hpp"
 
 namespace dinal::motion::engine {
 
@@ -103,16 +103,21 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       offset_(n_),
       offset_rate_(n_),
       offset_way_(n_),
-      rate_(m_) {}
+      rate_(m_) {
+    mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
+}
+
+void Collocation::make_room(Segment& s) const {
+    if (!s.y.empty()) return;
+    for (auto of : {&Segment::y, &Segment::f, &Segment::series, &Segment::rates}) (s.*of).resize(2 * n_ + m_);
+    for (auto of : {&Segment::moved, &Segment::loads, &Segment::driven, &Segment::torques}) (s.*of).resize(n_);
+    for (auto of : {&Segment::belts, &Segment::belt_rates, &Segment::holding}) (s.*of).resize(mechanics_.joints());
+}
 
 /// All that depends on the time alone. False when one of the user's functions has failed.
 bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin) {
     const std::size_t joints = mechanics_.joints();
-    if (s.y.empty()) {
-        for (auto of : {&Segment::y, &Segment::f, &Segment::series, &Segment::rates}) (s.*of).resize(2 * n_ + m_);
-        for (auto of : {&Segment::moved, &Segment::loads, &Segment::driven, &Segment::torques}) (s.*of).resize(n_);
-        for (auto of : {&Segment::belts, &Segment::belt_rates, &Segment::holding}) (s.*of).resize(joints);
-    }
+    make_room(s);
     for (Nodes& way : s.moved) way.fill(0);
     for (std::size_t j = 0; j < node_count; ++j) {
         s.times[j] = s.time(cheb::nodes[j]);
@@ -199,6 +204,13 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
             each_node([&](std::size_t j, const Moment& at) {
                 torque[j] = mechanics_.joint_torque(joint, at, mode, s.belts[joint][j]);
             });
+        }
+        // Of the digits that the angles have rounded off the stiffness takes notice.
+        for (const auto& [body, k] : {std::pair(own.first, own.stiffness), std::pair(own.second, -own.stiffness)}) {
+            if (body < 0 || k == 0) continue;
+            const Nodes &y = s.y[index(body)], &moved = s.moved[index(body)];
+            const double low = s.low[index(body)];
+            for (std::size_t j = first; j < end; ++j) torque[j] += k * (low + (moved[j] - (y[j] - y[0])));
         }
         Nodes& on_first = s.torques[index(own.first)];
         for (std::size_t j = first; j < end; ++j) on_first[j] -= torque[j];
@@ -688,7 +700,11 @@ void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame)
 
 /// The last coefficients of what drives each value, against what that value is and how it changes.
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
-    unresolved_ = 0;
+    unresolved_ = smooth_ = 0;
+    const auto note = [this](double tail, double allowed, double noise) {
+        unresolved_ = std::max(unresolved_, tail / allowed);
+        smooth_ = std::max(smooth_, (tail - noise) / allowed);
+    };
     allowed_.assign(n_, 0);
     find_sizes(s);
     const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
@@ -700,7 +716,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     }
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_[i];
-        const auto lost = [&] { return lost_in_time(cheb::fit(s.loads[i]), late, h, torques); };
+        const auto lost = [&] { return tells_rests_ ? 0 : lost_in_time(cheb::fit(s.loads[i]), late, h, torques); };
         if (frame.group[i] >= 0) {
             const double per_torque = h / frame.inertia[static_cast<std::size_t>(frame.group[i])];
             const Series& series = s.rates[n_ + i];
@@ -709,13 +725,13 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
             allowed += per_torque * noise();
-            unresolved_ = std::max(unresolved_, tail / allowed);
+            note(tail, allowed, per_torque * noise());
             allowed_[i] = allowed / h;
         } else {
             const double tail = cheb::tail(cheb::fit(s.torques[i]));
             double allowed = (tolerance_ + 16 * rounding) * torques + noise() + smallest;
             if (tail > allowed) allowed += lost();
-            unresolved_ = std::max(unresolved_, tail / allowed);
+            note(tail, allowed, noise());
         }
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
@@ -723,15 +739,16 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.holds(joint)) {
             const Series series = cheb::fit(s.holding[joint]);
             const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
-            const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques) + noise();
-            unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
-                                                                      blurred_by_belts(s) + smallest));
+            const double torques = sizes_[first],
+                         lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
+            note(cheb::tail(series), (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest,
+                 noise());
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late, h, most) + smallest;
-                unresolved_ = std::max(unresolved_, cheb::tail(limit) / allowed);
+                note(cheb::tail(limit), allowed, 0);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
@@ -739,7 +756,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
                                16 * rounding * fastest_belt_[joint] +
                                lost_in_time(belt, late, h, fastest_belt_[joint]) + smallest;
-        unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
+        note(cheb::tail(belt), allowed, 0);
     }
     double rough = 0;  // what noise in M may be of what it moves
     for (std::size_t i = 0; i < n_; ++i) rough = std::max(rough, noise_[i] / (sizes_[i] + smallest));
@@ -750,7 +767,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
             64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]);
-        unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
+        note(cheb::tail(series), allowed + smallest, 0);
     }
 }
 
@@ -874,8 +891,8 @@ bool Collocation::found_noise(const Segment& s) {
             mechanics_.loads_of_time(t, Side::at, loads);
             return loads[i] + load.of_motion({t, Side::at, y});
         };
-        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * s.h);
-        if (!rough.is_noise() || !(rough.usual > alike * tail)) continue;
+        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
+        if (!(rough.usual > alike * tail)) continue;
         noise_[i] = above * std::max(tail, rough.most);
         found = true;
     }
@@ -888,7 +905,7 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
     std::optional<double> first;
     const auto look = [&](const Nodes& values, double size, const auto& at) {
         if (!(cheb::tail(cheb::fit(values)) > gross * 1e-13 * size)) return;
-        const auto found = spectral::find_break(s.times, values, at);
+        const auto found = find_break(s.times, values, at);
         if (!found || !(*found <= s.end) || s.start.until(*found) < 1e-6 * s.h) return;
         if (!first || *found < *first) first = *found;
     };
@@ -934,11 +951,10 @@ std::optional<double> Collocation::jump_of_belt(const Segment& s, std::size_t jo
     if (!(change > seen) || !(difference(first) > change / 4)) return {};
     const auto belt = [&](double t) { return mechanics_.belt(joint, t, Side::at); };
     const std::size_t from = std::max<std::size_t>(first, 2) - 2;
-    const auto found =
-        spectral::find_break(std::span(s.times).subspan(from, 3), std::span(belts).subspan(from, 3), belt);
+    const auto found = find_break(std::span(s.times).subspan(from, 3), std::span(belts).subspan(from, 3), belt);
     if (!found || !(*found > s.start.hi)) return {};
     // Of noise a jump is no more than what lies beside it.
-    const double right_before = std::min(std::nextafter(*found, -model::never), *found - spectral::nearest * s.h);
+    const double right_before = std::min(std::nextafter(*found, -model::never), *found - nearest_jump * s.h);
     const double before = belt(std::max(right_before, s.start.hi)), after = belt(*found);
     const double jump = std::fabs(after - before);
     if (!(jump > seen)) return {};
@@ -949,6 +965,14 @@ std::optional<double> Collocation::jump_of_belt(const Segment& s, std::size_t jo
         if (!(std::max(off_before, off_after) < jump / 4)) return {};
     }
     return found;
+}
+
+void Collocation::stand_still(Segment& s, const std::vector<double>& y) const {
+    make_room(s);
+    for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(y[k]), s.series[k] = {};
+    for (auto of : {&Segment::moved, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding}) {
+        for (Nodes& values : s.*of) values.fill(0);
+    }
 }
 
 /// Nothing that happens here can be seen: all goes on as it begins.
@@ -964,7 +988,9 @@ void Collocation::pass_over(Segment& s) const {
         if (k < n_) s.moved[k] = change;
         s.f[k].fill(s.f[k][0]);
     }
-    for (std::size_t i = 0; i < n_; ++i) s.torques[i].fill(s.torques[i][0]), s.driven[i].fill(s.driven[i][0]);
+    for (auto of : {&Segment::torques, &Segment::driven, &Segment::loads}) {
+        for (Nodes& values : s.*of) values.fill(values[0]);
+    }
     for (Nodes& held : s.holding) held.fill(held[0]);
 }
 

@@ -25,6 +25,7 @@ struct Segment : NodeTimes {
     std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
     std::vector<Nodes> f{};        ///< their rates: of the angles without meaning
     std::vector<Nodes> moved{};    ///< angles less their first, which have digits that these have not
+    std::vector<double> low{};     ///< of each body: what its angle at the beginning has rounded off
     std::vector<Series> series{};  ///< of y, each less its first
     std::vector<Series> rates{};   ///< of f, but for those of the angles
     std::vector<Nodes> loads{};    ///< of each body: what depends on the time alone
@@ -65,9 +66,15 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
+    /// The same of a stretch that was resolved, without noise.
+    [[nodiscard]] double smooth() const { return smooth_; }
     /// The last one was not resolved, nor a longer one, and the load of a body is as rough on far shorter stretches, at
     /// one place as at another. From now on it need not be smoother than that.
     bool found_noise(const Segment& segment);
+    /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
+    [[nodiscard]] bool tells_rests() const {
+        return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
+    }
     /// That of the body where it is greatest, torque.
     [[nodiscard]] double noise() const { return *std::max_element(noise_.begin(), noise_.end()); }
     /// The longest time between two looks at a function of the time in a stretch.
@@ -78,6 +85,8 @@ public:
     [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
     /// Where the belt of a joint jumps in a stretch, and does not say so; none where that is noise.
     [[nodiscard]] std::optional<double> jump_of_belt(const Segment& segment, std::size_t joint) const;
+    /// All stand where they are, for any length of time.
+    void stand_still(Segment& segment, const std::vector<double>& y) const;
     /// A stretch too short to matter is a straight line.
     void pass_over(Segment& segment) const;
     /// What torques may be off by because the slopes of belts are differences.
@@ -91,6 +100,7 @@ private:
     static constexpr std::size_t inner = node_count - 1;
     static void multiply(const double* matrix, const double* vector, std::size_t columns, double* product);
     static void integrate(const Nodes& values, double h, Nodes& sums);
+    void make_room(Segment& segment) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
                   const std::vector<double>* departing);
@@ -119,7 +129,8 @@ private:
     const Mechanics& mechanics_;
     double tolerance_, longest_, step_length_;
     std::size_t n_, m_;
-    double bad_time_ = 0, unresolved_ = 0;
+    bool tells_rests_ = true;  ///< the loads
+    double bad_time_ = 0, unresolved_ = 0, smooth_ = 0;
     double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration

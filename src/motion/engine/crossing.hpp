@@ -8,8 +8,8 @@
 
 #include "model/terms/term.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/first_below.hpp"
 #include "motion/interpolation.hpp"
-#include "motion/spectral/first_below.hpp"
 
 namespace dinal::motion::engine {
 

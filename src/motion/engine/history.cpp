@@ -45,7 +45,8 @@ private:
         }
         const Between& own = joints_[joint];
         const Kept::Acting& at_nodes = kept_.acting[joint];
-        const Series friction = cheb::fit(at_nodes.friction), belt = cheb::fit(at_nodes.belt);
+        const Series friction = cheb::fit(at_nodes.friction);
+        const Series belt = at_nodes.belt != nullptr ? cheb::fit(*at_nodes.belt) : Series{};
         Series v = whole(bodies + static_cast<std::size_t>(own.first));
         Integrals sums;
         const auto work = [&](const Series& torque, const Series& speed) {
@@ -54,7 +55,8 @@ private:
             return sum;
         };
         if (joint < bodies) {
-            sums.input = work(cheb::fit(at_nodes.M), v), sums.base = work(cheb::fit(at_nodes.push), v);
+            sums.input = work(cheb::fit(at_nodes.M), v);
+            if (at_nodes.push != nullptr) sums.base = work(cheb::fit(*at_nodes.push), v);
         }
         if (own.second >= 0) {
             const Series second = whole(bodies + static_cast<std::size_t>(own.second));
@@ -63,7 +65,7 @@ private:
         Series damping = v;
         for (double& c : damping) c *= own.damping;
         sums.viscous = work(damping, v);
-        sums.belt = work(friction, belt);
+        if (at_nodes.belt != nullptr) sums.belt = work(friction, belt);
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
         return sums;
     }

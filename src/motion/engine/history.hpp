@@ -23,9 +23,9 @@ struct Kept {
     /// What acts at a joint, at the nodes. Those of the bodies with the ground have M and the push of the base on their
     /// body, too.
     struct Acting {
-        Nodes M{}, push{};
-        Nodes friction{}, belt{};  ///< torque on its first body
-        bool holds = false;        ///< friction does not slip
+        Nodes M{}, friction{};                  ///< torques on its first body
+        std::unique_ptr<Nodes> push{}, belt{};  ///< none where there is no base, or no belt
+        bool holds = false;                     ///< friction does not slip
     };
     std::vector<Acting> acting{};
 

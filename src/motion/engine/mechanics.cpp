@@ -237,16 +237,6 @@ double Mechanics::belt(std::size_t joint, double t, Side side) const {
     return belts_[joint].value({t, breaks ? side : Side::at, {}});
 }
 
-void Mechanics::loads_of_time(double t, Side side, std::vector<double>& loads) const {
-    const Moment at{t, side, {}};
-    const double push = base_.none() ? 0 : base_.value(at);
-    loads.resize(bodies());
-    for (std::size_t i = 0; i < bodies(); ++i) {
-        loads[i] = loads_[i].of_time(at);
-        if (!base_.none()) loads[i] += -system_.bodies[i].inertia * push;
-    }
-}
-
 void Mechanics::sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const {
     Nodes push{};
     if (!base_.none()) base_.sample(when, push);

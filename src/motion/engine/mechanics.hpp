@@ -131,8 +131,21 @@ public:
     /// Jumps before this time are behind.
     void forget_jumps(double t) { jumps_.erase(jumps_.begin(), std::lower_bound(jumps_.begin(), jumps_.end(), t)); }
 
-    /// The loads that depend on the time alone, the push of the base among them, on each body.
-    void loads_of_time(double t, Side side, std::vector<double>& loads) const;
+    /// The loads that depend on the time alone, the push of the base among them, on each body. Those that somebody
+    /// knows are not asked for.
+    template <class Known>
+    void loads_of_time(double t, Side side, std::vector<double>& loads, const Known& known) const {
+        const double push = base(t, side);
+        loads.resize(bodies());
+        for (std::size_t i = 0; i < loads.size(); ++i) {
+            const std::optional<double> load = known(i);
+            loads[i] = load ? *load : loads_[i].of_time({t, side, {}});
+            if (has_base()) loads[i] -= system_.bodies[i].inertia * push;
+        }
+    }
+    void loads_of_time(double t, Side side, std::vector<double>& loads) const {
+        loads_of_time(t, side, loads, [](std::size_t) { return std::optional<double>(); });
+    }
     void sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const;
     /// M of each body.
     [[nodiscard]] double load(std::size_t body, const Moment& at) const { return loads_[body].value(at); }

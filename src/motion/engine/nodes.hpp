@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/chebyshev.hpp"
 
 namespace dinal::motion::engine {
 
-namespace cheb = spectral::chebyshev;
+namespace cheb = chebyshev;
 using Nodes = cheb::Samples;
 using Series = cheb::Series<cheb::points>;
 inline constexpr std::size_t node_count = cheb::points;

@@ -1,5 +1,7 @@
 #include "motion/engine/one_body.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -31,8 +33,9 @@ public:
         : Course(system), history_(std::move(history)) {}
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
-            return text::Error{
-                "only part of the motion was kept, for lack of memory: ask for rows, or start a run there"};
+            return text::Error{fmt::format(
+                "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
+                history_->whole_until())};
         }
         const std::vector<double> y = history_->at(t);
         const auto& walls = system().walls();
@@ -42,9 +45,7 @@ public:
         const std::vector<double> y = history_->at(t);
         return {y.begin() + 2, y.end()};
     }
-    [[nodiscard]] double whole_until() const override {
-        return history_->whole_until() == model::never ? model::never : -model::never;
-    }
+    [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
     void legs(const std::function<void(const Leg&)>& told) const override {
         history_->legs([&](const JointLeg& leg) { told(OneBodyLeg(leg)); });
     }
@@ -85,7 +86,6 @@ Trajectory run(const Problem& problem, const Cut& cut) {
                                  .longest = cut.longest,
                                  .step = cut.step,
                                  .history_bytes = problem.course_bytes,
-                                 .only_located = cut.only_located,
                                  .joined_elsewhere = true});
     Trajectory trajectory;
     if (!extras.states.empty()) trajectory.own_names = column_names();

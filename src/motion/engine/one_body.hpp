@@ -10,10 +10,9 @@ struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
-    bool only_located = false;      ///< see AssemblyProblem
 };
 
-/// Runs the problem, which has extras. The columns of its states stand behind the others.
+/// Runs the problem. The columns of its states stand behind the others.
 Trajectory run(const Problem& problem, const Cut& cut);
 
 }  // namespace dinal::motion::engine

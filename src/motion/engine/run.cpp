@@ -12,15 +12,14 @@
 #include <tuple>
 #include <utility>
 
-#include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
 #include "model/sticking.hpp"
+#include "motion/break_search.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
+#include "motion/first_below.hpp"
 #include "motion/roughness.hpp"
-#include "motion/spectral/break_search.hpp"
-#include "motion/spectral/first_below.hpp"
 #include "motion/witness.hpp"
 
 namespace dinal::motion::engine {
@@ -48,7 +47,31 @@ constexpr std::size_t most_passages = 200;
 constexpr double one_instant = 64 * rounding;  // passages of user events that are so near to each other are one
 constexpr double beside_standstill = 1e-12;    // one that is so near to a standstill, or a release, is told after it
 constexpr double at_zero = 1e-12;              // this part of what it was on the stretch stands at zero
+constexpr double huge = 1e100;                 // a function that is no number at such a state says nothing about itself
+constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;  // bounds of a series are so much greater
 constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
+
+/// How long a polynomial of degree 16 can follow a motion under a law of friction from this speed on, about: along a
+/// line that makes it grow or die out fast, and along a curve until the speed has changed by its scale. `first` is the
+/// change of the speed by time, `second` the size of what that changes by.
+double longest_step(const model::Friction& law, const model::SpeedRange& range, double speed, double first,
+                    double second, double C, double I) {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    constexpr double steepest = 4;  // what exp(-a t) may have for a t: degree 16 follows it then
+    if (range.straight) {
+        const double a = (C + range.slope) / I;
+        const bool begins = speed == range.from || speed == range.to;
+        return a < 0 || begins ? steepest / std::fabs(a) : any;
+    }
+    // Towards greater speeds a law becomes straighter; towards smaller ones what counts is where the step ends.
+    double change = law.scale(speed);
+    if (first < 0) {
+        for (int i = 0; i < 4; ++i) change = law.scale(std::max(0.0, speed - change));
+    }
+    second += std::fabs(law.slope(speed) * first) / I;
+    const double root = std::sqrt(first * first + 2 * second * change) + std::fabs(first);
+    return root > 0 ? 2 * change / root : any;
+}
 
 class Engine {
 public:
@@ -74,13 +97,16 @@ private:
     // The loop.
     void begin();
     bool advance();
+    [[nodiscard]] double greatest_of_state() const;
+    bool stands_for_good();
+    bool rest();
     void choose();
     double longest_under_friction();
     double until_wall();
     void again(Collocation::Attempt attempt);
     [[nodiscard]] bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
-    bool get_nowhere(Outcome outcome);
+    void explain_end();
     void forget_chatter();
     std::string state_driven_back();
     bool end_at(double x);
@@ -104,7 +130,10 @@ private:
     bool box_of(const std::vector<std::size_t>& held, Box& box);
     bool decide_together(std::size_t full);
     void project(Side when);
-    bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
+    enum class Loads { asked, sampled };
+    bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {},
+              Loads from = Loads::asked);
+    std::optional<double> sampled_load(std::size_t body, double x);
     [[nodiscard]] const std::vector<double>& departing() const;
     [[nodiscard]] double slip(std::size_t joint) const {
         return mechanics_.velocity(joint, y_) - mechanics_.belt(joint, now_.hi, side());
@@ -236,7 +265,7 @@ private:
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
     Segment segment_;
     std::vector<double> breaks_;  ///< found, and still ahead
-    spectral::PassedBreaks passed_breaks_;
+    PassedBreaks passed_breaks_;
     std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
     double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
     double attempts_since_ = 0, last_event_ = -model::never, last_full_at_ = -model::never, born_ = 0;
@@ -246,6 +275,7 @@ private:
     std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
     Look look_, decided_;
+    std::vector<Series> sampled_;                   ///< of the loads on the stretch, if somebody wanted them
     std::array<std::vector<double>, 5> scratch_;    ///< of look()
     std::array<std::vector<double>, 4> projected_;  ///< of project()
     std::vector<char> seen_, alike_;                ///< of project()
@@ -274,6 +304,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     watches_.resize(problem.drive.events.size()), arrivals_.resize(joints);
     if (problem.before != nullptr) {
         y_ = problem.before->y;
+        if (!problem.before->low.empty()) low_ = problem.before->low;
         mode_ = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
         for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
@@ -377,7 +408,8 @@ const std::vector<double>& Engine::departing() const {
 
 /// Torques, accelerations and what holds, at a moment, which may be at x of the stretch. False when something is not
 /// finite.
-bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x) {
+bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x,
+                  Loads from) {
     const std::size_t joints = mechanics_.joints();
     if (!x) decide_conditions(at, mode);
     auto& [belts, rates, offsets, of_group, lacking] = scratch_;
@@ -395,7 +427,9 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
             result.blurred = std::max(result.blurred, inertia_ * slope.doubt);
         }
     }
-    mechanics_.loads_of_time(at.t, at.side, loads);
+    mechanics_.loads_of_time(at.t, at.side, loads, [&](std::size_t i) {
+        return x && from == Loads::sampled ? sampled_load(i, *x) : std::nullopt;
+    });
     mechanics_.torques(at, mode, belts, loads, result.torques);
     frame.offsets(rates, mode, offsets);
     of_group.assign(frame.groups(), 0), lacking.resize(n());
@@ -414,6 +448,16 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
     result.holding.assign(joints, 0);
     frame.multipliers(lacking, result.holding);
     return good;
+}
+
+/// What a function of the time is at x of the stretch, by its series, so that it need not be asked for every row; none
+/// where it is to be asked.
+std::optional<double> Engine::sampled_load(std::size_t body, double x) {
+    if (!(x > -1) || !mechanics_.loads()[body].is_sampled() || mechanics_.has_base()) return {};
+    if (sampled_.empty()) {
+        for (const Nodes& load : segment_.loads) sampled_.push_back(cheb::fit(load));
+    }
+    return cheb::value(sampled_[body], x);
 }
 
 /// How far what holds a joint is beyond what it can hold, and which way it would go.
@@ -540,6 +584,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (asked_[j].slid != Motion::stuck) settle_at_limit(j);
     }
     Look& found = decided_;
+    // What was released is so between two doubles of the time.
+    const double late = std::fabs(now_.hi);
+    const double between =
+        released ? lost_in_time(cheb::fit(segment_.holding[released->which]), late, segment_.h, model::never) : 0;
     const int most = 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
         if (all_used || i > most) {
@@ -580,7 +628,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
             const bool own = released && released->which == j;
             if ((own || asked_[j].let_go != Motion::stuck) &&
-                std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
+                std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred + between) {
                 worst = j, most_beyond = model::never,
                 way = own ? static_cast<Motion>(released->side) : asked_[j].let_go;
                 continue;
@@ -625,7 +673,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             double rate = found.accelerations[index(joint.first)] -
                           (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
             const double I = problem_.system.bodies[index(joint.first)].inertia;
-            const double nothing = 64 * rounding * torque_size(j);
+            const double nothing = 64 * rounding * torque_size(j) + between;
             goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
             if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
             if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
@@ -985,6 +1033,7 @@ void Engine::run() {
         }
         alive = advance();
     }
+    if (outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering) explain_end();
     const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;
     if (stands_at_now) {
         while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
@@ -1042,8 +1091,8 @@ void Engine::run() {
     history_->close(now_, y_);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
-    carry->y = y_, carry->mode = mode_, carry->watches = watches_, carry->echoes = echoes_, carry->heading = heading_,
-    carry->born = born_;
+    carry->y = y_, carry->low = low_, carry->mode = mode_, carry->watches = watches_, carry->echoes = echoes_,
+    carry->heading = heading_, carry->born = born_;
     if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
@@ -1129,8 +1178,8 @@ double Engine::longest_under_friction() {
         }
         const double C = joint.damping, v = mechanics_.velocity(j, y_);
         const double second = (std::fabs(joint.stiffness * v) + std::fabs(C * first)) * lightness;
-        longest = std::min(longest, model::longest_step(law, law.range(how.range), std::max(0.0, sign * slip(j)),
-                                                        sign * first, second, C, 1 / lightness));
+        longest = std::min(longest, longest_step(law, law.range(how.range), std::max(0.0, sign * slip(j)), sign * first,
+                                                 second, C, 1 / lightness));
     }
     return longest;
 }
@@ -1138,7 +1187,7 @@ double Engine::longest_under_friction() {
 void Engine::again(Collocation::Attempt attempt) {
     if (++attempts_ >= most_attempts) {
         if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) {
-            get_nowhere(Outcome::unresolved);
+            fail(Outcome::unresolved);
             return;
         }
         attempts_ = 0, attempts_since_ = now_.hi;
@@ -1147,7 +1196,7 @@ void Engine::again(Collocation::Attempt attempt) {
         bad_time_ = solver_->bad_time();
         const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
         if (problem_.step > 0 || now_.until(bad_time_) <= near || !mechanics_.may_go_on())
-            fail(Outcome::excitation_not_finite);
+            fail(greatest_of_state() > huge ? Outcome::state_not_finite : Outcome::excitation_not_finite);
         h_ = segment_.h / 2;
         return;
     }
@@ -1220,8 +1269,8 @@ std::string Engine::state_driven_back() {
     return {};
 }
 
-/// Ends the run, which got nowhere: if something that acts in it is rough on every scale, that is why.
-bool Engine::get_nowhere(Outcome outcome) {
+/// The run got nowhere: if something that acts in it is rough on every scale, that is why.
+void Engine::explain_end() {
     const double most = std::min({pace_, problem_.window.end - now_.hi, shortest_delay_});
     const double from = now_.hi, length = std::min(rough_stretch * pace_, most / 8);
     struct Source {
@@ -1258,27 +1307,82 @@ bool Engine::get_nowhere(Outcome outcome) {
         if (!look.is_noise() || !(part > worst)) continue;
         worst = part;
         result_.rough = Rough{source.name, look.most, part};
-        outcome = Outcome::unresolved;
+        outcome_ = Outcome::unresolved;
     }
     const std::string state = result_.rough ? "" : state_driven_back();
-    if (state.empty()) return fail(outcome);
+    if (state.empty()) return;
     result_.rough = Rough{"the rate of " + state};
-    return fail(Outcome::chattering);
+    outcome_ = Outcome::chattering;
+}
+
+double Engine::greatest_of_state() const {
+    double most = 0;
+    for (const double value : y_) most = std::max(most, std::fabs(value));
+    return most;
+}
+
+/// Whether nothing that may still come moves any body.
+bool Engine::stands_for_good() {
+    const Frame& present = frame();
+    if (present.groups() > 0 || !present.closing.empty() || mechanics_.states() > 0 || mechanics_.has_base())
+        return false;
+    if (mechanics_.has_belts() || !problem_.drive.events.empty()) return false;
+    bool constant = true;
+    mechanics_.for_each_signal([&](const Signal& s) { constant = constant && s.constant_from() <= now_.hi; });
+    std::vector<double> greatest_pull(mechanics_.joints()), lacking(n()), held(mechanics_.joints());
+    std::vector<double> none(n()), torques;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mechanics_.is_native(j) || mode_.friction[j].riding) return false;
+        if (!constant && (mode_.leans[j] != 0 || mode_.friction[j].creeps != Motion::stuck)) return false;
+    }
+    if (constant) return true;
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double most = mechanics_.loads()[i].most();
+        if (!(most < model::never)) return false;
+        lacking.assign(n(), 0), lacking[i] = 1;
+        present.multipliers(lacking, held);
+        for (std::size_t j = 0; j < held.size(); ++j) greatest_pull[j] += most * std::fabs(held[j]);
+    }
+    mechanics_.torques(here(), mode_, std::vector<double>(mechanics_.joints()), none, torques);
+    for (std::size_t i = 0; i < n(); ++i) lacking[i] = -torques[i];
+    present.multipliers(lacking, held);
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mode_.holds(j)) continue;
+        if (!(greatest_pull[j] - held[j] <= mechanics_.holding(j, Motion::forward, here()))) return false;
+        if (!(greatest_pull[j] + held[j] <= mechanics_.holding(j, Motion::backward, here()))) return false;
+    }
+    return true;
+}
+
+/// There is nothing to compute but the loads at the rows, of which there may be many.
+bool Engine::rest() {
+    constexpr std::size_t rows_at_once = 1U << 12U;
+    const bool many = problem_.rows.count() - next_row_ > rows_at_once;
+    segment_.start = now_;
+    segment_.end = many ? problem_.rows.time(next_row_ + rows_at_once) : problem_.window.end;
+    segment_.h = now_.until(segment_.end) / 2;
+    segment_.from_break = segment_.to_break = false, segment_.to_the_end = true;
+    solver_->stand_still(segment_, y_);
+    sampled_.clear();
+    return end_at(1);
 }
 
 bool Engine::advance() {
+    if (greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
+    if (stands_for_good()) return rest();
     choose();
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     const Frame& present = *frame_;
     decide_conditions({now_.hi, side(), departing()}, mode_);
+    segment_.low = low_, sampled_.clear();
     const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
     const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
     if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
         return outcome_ == Outcome::reached_end;
     }
-    if (attempt == Collocation::Attempt::shorten &&
+    if (attempt == Collocation::Attempt::shorten && !solver_->tells_rests() &&
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
-        if (++too_short_ > most_short) return get_nowhere(Outcome::chattering);
+        if (++too_short_ > most_short) return fail(Outcome::chattering);
         solver_->pass_over(segment_);
         solver_->find_limits(segment_, mode_);
         h_ = 64 * segment_.h;
@@ -1287,7 +1391,7 @@ bool Engine::advance() {
         return outcome_ == Outcome::reached_end;
     } else {
         if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
-        const double factor = 0.9 * std::pow(std::max(solver_->unresolved(), 1e-16), -1.0 / 16);
+        const double factor = 0.9 * std::pow(std::max(solver_->smooth(), 1e-16), -1.0 / 16);
         const double least = segment_.h < short_part * longest_ ? 2 : 0;
         const double longer = problem_.step > 0 ? longest_ : segment_.h * std::clamp(factor, least, 8.0);
         h_ = std::min(longest_ / 2, std::max(h_, longer));
@@ -1364,7 +1468,7 @@ void Engine::foresee_break() {
 void Engine::go_to(double x) {
     const std::vector<double> begin = y_;
     segment_.state(x, y_);
-    for (std::size_t i = 0; has_walls_ && i < n(); ++i) {
+    for (std::size_t i = 0; i < n(); ++i) {
         const double moved =
             (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + low_[i];
         y_[i] = begin[i] + moved;
@@ -1398,14 +1502,15 @@ std::vector<Kept::Acting> Engine::acting() {
     for (std::size_t j = 0; j < all.size(); ++j) {
         if (j < n()) {
             all[j].M = segment_.driven[j];
+            if (mechanics_.has_base()) all[j].push = std::make_unique<Nodes>();
             for (std::size_t node = 0; node < node_count && mechanics_.has_base(); ++node) {
-                double& push = all[j].push[node];
+                double& push = (*all[j].push)[node];
                 push = -problem_.system.bodies[j].inertia * mechanics_.base(segment_.times[node], segment_.side(node));
                 all[j].M[node] -= push;
             }
         }
         all[j].holds = mechanics_.rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
-        all[j].belt = segment_.belts[j];
+        if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
         } else if (mechanics_.is_native(j) && mechanics_.rubs(j) && mode_.leans[j] == 0) {
@@ -1582,7 +1687,19 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
         series = difference(series, cheb::fit(change));
     }
     series[0] += first;
-    const double fastest = greatest(a) + greatest(b) + greatest(belt);
+    const double fastest = greatest(a) + greatest(b) + greatest(belt), torques = torque_size(joint);
+    double inertia = problem_.system.bodies[index(own.first)].inertia;
+    if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);
+    // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
+    // the angle.
+    const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
+    const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, y_));
+    const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
+    if (crept) {
+        crept_[joint] = 1;
+        if (!how.leaving && ending.by == By::nobody) ending = {1, By::slip, joint};
+        if (!how.leaving) return;
+    }
     if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
     Nodes slips{};
     for (std::size_t j = 0; j < node_count; ++j) {
@@ -1590,20 +1707,14 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     }
     cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series), slips);
     if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
-    double torques = torque_size(joint), inertia = problem_.system.bodies[index(own.first)].inertia;
-    if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);
     curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
     const auto always = [](double) { return true; };
-    // All that goes on in the stretch is slower than the rounding of its torques could make it.
-    const bool crept =
-        may_creep(joint) && fastest * (own.damping + inertia / (2 * segment_.h)) <= 4 * rounding * torques;
-    if (crept) {
-        crept_[joint] = 1;
-        if (!how.leaving && ending.by == By::nobody) ending = {1, By::slip, joint};
-        if (!how.leaving) return;
-    }
     auto zero = cheb::first_below(curve, -1, how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, always);
     if (!zero && curve(1) <= curve.floor()) zero = 1;
+    // What only touches zero does so where it is lowest.
+    if (zero && *zero > -1 && *zero < 1) {
+        if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
+    }
     if (!zero || *zero > ending.x) return;
     ending = {*zero, By::slip, joint};
     if (!how.leaving || *zero > -1) return;
@@ -1904,10 +2015,10 @@ bool Engine::cross(const Ending& ending) {
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
     const bool endless = too_often() || to_and_fro_ >= most_to_and_fro;
     if (!endless && small_in_a_row_ < most_small) return true;
-    if (endless && jumps && !problem_.only_located) return get_nowhere(Outcome::chattering);
+    if (endless && jumps) return fail(Outcome::chattering);
     mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
     has_pieces_ = false;
-    return !problem_.only_located || fail(Outcome::unresolved);
+    return true;
 }
 
 double Engine::watched(std::size_t event, const Moment& at) const {
@@ -1993,24 +2104,43 @@ void Engine::record_turns(double until) {
         const auto exact = [&](double x) { return segment_.at(n() + i, x); };
         const double torques = torque_size(i);
         const double nothing = 100 * rounding * segment_.h / problem_.system.bodies[i].inertia * torques;
-        if (!(moving > nothing)) continue;
+        constexpr double underflow = 1e-280;  // numbers so small lose their digits
+        if (!(moving > std::max(nothing, underflow))) continue;
         Half half = static_cast<int>(heading_[i]);
         const Watched watched(v, exact);
-        double from = -1;
+        std::vector<double> zeros{-1};
         for (;;) {
-            const auto x = watched.leaves(half, from);
+            const auto x = watched.leaves(half, zeros.back());
             if (!x || *x >= until - 1e-12) break;
-            const double t = segment_.time(*x);
-            if (t > problem_.window.start || problem_.before != nullptr) {
-                std::vector<double> y;
-                segment_.state(*x, y);
-                result_.events.push_back(
-                    {t, EventKind::turn, static_cast<int>(i), -1, y[i], 0, mechanics_.load(i, {t, Side::at, y})});
-            }
+            zeros.push_back(*x);
             half = -half;
-            from = *x;
         }
-        heading_[i] = static_cast<Motion>(half);
+        // Between two zeros it may be no more than the error of a series that fits what comes before or after.
+        const auto moves = [&](std::size_t k) {
+            const double from = zeros[k], to = k + 1 < zeros.size() ? zeros[k + 1] : until;
+            double most = std::fabs(exact((from + to) / 2));
+            for (std::size_t j = 0; j < node_count; ++j) {
+                if (cheb::nodes[j] > from && cheb::nodes[j] < to) most = std::max(most, std::fabs(v[j]));
+            }
+            return most > 8 * problem_.tolerance * moving;
+        };
+        int way = static_cast<int>(heading_[i]);
+        bool moved = false;  // on the stretch
+        for (std::size_t k = 0; k < zeros.size(); ++k) {
+            const int now = (zeros.size() - 1 - k) % 2 == 0 ? half : -half;
+            const bool clear = moves(k), at_end = k + 1 == zeros.size() && moved;
+            moved = moved || clear;
+            if (now == way || !(clear || at_end)) continue;
+            if (std::exchange(way, now) == 0) continue;
+            const double x = zeros[k], t = segment_.time(x);
+            if (!(t > problem_.window.start) && problem_.before == nullptr) continue;
+            std::vector<double> y;
+            segment_.state(x, y);
+            const std::optional<double> sampled = sampled_load(i, x);
+            const double M = sampled ? *sampled : mechanics_.load(i, {t, Side::at, y});
+            result_.events.push_back({t, EventKind::turn, static_cast<int>(i), -1, y[i], 0, M});
+        }
+        heading_[i] = static_cast<Motion>(way);
     }
     std::stable_sort(result_.events.begin() + told, result_.events.end(),
                      [](const JointEvent& a, const JointEvent& b) { return a.t < b.t; });
@@ -2166,9 +2296,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         if (!named) y_[0] = state.theta, y_[1] = state.velocity;
         keep_within_walls(y_);
         has_jumped_ = true;
-        for (std::size_t i = 0; i < n(); ++i) {
-            if (y_[i] != before[i]) low_[i] = 0;
-        }
+        if (y_ != before) low_.assign(n(), 0);  // what the user was given is what he goes on from
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const double work = energy_at(j, y_) - energy_at(j, before);
             if (work != 0 || j == 0) history_->add_jump(now_.hi, j, {.acts = work});
@@ -2293,7 +2421,8 @@ bool Engine::put_row(double t, double x) {
     const Moment at{t, x <= -1 ? side() : Side::at, y};
     bool needs_look = !problem_.joined_elsewhere;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || mode_.holds(j);
-    if (needs_look && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
+    const auto place = x > -1 ? std::optional(x) : std::nullopt;
+    if (needs_look && !look(at, mode_, frame(), look_, place, Loads::sampled)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -2305,7 +2434,8 @@ bool Engine::put_row(double t, double x) {
     for (std::size_t i = 0; i < n(); ++i) {
         good = put(y[i]) && good;
         good = put(y[n() + i]) && good;
-        good = put(mechanics_.load(i, at)) && good;
+        const std::optional<double> sampled = sampled_load(i, x);
+        good = put(sampled ? *sampled : mechanics_.load(i, at)) && good;
         good = put(friction(i, at, look_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
     }

@@ -30,6 +30,7 @@ struct JointEvent {
 /// Where a run may be taken up again.
 struct Carry {
     std::vector<double> y;
+    std::vector<double> low;  ///< what the angles have rounded off; may be left out
     Mode mode;
     std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
     std::vector<Watch> watches;                            ///< of the events of the user; may be left out
@@ -81,7 +82,6 @@ struct AssemblyProblem {
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
     bool works = false;             ///< integrate them: every function is asked about as often again
     std::size_t history_bytes = limits.memory / 4;
-    bool only_located = false;      ///< it ends where conditions of the motion prove too fine to locate
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
 };
 

@@ -45,9 +45,9 @@ double Signal::value_of(std::size_t i, const Moment& at) const {
     }
     const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
     return std::visit(
-        [t](const auto& term) {
+        [t, rest = at.t - t](const auto& term) {
             if constexpr (model::terms::NativeTerm<std::decay_t<decltype(term)>>) {
-                return term.value(t);
+                return model::terms::value_near(term, t, rest);
             } else {
                 return 0.0;
             }
@@ -76,8 +76,8 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
     }
     std::size_t first = 0, end = node_count;
     if (when.from_break) out[0] = at_node(0), first = 1;
-    for (const auto& [t, M] : known_) {
-        if (first == 0 && t == when.times[0]) out[0] = M, first = 1;
+    for (const auto& [t, rest, M] : known_) {
+        if (first == 0 && t == when.times[0] && rest == when.rests[0]) out[0] = M, first = 1;
     }
     if (when.to_break) out[--end] = at_node(node_count - 1);
     spread_.first = first;
@@ -87,8 +87,8 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
                                               std::span(out).subspan(first, end - first), &spread_);
     std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + good), out.begin() + static_cast<std::ptrdiff_t>(end),
               std::numeric_limits<double>::quiet_NaN());
-    known_ = {{{when.from_break ? nowhen : when.times[0], out[0]},
-               {when.to_break ? nowhen : when.times[node_count - 1], out[node_count - 1]}}};
+    known_ = {{{when.from_break ? nowhen : when.times[0], when.rests[0], out[0]},
+               {when.to_break ? nowhen : when.times[node_count - 1], when.rests[node_count - 1], out[node_count - 1]}}};
 }
 
 double Signal::next_break(double t) const {

@@ -148,9 +148,15 @@ public:
     /// A function that may do anything at any time, be it where nothing of the motion changes.
     [[nodiscard]] bool asks_in_time() const { return asks_in_time_; }
     [[nodiscard]] bool has_script() const { return excitation_.has_script(); }
+    /// A user's function of the time, of which a series on a stretch tells as much as it does.
+    [[nodiscard]] bool is_sampled() const { return asks_in_time_ && of_time_only_; }
     [[nodiscard]] double value(const Moment& at) const { return of_time(at) + of_motion(at); }
     /// What depends on the time alone, controllers that hold a value among it.
-    [[nodiscard]] double of_time(const Moment& at) const { return sum(at, false); }
+    [[nodiscard]] double of_time(const Moment& at) const {
+        if (!of_time_only_) return sum(at, false);
+        if (at.t != asked_last_.t || at.side != asked_last_.side) asked_last_ = {at.t, at.side, sum(at, false)};
+        return asked_last_.M;
+    }
     [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
     /// of_time() at all nodes of a stretch. What is not finite ends them: from there on they are no numbers.
     void sample(const NodeTimes& when, Nodes& out) const;
@@ -158,6 +164,12 @@ public:
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
     [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
+    /// It is known between doubles of the time, too.
+    [[nodiscard]] bool tells_rests() const { return excitation_.tells_rests(); }
+    /// It is never greater than this, either way.
+    [[nodiscard]] double most() const {
+        return asks_the_motion_ || model::has_memory(excitation_) ? model::never : excitation_.most();
+    }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
     /// A function of the motion has no pieces that are known.
@@ -226,7 +238,15 @@ private:
     mutable model::Spread spread_{.places = cheb::nodes};
     /// Of the last stretch: of_time() at both ends, where the next one begins at one of these.
     static constexpr double nowhen = std::numeric_limits<double>::quiet_NaN();
-    mutable std::array<std::pair<double, double>, 2> known_{{{nowhen, 0}, {nowhen, 0}}};
+    struct Known {
+        double t = nowhen, rest = 0, M = 0;
+    };
+    mutable std::array<Known, 2> known_{};
+    mutable struct {
+        double t = nowhen;
+        Side side = Side::at;
+        double M = 0;
+    } asked_last_{};
 };
 
 }  // namespace dinal::motion::engine

@@ -66,6 +66,7 @@ text::Expected<model::State> Replay::at(double t) const {
 }  // namespace
 
 Trajectory Rk4::run(const Problem& problem) const {
+    if (problem.more) return engine::run(problem, {.longest = h, .step = h});
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
     std::shared_ptr<Replay> replay;
@@ -76,10 +77,6 @@ Trajectory Rk4::run(const Problem& problem) const {
 
     run_whole(engine, problem, rows, events, std::move(replay), trajectory);
     return trajectory;
-}
-
-Trajectory Rk4::run_more(const Problem& problem) const {
-    return engine::run(problem, {.longest = h, .step = h});
 }
 
 }  // namespace dinal::motion::rk4

@@ -18,11 +18,11 @@ struct Spectral {
     double narrowest = std::numeric_limits<double>::infinity();  ///< no pulse of this width is missed, time units
 
     static const MethodText about;
+    static constexpr bool knows_more = true;
     /// The longest panel of a run, time units.
     [[nodiscard]] double longest(const Problem& problem) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Trajectory run(const Problem& problem) const;
-    [[nodiscard]] Trajectory run_more(const Problem& problem) const;
 };
 
 inline constexpr text::Option spectral_options[] = {

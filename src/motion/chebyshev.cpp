@@ -1,8 +1,8 @@
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/chebyshev.hpp"
 
 #include <algorithm>
 
-namespace dinal::motion::spectral::chebyshev {
+namespace dinal::motion::chebyshev {
 
 namespace {
 
@@ -98,4 +98,4 @@ Samples at_nodes(const Series<points>& c) {
     return f;
 }
 
-}  // namespace dinal::motion::spectral::chebyshev
+}  // namespace dinal::motion::chebyshev

@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/chebyshev.hpp"
 
-namespace dinal::motion::spectral::chebyshev {
+namespace dinal::motion::chebyshev {
 
 /// A polynomial with its derivative, and what proves that there is no zero between two values.
 template <std::size_t n>
@@ -52,13 +52,6 @@ public:
         return b;
     }
     [[nodiscard]] const Samples& at_nodes() const { return at_nodes_; }
-    /// From now on the curve of the other sign.
-    void turn_over() {
-        for (double& c : f_) c = -c;
-        for (double& c : slope_) c = -c;
-        for (double& value : at_nodes_) value = -value;
-    }
-
     /// Up to which distance from -1 a curve that leaves zero there is certainly positive: by its slope there, or, where
     /// that is zero too, by its curvature. None when neither tells.
     [[nodiscard]] double leaves_upward() const {
@@ -171,4 +164,4 @@ std::optional<double> first_below(const F& f, double from, LeftEnd start, const 
     return {};
 }
 
-}  // namespace dinal::motion::spectral::chebyshev
+}  // namespace dinal::motion::chebyshev

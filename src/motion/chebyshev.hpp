@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace dinal::motion::spectral::chebyshev {
+namespace dinal::motion::chebyshev {
 
 /// Panels are sampled at degree + 1 Chebyshev-Lobatto points; 16 resolves 0.6 natural periods to rounding.
 inline constexpr std::size_t degree = 16;
@@ -170,4 +170,4 @@ double derivative_bound(const Series<n>& c) {
     return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]) * derivative_bounds<n>[order - 1][k]; });
 }
 
-}  // namespace dinal::motion::spectral::chebyshev
+}  // namespace dinal::motion::chebyshev

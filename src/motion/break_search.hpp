@@ -9,16 +9,16 @@
 #include <optional>
 #include <span>
 
-namespace dinal::motion::spectral {
+namespace dinal::motion {
 
 /// No jump is located nearer than this part of the stretch that is searched; only beside t = 0 doubles lie closer.
-inline constexpr double nearest = 0x1p-100;
+inline constexpr double nearest_jump = 0x1p-100;
 
 /// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
 /// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
 template <class F>
 double jump_between(double a, double fa, double b, double fb, const F& f) {
-    const double smallest = (b - a) * nearest;
+    const double smallest = (b - a) * nearest_jump;
     for (;;) {
         const double middle = a + (b - a) / 2;
         if (!(middle > a && middle < b) || b - a <= smallest) return b;
@@ -150,4 +150,4 @@ private:
     std::array<double, 7> last_{none, none, none, none, none, none, none};
 };
 
-}  // namespace dinal::motion::spectral
+}  // namespace dinal::motion
