@@ -17,6 +17,7 @@ constexpr double corner_step = 1e-3;  // so short a step has found a corner, as 
 constexpr double creeping = 1e-4;     // with so short steps for so long it comes to an end
 constexpr int most_creeps = 40;
 constexpr double least_slope = 1e-7;  // of a fold: dp/ds
+constexpr double upright = 1e-6;      // no more than what returns are wrong by
 constexpr double dying = 1e-2;        // of the greatest motion: one that is smaller is not looked at more closely
 constexpr double vanishes = 1e-3;     // a cycle so small is a rest
 constexpr double boundless = 1e8;     // a motion so many times as large comes to a resonance, where there is none
@@ -532,7 +533,7 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
         if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
         std::vector<Special> specials = specials_before(*spot, ahead);
         // Where a branch begins at a Hopf point it is upright, and its slope is rounding.
-        if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > least_slope) {
+        if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright) {
             const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
             if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
                 const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {

@@ -268,6 +268,41 @@ void Collocation::guess(Segment& s, const Frame& frame) {
     }
 }
 
+/// The first guess where a smooth motion goes on: accelerations and rates do as they did. Whether it does.
+bool Collocation::go_on(const Segment& s, const Frame& frame) {
+    constexpr double nearly = 1e-6, longer = 4;
+    const bool follows = end_.t == s.start.hi && !s.from_break && end_.groups == frame.group;
+    if (!follows || !(s.h <= longer * end_.h)) return false;
+    for (std::size_t k = 0; k < end_.unknowns.size(); ++k) {
+        const auto& [value, first, second, third] = end_.unknowns[k];
+        const double now = unknown_[k][0], most = std::fabs(value) + s.h * std::fabs(first);
+        if (!(std::fabs(now - value) <= nearly * most)) return false;
+        for (std::size_t j = 1; j < node_count; ++j) {
+            const double t = s.h * (1 + cheb::nodes[j]);
+            unknown_[k][j] = now + t * (first + t / 2 * (second + t / 3 * third));
+        }
+    }
+    return true;
+}
+
+void Collocation::remember_end(const Segment& s, const Frame& frame) {
+    end_.t = s.end, end_.h = s.h, end_.groups = frame.group;
+    end_.unknowns.resize(unknown_.size());
+    for (std::size_t k = 0; k < unknown_.size(); ++k) {
+        const Series series = cheb::fit(unknown_[k]);
+        std::array<double, 4>& end = end_.unknowns[k];
+        end = {};
+        for (std::size_t i = 0; i < node_count; ++i) {
+            const auto i2 = static_cast<double>(i * i);
+            double of_power = series[i];
+            end[0] += of_power;
+            end[1] += of_power *= i2 / s.h;
+            end[2] += of_power *= (i2 - 1) / (3 * s.h);
+            end[3] += of_power *= (i2 - 4) / (5 * s.h);
+        }
+    }
+}
+
 /// Velocities and angles from the accelerations of the groups, states from their rates.
 void Collocation::place(Segment& s, const Frame& frame) {
     Nodes velocity{}, way{};
@@ -410,9 +445,16 @@ void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& 
 }
 
 const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& frame) {
-    const auto serves = [h](double of) { return std::fabs(of - h) <= 1e-6 * h; };
-    if (last_factors_ != nullptr && serves(last_factors_->first)) return last_factors_->second;
-    if (const auto found = factors_.lower_bound(h * (1 - 1e-6)); found != factors_.end() && serves(found->first)) {
+    constexpr Eigen::Index few = 3, many = 8;
+    constexpr int often = 4;
+    const bool linear = slopes_.rows() <= few && !mechanics_.nonlinear();
+    const auto serves = [h, linear](std::pair<const double, Factors>& of) {
+        if (std::fabs(of.first - h) > 1e-6 * h) return false;
+        return !linear || of.second.inverse.size() > 0 || ++of.second.asked < often;
+    };
+    if (last_factors_ != nullptr && serves(*last_factors_)) return last_factors_->second;
+    auto found = factors_.lower_bound(h * (1 - 1e-6));
+    if (found != factors_.end() && serves(*found)) {
         last_factors_ = &*found;
         return found->second;
     }
@@ -430,11 +472,14 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
     const auto empty = [&](Eigen::Index r, Eigen::Index c) {
         return r != c && (c >= groups || slopes_(r, c) == 0) && slopes_(r, groups + c) == 0;
     };
-    if (factors_.size() >= most_factors) factors_.clear();
-    Factors& made = factors_[h];
-    last_factors_ = &*factors_.find(h);
-    constexpr Eigen::Index few = 3, many = 8;
-    if (rows <= few && !mechanics_.nonlinear()) {
+    const bool known = found != factors_.end() && std::fabs(found->first - h) <= 1e-6 * h;
+    if (!known) {
+        if (factors_.size() >= most_factors) factors_.clear();
+        found = factors_.try_emplace(h).first;
+    }
+    Factors& made = found->second;
+    last_factors_ = &*found;
+    if (linear && known) {
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
         for (Eigen::Index r = 0; r < rows; ++r) {
             for (Eigen::Index c = 0; c < rows; ++c) {
@@ -502,7 +547,11 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
             s.f[n_ + i].fill(frame.group[i] < 0 ? 0 : unknown_[index(frame.group[i])][0]);
         }
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
-        guess(s, frame);
+        if (slopes == Slopes::known && mechanics_.nonlinear() && go_on(s, frame)) {
+            place(s, frame);
+        } else {
+            guess(s, frame);
+        }
         double before = std::numeric_limits<double>::infinity();
         for (int i = 0; i < most_iterations; ++i) {
             if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
@@ -659,6 +708,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     judge(s, mode, frame);
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
+    if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 

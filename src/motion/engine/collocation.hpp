@@ -106,12 +106,15 @@ private:
                   const std::vector<double>* departing);
     void place(Segment& segment, const Frame& frame);
     void guess(Segment& segment, const Frame& frame);
+    bool go_on(const Segment& segment, const Frame& frame);
+    void remember_end(const Segment& segment, const Frame& frame);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
-    /// Newton's matrix for a length. Of a few linear groups it serves many stretches, and is inverted. Of many it is
-    /// sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
+    /// Newton's matrix for a length. Of a few linear groups it is inverted where it serves many stretches. Of many it
+    /// is sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
     /// integration, of two conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
     struct Factors {
+        int asked = 0;  ///< so often
         Eigen::MatrixXd inverse;
         std::unique_ptr<const algebra::Factored> sparse;
         std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
@@ -143,13 +146,19 @@ private:
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
     std::array<std::vector<double>, node_count> points_;    ///< all of y at a node
+    /// Of the last stretch: its end, and there each of the unknowns with its first three derivatives.
+    struct {
+        double t = -model::never, h = 0;
+        std::vector<int> groups{};
+        std::vector<std::array<double, 4>> unknowns{};
+    } end_;
     std::vector<double> torque_, load_, belt_, rate_, scales_;
     std::vector<char> placed_;
     Eigen::MatrixXd slopes_;
     std::vector<int> slopes_of_;  ///< the groups that they belong to
     bool slopes_known_ = false;
     std::map<double, Factors> factors_;
-    const std::pair<const double, Factors>* last_factors_ = nullptr;
+    std::pair<const double, Factors>* last_factors_ = nullptr;
     std::vector<double> sizes_, sizes_at_start_;  ///< of each body: how great the torques on it are
     Eigen::VectorXd residual_, step_;
 };

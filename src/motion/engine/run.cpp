@@ -275,6 +275,7 @@ private:
     std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
     Look look_, decided_;
+    std::vector<double> row_;                       ///< of put_row()
     std::vector<Series> sampled_;                   ///< of the loads on the stretch, if somebody wanted them
     std::array<std::vector<double>, 5> scratch_;    ///< of look()
     std::array<std::vector<double>, 4> projected_;  ///< of project()
@@ -2415,7 +2416,8 @@ bool Engine::rows_until(double end, bool to_the_end) {
 
 /// At x of the segment; -2 is the present.
 bool Engine::put_row(double t, double x) {
-    std::vector<double> y = y_;
+    std::vector<double>& y = row_;
+    y = y_;
     if (x > -1) segment_.state(x, y);
     keep_within_walls(y);
     const Moment at{t, x <= -1 ? side() : Side::at, y};
