@@ -1,8 +1,12 @@
 #include "prompt/plain_lines.hpp"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -65,9 +69,23 @@ bool InterruptNote::interrupted() {
 }
 
 TypedLine read_plain(const std::string& prompt) {
+    const InterruptNote note;
+    // Ctrl-C is held back until somebody waits for it: between the prompt and the reading it would be lost.
+    sigset_t held, before;
+    sigemptyset(&held);
+    sigaddset(&held, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &held, &before);
     say(prompt);
     flush_output();
-    const InterruptNote note;
+    if (isatty(STDIN_FILENO) == 1) {
+        pollfd keyboard{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+        ppoll(&keyboard, 1, nullptr, &before);
+    }
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (InterruptNote::interrupted()) {
+        say("\n");
+        return {Reading::interrupted, ""};
+    }
     char* buffer = nullptr;
     std::size_t capacity = 0;
     // From the same FILE as io.read, so that Lua code can read the lines that follow its own.
