@@ -255,6 +255,38 @@ TEST_CASE("a square wave that a function hides costs a hundred calls an edge, fr
     CHECK(M.probe->calls < 8000);  // 43 edges and 800 for the panels; the one at 0 is looked for down to 1e-308
 }
 
+TEST_CASE("a mass at rest without friction does not turn before a smooth pulse comes", "[spectral]") {
+    for (const double k : {0.0, 0.3}) {
+        const Oscillator system = system_of({.inertia = 0.65, .stiffness = k, .damping = 5.2});
+        const Trajectory run =
+            by_spectral(system, made(Gaussian{.amplitude = 3.7, .at = 14.6, .sigma = 0.16}), {0, 0}, {0, 15});
+        CAPTURE(k);
+        CHECK(run.events.empty());  // it goes forward all the time: the pulse is not over yet
+        CHECK(run.state_at_stop.theta > 0.01);
+    }
+}
+
+TEST_CASE("a pulse lets a mass go between two doubles of the time, beside a term that knows none",
+          "[spectral][razor]") {
+    // Of a lot. The time is rounded to 2e-13, in which M rises by 2e-6.
+    const Oscillator system = system_of(
+        {.inertia = 66615.869690414795, .stiffness = 52.233929629455076, .kinetic_friction = 427.67211950215545});
+    const Excitation narrow = made(Gaussian{-36195714.309486486, -1169.9797098326421, 0.00022730478662856034});
+    const Excitation wide =
+        made(Triangle{.amplitude = 272.3230897746846, .period = 216.07414499566445, .at = -803.9921185630863})
+            .windowed(-1233.3987088201591, 449.73900767637019);
+    const Trajectory run = by_spectral(system, narrow + wide, {0, 0}, {-1539.2664671213929, -1000});
+    REQUIRE(run.events.size() >= 2);
+    CHECK(run.events[0].kind == EventKind::slip);
+    CHECK(run.events[0].t == within(-1169.9807733119437, 1e-12));
+    CHECK(run.outcome == Outcome::stuck_at_end);
+    // The pulse is a blow at its middle, but for the friction in its 2e-3.
+    constexpr double impulse = -36195714.309486486 * 0.00022730478662856034 * 2.5066282746310002;
+    const Trajectory struck =
+        must_run(system, wide, {0, impulse / system.inertia()}, {-1169.9797098326421, -1000}, Grid::none(), Exact{});
+    CHECK(run.state_at_stop.theta == within(struck.state_at_stop.theta, 1e-3));
+}
+
 // ---- stiff
 
 TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spectral]") {

@@ -77,6 +77,10 @@ public:
     }
     /// That of the body where it is greatest, torque.
     [[nodiscard]] double noise() const { return *std::max_element(noise_.begin(), noise_.end()); }
+    /// What the velocity of a body may be off by on a stretch that was resolved.
+    [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
+        return segment.h * allowed_[body];
+    }
     /// The longest time between two looks at a function of the time in a stretch.
     [[nodiscard]] double gap(const Segment& segment) const;
     /// Where a function of the time breaks in the last one; none when none does.

@@ -1710,7 +1710,13 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
     curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
     const auto always = [](double) { return true; };
-    auto zero = cheb::first_below(curve, -1, how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, always);
+    const auto start = how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere;
+    auto zero = cheb::first_below(curve, -1, start, always);
+    if (how.leaving && zero && *zero <= -1 &&
+        !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
+        curve.raise_floor(solver_->uncertain(index(own.first), segment_));
+        zero = cheb::first_below(curve, -1, start, always);
+    }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
     // What only touches zero does so where it is lowest.
     if (zero && *zero > -1 && *zero < 1) {
