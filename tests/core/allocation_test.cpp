@@ -10,19 +10,19 @@
 
 namespace {
 thread_local long allocations = 0;
-thread_local std::size_t held = 0;  // bytes, what was freed in another thread among it
+thread_local std::size_t bytes_held = 0;  // bytes, what was freed in another thread among it
 
 void* counted(std::size_t size) {
     ++allocations;
     if (void* memory = std::malloc(size == 0 ? 1 : size)) {
-        held += malloc_usable_size(memory);
+        bytes_held += malloc_usable_size(memory);
         return memory;
     }
     throw std::bad_alloc();
 }
 
 void give_back(void* memory) {
-    if (memory != nullptr) held -= malloc_usable_size(memory);
+    if (memory != nullptr) bytes_held -= malloc_usable_size(memory);
     std::free(memory);
 }
 }  // namespace
@@ -37,13 +37,13 @@ void* operator new[](std::size_t size) {
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++allocations;
     void* memory = std::malloc(size == 0 ? 1 : size);
-    if (memory != nullptr) held += malloc_usable_size(memory);
+    if (memory != nullptr) bytes_held += malloc_usable_size(memory);
     return memory;
 }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
     ++allocations;
     void* memory = std::malloc(size == 0 ? 1 : size);
-    if (memory != nullptr) held += malloc_usable_size(memory);
+    if (memory != nullptr) bytes_held += malloc_usable_size(memory);
     return memory;
 }
 void operator delete(void* memory) noexcept {
@@ -133,9 +133,9 @@ TEST_CASE("a user's function costs no allocations either, with or without feedba
 
 TEST_CASE("a short run that is kept takes a few kilobytes", "[allocation]") {
     const Oscillator system = nondimensional(0.05, 0.1);
-    const std::size_t before = held;
+    const std::size_t before = bytes_held;
     const auto run = simulate(system, {}, {1, 0}, {0, 1}, Grid::every(0.5), Spectral{});
-    const std::size_t taken = held - before;
+    const std::size_t taken = bytes_held - before;
     REQUIRE(run);
     REQUIRE(run->size() == 3);
     CHECK(taken <= 5000);  // three stretches of some 700 bytes each

@@ -298,7 +298,7 @@ void Collocation::remember_end(const Segment& s, const Frame& frame) {
             end[0] += of_power;
             end[1] += of_power *= i2 / s.h;
             end[2] += of_power *= (i2 - 1) / (3 * s.h);
-            end[3] += of_power *= (i2 - 4) / (5 * s.h);
+            end[3] += of_power * (i2 - 4) / (5 * s.h);
         }
     }
 }

@@ -35,8 +35,9 @@ using model::Outcome;
 constexpr double shortest = 1e-13;     // what cannot be seen in the motion
 constexpr double near_failure = 1e-9;  // how near a run comes to where a function fails
 constexpr double at_once = 1e-9;       // events that follow each other within it, so often, go on for ever
-constexpr int most_at_once = 200, most_short = 2000, most_attempts = 20000;
-constexpr double short_part = 1e-3;  // shorter than this part of the longest stretch is short
+constexpr int most_at_once = 200, most_short = 400, most_attempts = 20000;
+constexpr int most_attempts_sampled = 3000;  // where a function of the motion is asked that may do anything
+constexpr double short_part = 1e-3;          // shorter than this part of the longest stretch is short
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double most_blunt = 1e-9;   // of the torques: what passes its limit by more is no rounding
 constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
@@ -1186,9 +1187,10 @@ double Engine::longest_under_friction() {
 }
 
 void Engine::again(Collocation::Attempt attempt) {
-    if (++attempts_ >= most_attempts) {
-        if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) {
-            fail(Outcome::unresolved);
+    const int most = samples_ ? most_attempts_sampled : most_attempts;
+    if (++attempts_ >= most) {
+        if (now_.hi - attempts_since_ < 1e-7 * most * pace_) {
+            fail(samples_ ? Outcome::chattering : Outcome::unresolved);
             return;
         }
         attempts_ = 0, attempts_since_ = now_.hi;
