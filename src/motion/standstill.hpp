@@ -40,8 +40,8 @@ public:
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Without dry friction the mass swings through zero: its turns are told by turned(), and nothing is asked.
     [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way
-    /// it is on, or the other way when it comes to a stop.
+    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way it is on, or
+    /// the other way when it comes to a stop.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
         if (phase_ == Phase::creeping) return pulled_on(M, theta);
         return model::motion_from_standstill(system_, M, theta);
