@@ -17,6 +17,7 @@ constexpr int many_iterations = 4;       // slopes that need so many no longer s
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
 constexpr std::size_t most_factors = 24;
+constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
 /// The widest gaps between nodes, by the node before. Users' functions are asked in the middle of these, too.
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
 /// In units of the longest stretch: on one shorter than this no pulse can hide.
@@ -425,7 +426,7 @@ void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& 
     for (Eigen::Index r = 0; r < rows; ++r) {
         multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
     }
-    Eigen::VectorXcd of_mode(rows);
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(rows);
     for (std::size_t i = 0; i < each.values.size(); ++i) {
         const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
         for (Eigen::Index r = 0; r < rows; ++r) {
@@ -445,7 +446,7 @@ void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& 
 }
 
 const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& frame) {
-    constexpr Eigen::Index few = 3, many = 8;
+    constexpr Eigen::Index few = 3;
     constexpr int often = 4;
     const bool linear = slopes_.rows() <= few && !mechanics_.nonlinear();
     const auto serves = [h, linear](std::pair<const double, Factors>& of) {
@@ -489,7 +490,8 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
         made.inverse = algebra::inverse(A);
         return made;
     }
-    if (rows < many) {
+    if (rows < many_unknowns) {
+        made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
         for (const std::complex<double>& value : integration_modes().values) {
             const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
             if (rows == 1 && groups == 1) {
@@ -748,12 +750,23 @@ void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame)
     }
 }
 
+/// By how much a stretch with such a series may be longer and be resolved as well. What falls below `allowed` at a low
+/// degree does so because its coefficients fall fast, or at the last by what is left there.
+double longer_by(const Series& series, double allowed) {
+    std::size_t d = cheb::degree;
+    while (d > 1 && std::fabs(series[d - 1]) <= allowed) --d;
+    const double size = cheb::size(series), tail = std::max(cheb::tail(series), 1e-16 * allowed);
+    const double by_decay =
+        size > allowed ? std::pow(size / allowed, 1.0 / static_cast<double>(d) - 1.0 / cheb::degree) : model::never;
+    return std::max(by_decay, std::pow(allowed / tail, 1.0 / cheb::degree));
+}
+
 /// The last coefficients of what drives each value, against what that value is and how it changes.
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
-    unresolved_ = smooth_ = 0;
-    const auto note = [this](double tail, double allowed, double noise) {
-        unresolved_ = std::max(unresolved_, tail / allowed);
-        smooth_ = std::max(smooth_, (tail - noise) / allowed);
+    unresolved_ = 0, growth_ = model::never;
+    const auto note = [this](const Series& series, double scale, double allowed) {
+        unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
+        growth_ = std::min(growth_, longer_by(series, allowed / scale));
     };
     allowed_.assign(n_, 0);
     find_sizes(s);
@@ -775,13 +788,13 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
             allowed += per_torque * noise();
-            note(tail, allowed, per_torque * noise());
+            note(series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
-            const double tail = cheb::tail(cheb::fit(s.torques[i]));
+            const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise() + smallest;
-            if (tail > allowed) allowed += lost();
-            note(tail, allowed, noise());
+            if (cheb::tail(series) > allowed) allowed += lost();
+            note(series, 1, allowed);
         }
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
@@ -791,14 +804,13 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
             const double torques = sizes_[first],
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
-            note(cheb::tail(series), (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest,
-                 noise());
+            note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late, h, most) + smallest;
-                note(cheb::tail(limit), allowed, 0);
+                note(limit, 1, allowed);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
@@ -806,7 +818,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
                                16 * rounding * fastest_belt_[joint] +
                                lost_in_time(belt, late, h, fastest_belt_[joint]) + smallest;
-        note(cheb::tail(belt), allowed, 0);
+        note(belt, 1, allowed);
     }
     double rough = 0;  // what noise in M may be of what it moves
     for (std::size_t i = 0; i < n_; ++i) rough = std::max(rough, noise_[i] / (sizes_[i] + smallest));
@@ -817,7 +829,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
             64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]);
-        note(cheb::tail(series), allowed + smallest, 0);
+        note(series, 1, allowed + smallest);
     }
 }
 

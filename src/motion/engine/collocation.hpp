@@ -66,8 +66,8 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
-    /// The same of a stretch that was resolved, without noise.
-    [[nodiscard]] double smooth() const { return smooth_; }
+    /// By how much the next one may be longer than one that was resolved.
+    [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved, nor a longer one, and the load of a body is as rough on far shorter stretches, at
     /// one place as at another. From now on it need not be smoother than that.
     bool found_noise(const Segment& segment);
@@ -137,7 +137,7 @@ private:
     double tolerance_, longest_, step_length_;
     std::size_t n_, m_;
     bool tells_rests_ = true;  ///< the loads
-    double bad_time_ = 0, unresolved_ = 0, smooth_ = 0;
+    double bad_time_ = 0, unresolved_ = 0, growth_ = 1;
     double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration
