@@ -106,7 +106,7 @@ void Story::tell_setting() {
     }
     tell_surroundings();
     if (run_.gap > 0) {
-        say("M is a Lua function, sampled at most {} apart: a shorter pulse would have been missed.",
+        say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
             text::number_text(run_.gap, T0_));
     }
     if (run_.noise > 0) {

@@ -155,8 +155,10 @@ bool sees_all(const lua::LuaFunction* function, bool locates) {
 void note_readings(Run& run) {
     const model::Extras& extras = run.origin->extras;
     const bool locates = run.trajectory.located;
-    // Of a state's rate and of an event only values are known to the integrator.
-    bool all_seen = extras.states.empty() && extras.events.empty();
+    bool all_seen = extras.events.empty();  // of which only values are known to the integrator
+    for (const model::OwnState& state : extras.states) {
+        all_seen = all_seen && sees_all(dynamic_cast<const lua::LuaFunction*>(state.rate.get()), locates);
+    }
     const std::pair<const char*, const model::Excitation&> excitations[] = {
         {"M", run.origin->excitation}, {"The belt", extras.belt}, {"The base", extras.base}};
     for (const auto& [name, excitation] : excitations) {

@@ -86,12 +86,41 @@ test("read and sampled functions make the same motion", function()
         }
         local f = functions[r(#functions)]
         local sys = system { I = 1, C = 0.1, k = d, Rd = 0.05, Re = 0.06 + 0.1 * r() }
-        local function go(M) return sys:simulate { M = M, theta0 = 0.6 + a, t_end = 8 } end
-        local x, y = go(f), go(unread(f))
+        local function go(M, narrowest)
+            return sys:simulate { M = M, theta0 = 0.6 + a, t_end = 8, integrator = integrator.spectral { narrowest = narrowest or math.huge } }
+        end
+        local x, y = go(f), go(unread(f), 0.05) -- samples must not miss a short visit beyond a condition
         equal(x.status, y.status)
         equal(#x.events, #y.events)
         near(x.theta, y.theta, 1e-8)
     end
+end)
+
+test("what jumps by the time is found beside the motion, too, and in the rate of a state", function()
+    -- u goes to 0 for 0.3 of each unit of time, and to 1 for the rest
+    local calls = 0
+    local function rate(t, theta, velocity, z)
+        calls = calls + 1
+        return (t % 1 > 0.3 and 1 or 0) - z.u
+    end
+    for _, f in ipairs { function(t, theta, velocity, z) return (t % 1 > 0.3 and 1 or 0) - z.u end, unread(rate) } do
+        local u = 0
+        local run = system { I = 1, k = 1, Rd = 0.1 }:simulate {
+            M = function(t, theta, velocity, z) return z.u end, states = { u = { rate = f } }, t_end = 20, dt = 1,
+        }
+        for i = 1, 21 do
+            near(run.u[i], u, 1e-12)
+            u = 1 + (u * math.exp(-0.3) - 1) * math.exp(-0.7)
+        end
+    end
+    assert(calls < 700 * 40, calls)
+
+    local function M(t, theta) return (math.sin(t * t / 10) > 0.3 and 1 or 0) - 0.3 * theta end
+    local asked = 0
+    local function go(f) return system { I = 1, k = 40, Rd = 0.1 }:simulate { M = f, theta0 = 1, t_end = 40, dt = 1 } end
+    local found, sampled = go(M), go(unread(function(t, theta) asked = asked + 1 return M(t, theta) end))
+    near(found.theta, sampled.theta, 1e-10)
+    assert(asked < 600 * 51, asked)  -- of so many jumps
 end)
 
 test("a jump that drives the motion back from both sides ends the run with a sentence, sampled or read", function()

@@ -963,7 +963,8 @@ bool Collocation::found_noise(const Segment& s) {
 
 std::optional<double> Collocation::found_break(const Segment& s) const {
     if (!(unresolved_ > gross)) return {};
-    std::vector<double> loads;
+    std::vector<double> loads, begin;
+    for (const Nodes& each : s.y) begin.push_back(each[0]);
     std::optional<double> first;
     const auto look = [&](const Nodes& values, double size, const auto& at) {
         if (!(cheb::tail(cheb::fit(values)) > gross * 1e-13 * size)) return;
@@ -971,22 +972,42 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
         if (!found || !(*found <= s.end) || s.start.until(*found) < 1e-6 * s.h) return;
         if (!first || *found < *first) first = *found;
     };
+    // What depends on the motion, too, is asked at one state: what jumps there does so by the time.
+    const auto of_motion = [&](const Signal& signal, double t, Side side) {
+        return signal.samples_the_motion() ? signal.of_motion({t, side, begin}) : 0;
+    };
     for (std::size_t i = 0; i < n_; ++i) {
-        if (!mechanics_.loads()[i].has_script()) continue;
-        look(s.loads[i], sizes_[i], [&](double t) {
+        const Signal& load = mechanics_.loads()[i];
+        if (!load.has_script()) continue;
+        Nodes values = s.loads[i];
+        for (std::size_t j = 0; j < node_count; ++j) values[j] += of_motion(load, s.times[j], s.side(j));
+        look(values, sizes_[i], [&](double t) {
             mechanics_.loads_of_time(t, Side::at, loads);
-            return loads[i];
+            return loads[i] + of_motion(load, t, Side::at);
         });
     }
     mechanics_.for_each_signal([&](const Signal& signal) {
         const auto& of_bodies = mechanics_.loads();
         const bool looked =
             std::any_of(of_bodies.begin(), of_bodies.end(), [&](const Signal& load) { return &load == &signal; });
-        if (looked || !signal.has_script() || signal.asks_the_motion()) return;
+        if (looked || !signal.has_script() || (signal.asks_the_motion() && !signal.samples_the_motion())) return;
+        const auto value = [&](double t, Side side) {
+            return signal.of_time({t, side, {}}) + of_motion(signal, t, side);
+        };
         Nodes values{};
-        for (std::size_t j = 0; j < node_count; ++j) values[j] = signal.of_time({s.times[j], s.side(j), {}});
-        look(values, greatest(values), [&](double t) { return signal.of_time({t, Side::at, {}}); });
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = value(s.times[j], s.side(j));
+        look(values, greatest(values), [&](double t) { return value(t, Side::at); });
     });
+    std::vector<double> rates(m_);
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        const auto rate = [&](double t, Side side) {
+            mechanics_.rates({t, side, begin}, rates.data());
+            return rates[k];
+        };
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = rate(s.times[j], s.side(j));
+        look(values, greatest(values), [&](double t) { return rate(t, Side::at); });
+    }
     return first;
 }
 

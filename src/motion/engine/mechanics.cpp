@@ -411,6 +411,10 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
 double Mechanics::next_break(double t) const {
     double first = model::never;
     for_each_signal([&](const Signal& s) { first = std::min(first, s.next_break(t)); });
+    for (const Piecewise& rate : rates_) first = std::min(first, rate.next_break(t));
+    for (const Contact& contact : contacts_) {
+        if (contact.law) first = std::min(first, contact.law->next_break(t));
+    }
     return first;
 }
 

@@ -75,6 +75,10 @@ public:
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
+    /// Of what is not a part of an excitation.
+    [[nodiscard]] double next_break(double t) const {
+        return law_ && law_->alone ? model::never : function_->next_break(t);
+    }
     [[nodiscard]] double value(const Moment& at) const {
         if (law_) return value(at, law_->way * law_->slip(at));
         if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
