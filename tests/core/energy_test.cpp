@@ -9,6 +9,7 @@
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
+#include "support/written.hpp"
 
 namespace dinal::energy_test {
 
@@ -191,6 +192,23 @@ TEST_CASE("a run that went on after its panels were full says up to when they re
         REQUIRE_FALSE(energy);
         CHECK_THAT(energy.error().sentence, Catch::Contains(fmt::format("kept only up to t = {:.6g}", kept)));
     }
+}
+
+TEST_CASE("what acts with a delay knows its past where the memory for the motion is full", "[energy][resume]") {
+    const Oscillator system = nondimensional(0.05, 0.1);
+    const auto delayed = std::make_shared<DelayedController>();
+    delayed->by = 0.4;
+    delayed->function = written([](double t, const State& y, auto) { return std::sin(5 * t) + 0.3 * y.velocity; });
+    const Excitation M = native(Scripted{.function = delayed});
+    const auto run = [&](const Limits& limits) {
+        const auto first = simulate(system, M, {1, 0}, {0, 200}, Grid::none(), Spectral{}, {}, limits);
+        REQUIRE(first);
+        return *resume(system, M, *first, 210, Grid::none(), Spectral{}, {}, limits);
+    };
+    const Trajectory full = run({.memory = 100000}), whole = run({});
+    CHECK(full.course->whole_until() < 100);
+    CHECK(full.state_at_stop.theta == whole.state_at_stop.theta);
+    CHECK(full.events.size() == whole.events.size());
 }
 
 }  // namespace dinal::energy_test

@@ -93,27 +93,27 @@ private:
 
 }  // namespace
 
-void History::add(Kept kept) {
+void History::add(Kept kept, bool for_good, double past) {
     const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series)) +
                               kept.acting.size() * sizeof(Kept::Acting);
-    if (bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
-    if (whole_until_ < std::numeric_limits<double>::infinity()) return;
-    bytes_ += bytes;
+    if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
+    for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
+    if (!for_good && !(kept.start.after(kept.length) >= past)) return;
     list_.push_back(std::move(kept));
+    if (for_good) {
+        bytes_ += bytes, ++for_good_;
+        return;
+    }
+    const auto first = list_.begin() + static_cast<std::ptrdiff_t>(for_good_);
+    const auto later =
+        std::partition_point(first, list_.end(), [past](const Kept& k) { return k.start.after(k.length) < past; });
+    constexpr std::ptrdiff_t worth_it = 256;
+    if (later - first >= worth_it) list_.erase(first, later);
 }
 
 void History::close(const Clock& end, std::vector<double> y) {
     std::vector<Series> still(y.size());
     list_.push_back({.start = end, .h = 1, .begin = std::move(y), .series = std::move(still)});
-}
-
-void History::forget(double t) {
-    const auto old = std::partition_point(list_.begin(), list_.end(),
-                                          [t](const Kept& kept) { return kept.start.after(kept.length) < t; });
-    constexpr std::ptrdiff_t worth_it = 256;
-    if (old - list_.begin() < worth_it) return;
-    list_.erase(list_.begin(), old);
-    bytes_ = 0;
 }
 
 std::vector<double> History::at(double t, Side side) const {
@@ -131,9 +131,9 @@ std::vector<double> History::at(double t, Side side) const {
 
 void History::legs(const std::function<void(const JointLeg&)>& told) const {
     auto jump = jumps_.begin();
-    for (std::size_t i = 0; i <= list_.size(); ++i) {
+    for (std::size_t i = 0; i <= for_good_; ++i) {
         for (; jump != jumps_.end() && jump->stretch == i; ++jump) told(JumpLeg(jump->t, jump->joint, jump->work));
-        if (i < list_.size() && list_[i].length > 0) told(StretchLeg(joints_, list_[i]));
+        if (i < for_good_) told(StretchLeg(joints_, list_[i]));
     }
 }
 

@@ -62,13 +62,12 @@ public:
           before_(std::move(before)),
           most_(most) {}
 
-    void add(Kept kept);
+    /// For good, as long as the memory lasts. What is later than `past` is there in any case.
+    void add(Kept kept, bool for_good, double past);
     /// What took no time: what a user did to the motion, an impact.
     void add_jump(double t, std::size_t joint, const Work& work) { jumps_.push_back({list_.size(), t, joint, work}); }
     /// Where the run has ended: what took no time then counts from there on.
     void close(const Clock& end, std::vector<double> y);
-    /// Keeps only what is later than this time.
-    void forget(double t);
 
     /// All angles, velocities and states at a time of the run.
     [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }
@@ -94,6 +93,7 @@ private:
     std::size_t most_, bytes_ = 0;
     double whole_until_ = std::numeric_limits<double>::infinity();
     std::vector<Kept> list_;
+    std::size_t for_good_ = 0;  ///< so many of the list, its first
     std::vector<Jump> jumps_;
 };
 

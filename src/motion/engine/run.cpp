@@ -1502,8 +1502,8 @@ void Engine::keep(double length) {
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
     // For the legs of its course.
     if (problem_.limits.dense && (problem_.joined_elsewhere || problem_.works)) kept.acting = acting();
-    history_->add(std::move(kept));
-    if (!problem_.limits.dense) history_->forget(now_.hi - 2 * longest_delay_);
+    const double past = longest_delay_ > 0 ? now_.hi - 2 * longest_delay_ : model::never;
+    history_->add(std::move(kept), problem_.limits.dense, past);
 }
 
 /// What acts at each joint on the stretch.
