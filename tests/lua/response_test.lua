@@ -25,26 +25,40 @@ test("the response is Den Hartog's where it does not stop, and goes on where it 
     assert(tostring(c:plot{ show = false }):find("frequency"))
 end)
 
-test("M may be a function of the frequency, and the amplitude another one", function()
+local function linear(I, k, C, w) return 1 / math.sqrt((k - I*w^2)^2 + (C*w)^2) end
+
+test("what is varied may be the frequency, omega, period or amplitude of a sine, or anything that at makes of a point", function()
     local sys = system{ I = 2, k = 50, C = 1.5 }
-    local c = sys:response{ amplitude = 3, over = { frequency = { 0.5, 0.8, 1.1 } } }
-    local d = sys:response{ over = { frequency = { 0.5, 0.8, 1.1 } },
-        at = function(p) return { M = excitation.harmonic{ amplitude = 3, frequency = p.frequency } } end }
-    local e = sys:response{ over = { f = { 0.5, 0.8, 1.1 } }, at = function(p)
-        return { M = function(t) return 3*math.sin(2*math.pi*p.f*t) end, period = 1 / p.f }
-    end }
-    for i, f in ipairs{ 0.5, 0.8, 1.1 } do
-        local w = 2*math.pi*f
-        near(c.amplitude[i], 3 / math.sqrt((50 - 2*w^2)^2 + (1.5*w)^2), 1e-12)
-        near(c.lag[i], math.atan(1.5*w, 50 - 2*w^2), 1e-11)
-        near(d.amplitude[i], c.amplitude[i], 1e-13)
-        near(e.amplitude[i], c.amplitude[i], 1e-11)
+    local frequency, w = vector{ 0.5, 0.8, 1.1 }, 2*math.pi*0.8
+    local c = sys:response{ amplitude = 3, over = { frequency = frequency } }
+    equal(c.frequency, frequency) -- and nothing between them
+    for _, other in ipairs{
+        { amplitude = 3, over = { omega = 2*math.pi*frequency } },
+        { amplitude = 3, over = { period = 1/frequency } },
+        { over = { frequency = frequency }, at = function(p) return { M = excitation.harmonic{ amplitude = 3, frequency = p.frequency } } end },
+        { over = { f = frequency }, at = function(p) return { M = function(t) return 3*math.sin(2*math.pi*p.f*t) end, period = 1 / p.f } end },
+    } do
+        local d = sys:response(other)
+        near(d.amplitude, c.amplitude, 1e-11)
+        near(d.lag, c.lag, 1e-9)
     end
+    near(c.amplitude[2], 3*linear(2, 50, 1.5, w), 1e-12)
+    near(c.lag[2], math.atan(1.5*w, 50 - 2*w^2), 1e-11)
+    for _, at in ipairs{ { frequency = 0.8 }, { omega = w }, { period = 1.25 } } do
+        at.over = { amplitude = { 1, 2, 3 } }
+        c = sys:response(at)
+        near(c.amplitude, c.M0*linear(2, 50, 1.5, w), 1e-12)
+    end
+    c = sys:response{ over = { C = { 0.1, 0.5, 0.9 } },
+        at = function(p) return { M = excitation.harmonic{ omega = w }, system = sys:with{ C = p.C } } end }
+    for _, row in ipairs(c) do near(row.amplitude, linear(2, 50, row.C, w), 1e-12) end
+end)
+
+test("what is wrong with a response is told", function()
+    local sys = system{ I = 2, k = 50, C = 1.5 }
     local one = { amplitude = { 1, 2 } }
     local function empty() return {} end
     support.refuses(function(o) sys:response(o) end, {
-        { {}, "needs over" },
-        { { over = 3 }, "over must be a name and its values" },
         { { over = { 1, 2 } }, "over[1] must be a name and its values" },
         { { over = {} }, "over must be a name and its values" },
         { { over = { frequency = { "a" } } }, "over.frequency must be a list of numbers" },
@@ -52,22 +66,18 @@ test("M may be a function of the frequency, and the amplitude another one", func
         { { over = { frequency = 3 } }, "over.frequency must be a vector or a table" },
         { { over = { frequency = { 1, -1 } } }, "frequency = -1 must be positive" },
         { { over = { a = { 1 }, b = { 1 }, c = { 1 } } }, "varies one or two", "sweep" },
-        { { over = { a = { 1 }, b = { 1 } } }, "over.a needs at" },
+        { { over = { a = { 1 } } }, "over.a needs at" },
         { { over = { { "a", { 1 } }, { "a", { 2 } } }, at = empty }, "two parameters 'a'" },
         { { over = { omega = { 1 }, period = { 1 } } }, "exclude each other" },
         { { over = { amplitude = { 1 }, omega = { 1 } }, frequency = 1 }, "omega is varied" },
-        { { over = { a = { 1 } } }, "over.a needs at" },
+        { { over = { omega = { 1 } }, frequency = 1 }, "omega is varied" },
         { { over = { lag = { 1 } }, at = empty }, "'lag' is a column of the result" },
         { { over = one }, "give one of frequency, omega and period" },
         { { over = one, frequency = 1, period = 1 }, "give one of frequency" },
-        { { over = { omega = { 1 } }, frequency = 1 }, "omega is varied" },
-        { { over = { a = { 1 } }, at = 3 }, "at must be a function of a point" },
         { { over = { a = { 1 } }, at = function() return 3 end }, "at returned 3 for a = 1" },
         { { over = { a = { 1 } }, at = function() return { m = 3 } end }, "no option 'm'" },
         { { over = { a = { 1 } }, at = function() return { M = "x" } end }, "at: M" },
-    })
-    -- The forms of before name the new ones.
-    support.refuses(function(o) sys:response(o) end, {
+        -- The forms of before name the new ones.
         { { frequency = { 1, 2 } }, "over = { frequency = values }", "vector.linspace" },
         { { amplitude = { 1, 2, 3 }, frequency = 1 }, "over = { amplitude = values }" },
         { { M = math.sin, over = { 1, 2 } }, "at = function(p) return { M = ... } end" },
@@ -93,18 +103,6 @@ test("folds, jumps and unstable sides are rows, and a picture of pieces", functi
     raises_here(function() data{ r = { 1 }, A = { 2 } }:plot{ overlay = "x" } end, "nor any other")
 end)
 
-test("the response over the amplitude, and over any parameter, which may make the system", function()
-    local sys = system{ I = 1, k = 4, C = 0.3 }
-    local c = sys:response{ frequency = 0.2, over = { amplitude = { 1, 2, 3 } } }
-    local w = 2*math.pi*0.2
-    for i = 1, 3 do near(c.amplitude[i], i / math.sqrt((4 - w^2)^2 + (0.3*w)^2), 1e-12) end
-    equal(c.names[1], "M0")
-    local M = excitation.harmonic{ frequency = 0.2 }
-    local d = sys:response{ over = { C = { 0.1, 0.5, 0.9 } }, at = function(p) return { M = M, system = sys:with{ C = p.C } } end }
-    for i, C in ipairs{ 0.1, 0.5, 0.9 } do near(d.amplitude[i], 1 / math.sqrt((4 - w^2)^2 + (C*w)^2), 1e-12) end
-    equal(d.C[2], 0.5)
-end)
-
 test("the curves of theory beside a response are Den Hartog's and that of equivalent damping", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3 }
     local c = sys:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 20) }, between = true }
@@ -126,20 +124,12 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     local M = excitation.harmonic{ amplitude = 4, frequency = 1 } + excitation.harmonic{ amplitude = 2, frequency = 2.5 } + 3
     local run = sys:simulate{ M = M, t_end = 24, dt = 1/64 }
     for _, window in ipairs{ "hann", "rectangle", "flat top" } do
-        local s = run:spectrum("M", { window = window, from = 8 + 1/64 })
-        equal(#s, 513)
-        near(s.frequency[17], 1, 1e-9)
-        near(s.amplitude[17], 4, 1e-9)
-        near(s.amplitude[41], 2, 1e-9)
-        near(s.amplitude[1], 3, 1e-9)
-        near(s.amplitude[100], 0, 1e-9)
-    end
-    -- From t = 8 to 24 it closes on itself, and has one row more than periods take.
-    for _, window in ipairs{ "hann", "rectangle", "flat top" } do
-        local whole = run:spectrum("M", { window = window, from = 8 })
-        equal(#whole, 513)
-        near(whole.amplitude[17], 4, 1e-9)
-        near(whole.amplitude[100], 0, 1e-9)
+        for _, from in ipairs{ 8 + 1/64, 8 } do -- from 8 to 24 it closes on itself, and has one row more than periods take
+            local s = run:spectrum("M", { window = window, from = from })
+            equal(#s, 513)
+            near(s.frequency[17], 1, 1e-9)
+            for line, amplitude in pairs{ [1] = 3, [17] = 4, [41] = 2, [100] = 0 } do near(s.amplitude[line], amplitude, 1e-9) end
+        end
     end
     equal(tostring(run:spectrum("M")):match("^[^\n]*"), "spectrum of M: 1536 rows, hann window")
     -- A prime number of rows is used as it is: 97 of them, 3 periods.
@@ -150,8 +140,6 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     local late = nondimensional{}:simulate{ theta0 = 1, t_start = 1e9, t_end = 1e9 + 10, dt = 0.1 }
     near(late:spectrum("theta"):select("frequency").frequency[late:spectrum("theta").amplitude:argmax()], 1, 0.05)
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
-    raises_here(function() run:spectrum(3) end, "must be a string")
-    raises_here(function() run:spectrum("theta", { window = "round" }) end, "window")
     raises_here(function() sys:simulate{ t_end = 3, times = { 0, 1, 1.5, 2, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8 } }:spectrum() end, "evenly spaced")
     raises_here(function() sys:simulate{ t_end = 3, dt = 1 }:spectrum() end, "too few")
 end)
@@ -184,15 +172,6 @@ test("a mass that a softening spring lets go is told to grow, and the response h
     local sys = system{ I = 1 / (4 * math.pi^2), k = 1, C = 0.1 / math.pi, Rd = 0.2, spring = spring.polynomial{ [3] = -0.1 } }
     local c = sys:response{ over = { frequency = vector.linspace(0.3, 2.2, 30) }, between = true }
     near(c.frequency:max(), 2.2, 1e-12)
-    for _, row in ipairs{ 1, #c } do -- the motion is that of a long run, by other steps
-        local f = c.frequency[row]
-        local run = sys:simulate{ M = excitation.harmonic{ frequency = f }, t_end = 80 / f, dt = 1 / f, integrator = integrator.rk4{ h = 1e-3 } }
-        local low, high = math.huge, -math.huge
-        for _, e in ipairs(run.events) do
-            if e.t > 78 / f then low, high = math.min(low, e.theta), math.max(high, e.theta) end
-        end
-        near(c.amplitude[row], (high - low) / 2, 1e-6)
-    end
     equal(sys:steady{ M = excitation.harmonic{ frequency = 0.5 } }.status, "grows")
     equal(sys:steady{ M = function(t) return math.sin(math.pi * t) end, period = 2 }.status, "grows")
 end)
@@ -210,26 +189,9 @@ test("a resonance without enough friction is no finite peak, whatever the points
         for i, status in ipairs(c.status) do equal(status == "grows", c.frequency[i] == 1) end
         equal(c.amplitude:max(), math.huge)
     end
-    equal(#nondimensional{ friction_ratio = 0.8 }:response{ over = { frequency = vector.linspace(0.5, 1.5, 40) }, between = true }, 40)
-    equal(#nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(1.1, 1.5, 40) }, between = true }, 40)
-    equal(#nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(0.5, 1.5, 41) }, between = true }, 41)
-end)
-
-test("a list is the list of rows, in frequency, omega or period", function()
-    local sys = nondimensional{ friction_ratio = 0.3, breakaway_ratio = 0.5 }
-    local f = sys:response{ over = { frequency = { 0.5, 0.7, 1.3, 1.6 } } }
-    for _, frequency in ipairs(f.frequency:table()) do -- none for what is computed between them
-        assert(frequency == 0.5 or frequency == 0.7 or frequency == 1.3 or frequency == 1.6, frequency)
+    for ratio, rows in pairs{ [0.8] = vector.linspace(0.5, 1.5, 40), [0.3] = vector.linspace(1.1, 1.5, 40) } do
+        equal(#nondimensional{ friction_ratio = ratio }:response{ over = { frequency = rows }, between = true }, 40)
     end
-    local w = sys:response{ over = { omega = vector{ 0.5, 0.7, 1.3, 1.6 } * (2 * math.pi) } }
-    local T = sys:response{ over = { period = { 1 / 0.5, 1 / 0.7, 1 / 1.3, 1 / 1.6 } } }
-    for i = 1, #f do
-        near(w.amplitude[i], f.amplitude[i], 1e-9)
-        near(T.amplitude[i], f.amplitude[i], 1e-9)
-        near(w.omega[i], 2 * math.pi * f.frequency[i], 1e-12)
-    end
-    near(sys:response{ over = { amplitude = { 1 } }, omega = math.pi }.amplitude[1], f.amplitude[1], 1e-9)
-    near(sys:response{ over = { amplitude = { 1 } }, period = 2 }.amplitude[1], f.amplitude[1], 1e-9)
 end)
 
 test("a response over the speed of a belt has the closed form of stick-slip, and steady's rows", function()
@@ -260,17 +222,13 @@ test("squeal begins at a Hopf point and ends at a fold, where the sliding of the
     -- The damping of the sliding is C and the slope of friction.
     near(C, (Re - Rd) * 2 * hopf.speed / v0 ^ 2 * math.exp(-(hopf.speed / v0) ^ 2), 1e-9)
     near(fold.speed, 0.8683428494994, 1e-8) -- shooting by Runge and Kutta's method from the release, 40,000 steps
-    local rows = {}
-    for i = 1, #c do
-        local key = string.format("%.2f", c.speed[i])
-        rows[key] = rows[key] or {}
-        table.insert(rows[key], { amplitude = c.amplitude[i], stable = c.stable[i], stops = c.stops[i], status = c.status[i] })
+    local function rows(speed)
+        return c:filter(function(row) return math.abs(row.speed - speed) < 1e-9 end):sort("amplitude")
     end
-    equal(#rows["0.50"], 2) -- the cycle and the rest that is left
-    equal(#rows["0.70"], 3)
-    equal(#rows["0.90"], 1)
-    table.sort(rows["0.70"], function(a, b) return a.amplitude < b.amplitude end)
-    local rest, unstable, cycle = table.unpack(rows["0.70"])
+    equal(#rows(0.5), 2) -- the cycle and the rest that is left
+    equal(#rows(0.9), 1)
+    equal(#rows(0.7), 3)
+    local rest, unstable, cycle = rows(0.7)[1], rows(0.7)[2], rows(0.7)[3]
     equal(rest.status .. rest.stable .. unstable.stable .. cycle.stable, "rest1.00.01.0")
     equal(unstable.stops, 0)
     -- Beside the unstable cycle a run dies out, or grows into the other one.
@@ -385,13 +343,9 @@ test("period doublings are located, and the branches of twice the period followe
         assert((math.abs(run.theta[3] - run.theta[2]) > 1e-3) == (off > 0))
     end
     assert(c.branch:max() >= 2) -- another one may be in the other well
-    local before, after = 0, 0
-    for i = 1, #c do
-        if c.M0[i] > M0 then
-            if c.branch[i] == 1 then before = before + c.stable[i] elseif c.branch[i] == 2 then after = after + c.stable[i] end
-        end
-    end
-    equal(before .. " " .. after, "0.0 3.0")
+    local function stable(branch) return c:filter(function(row) return row.M0 > M0 and row.branch == branch end).stable:sum() end
+    equal(stable(1), 0.0)
+    equal(stable(2), 3.0)
 end)
 
 test("Welch's density has the variance of noise, flat, and the power of a sine", function()
@@ -412,7 +366,6 @@ test("Welch's density has the variance of noise, flat, and the power of a sine",
     near(s.frequency[s.density:argmax()], 5, s.frequency[2])
     equal(tostring(sine:spectrum("M")), tostring(sine:spectrum{ of = "M" }))
     raises_here(function() sine:spectrum{ method = "welch", segments = 3000 } end, "rows are too few for 3000 segments")
-    raises_here(function() sine:spectrum{ method = "multitaper" } end, "method")
 end)
 
 test("a period is given as period, frequency or omega wherever one is asked", function()
