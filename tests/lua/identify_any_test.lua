@@ -96,16 +96,13 @@ test("exact data give errors of some ulps at least, and many records the coverag
         near(fit[name], value, 1e-6)
         assert(fit.std_error[name] >= 1e-15 * value)
     end
-    local one, two, all = 0, 0, 0
+    local judged, part, ratio = support.judge()
     for seed = 1, 40 do
         local v = run.velocity + noise(#run, 0.03, seed)
-        local record = identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" }
-        for name, value in pairs { k = 4, C = 0.1, Rd = 0.1 } do
-            local z = math.abs(record[name] - value) / record.std_error[name]
-            one, two, all = one + (z < 1 and 1 or 0), two + (z < 1.96 and 1 or 0), all + 1
-        end
+        part, ratio = judged(identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" },
+            { k = 4, C = 0.1, Rd = 0.1 })
     end
-    assert(one / all > 0.55 and one / all < 0.85 and two / all > 0.88, one / all .. " " .. two / all)
+    assert(part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
 end)
 
 test("what cannot be fitted is told", function()
