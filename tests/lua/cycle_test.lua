@@ -24,10 +24,6 @@ test("stick-slip on a belt has the stick time, period and amplitude of the close
         assert(s:explain():find("limit cycle", 1, true), s:explain())
         equal(tostring(s):match("^steady: period"), "steady: period")
         near(s.run:at(s.run.t_end), s.run:at(0), 1e-11)
-        local again = system{ I = I, k = k, Rd = Rd, Re = Re }:simulate{ belt = belt, theta0 = s.run.theta[1],
-            velocity0 = s.run.velocity[1], t_end = 40 * s.period, times = { 39 * s.period, 40 * s.period } }
-        near(again.theta[1], s.run.theta[1], 1e-10)
-        near(again.theta[2], s.run.theta[1], 1e-10)
     end
 end)
 
@@ -60,35 +56,15 @@ test("van der Pol's cycle has its known period and amplitude, from within and fr
     end
 end)
 
-test("a relay drives a cycle whose period solves the two equations of half of it", function()
-    local C, width, level = 0.2, 0.2, 0.4
-    local alpha, beta = C / 2, (1 - C ^ 2 / 4) ^ 0.5
-    local function half(v, t) -- from theta = -width/2 at velocity v, pushed by +level
-        local x, e = -width / 2 - level, math.exp(-alpha * t)
-        local b = (v + alpha * x) / beta
-        local s, c = math.sin(beta * t), math.cos(beta * t)
-        return level + e * (x * c + b * s), e * ((b * beta - alpha * x) * c - (x * beta + alpha * b) * s)
-    end
-    local v, t = -0.35, 2
-    for _ = 1, 30 do -- Newton: theta = width/2 at velocity -v
-        local function off(p, q) local x, y = half(p, q) return x - width / 2, y + p end
-        local h, f, g = 1e-6, off(v, t)
-        local fv, gv = off(v + h, t)
-        local fw, gw = off(v - h, t)
-        local ft, gt = off(v, t + h)
-        local fu, gu = off(v, t - h)
-        local a, b, c, d = (fv - fw) / 2 / h, (ft - fu) / 2 / h, (gv - gw) / 2 / h, (gt - gu) / 2 / h
-        local det = a * d - b * c
-        v, t = v - (d * f - b * g) / det, t - (a * g - c * f) / det
-    end
-    local M = excitation.relay{ on = -width / 2, off = width / 2, amplitude = { level, -level } }
-    local s = system{ I = 1, k = 1, C = C }:steady{ M = M }
-    assert(t > 1)
-    near(s.period, 2 * t, 1e-9)
+test("a relay drives the cycle of a long run", function()
+    local sys, M = system{ I = 1, k = 1, C = 0.2 }, excitation.relay{ on = -0.1, off = 0.1, amplitude = { 0.4, -0.4 } }
+    local s = sys:steady{ M = M }
+    local run = sys:simulate{ M = M, t_end = 500, times = vector.linspace(500 - s.period, 500, 2001) }
+    local switches = run.events:filter(function(e) return e.kind == "switch" end).t
+    near(s.period, switches[#switches] - switches[#switches - 2], 1e-9)
+    near(s.amplitude, extent(run.theta), 1e-5) -- rows miss the peaks
     assert(s.stable and s.stops == 0)
-    local run = s.run
-    near(run:at(run.t_end), run.theta[1], 1e-10)
-    equal(#run.events:filter(function(e) return e.kind == "switch" end), 2)
+    equal(#s.run.events:filter(function(e) return e.kind == "switch" end), 2)
 end)
 
 test("the hunting of a controller with an integral is the one that long runs come to", function()

@@ -12,6 +12,12 @@ local function chain(friction)
     return system { bodies = { a = a, b = { I = 2, k = 1, C = friction and 0.1 or nil } }, links = { rod = rod } }
 end
 
+--- The time from the event of this kind that was `back` of them ago to the last one.
+local function since(run, kind, back)
+    local times = run.events:filter(function(e) return e.kind == kind end).t
+    return times[#times] - times[#times - back]
+end
+
 -- amplitudes of both bodies without friction under sin(omega t) on a
 local function amplitudes(omega)
     local re, im, second = 4 - omega ^ 2, 0.1 * omega, 4 - 2 * omega ^ 2
@@ -60,15 +66,7 @@ test("squeal of a mass that drags another one along: the cycle of a long run", f
     local s = rig:steady { belt = { a = 0.1 }, theta0 = { a = 0.3 } }
     equal(s.status, "steady")
     local long = rig:simulate { belt = { a = 0.1 }, theta0 = { a = 0.3 }, t_end = 400 }
-    local sticks = {}
-    for _, e in ipairs(long.events) do if e.kind == "stick" then sticks[#sticks + 1] = e.t end end
-    near(s.period, sticks[#sticks] - sticks[#sticks - 1], 1e-9)
-    local low, high = 1e9, -1e9
-    for i = 0, 20000 do
-        local theta = long.b:at(400 - s.period * i / 20000)
-        low, high = math.min(low, theta), math.max(high, theta)
-    end
-    near(s.b.amplitude, (high - low) / 2, 1e-7)
+    near(s.period, since(long, "stick", 1), 1e-9)
     equal(s.a.stops, 1)
     equal(#s.multipliers, 3)
 end)
@@ -79,9 +77,7 @@ test("a drill string sticks and slips while it goes round", function()
     local M = { top = function(t, theta, velocity) return 20 * (1 - velocity.top) end }
     local s = rig:steady { M = M }
     local long = rig:simulate { M = M, t_end = 100 }
-    local sticks = {}
-    for _, e in ipairs(long.events) do if e.kind == "stick" then sticks[#sticks + 1] = e.t end end
-    near(s.period, sticks[#sticks] - sticks[#sticks - 1], 1e-9)
+    near(s.period, since(long, "stick", 1), 1e-9)
     equal(s.bit.amplitude, nil)
     equal(s.bit.mean, nil)
     equal(s.bit.stops, 1)
@@ -101,10 +97,7 @@ test("a relay that looks at another body hunts", function()
     local M = { a = excitation.relay { on = -0.2, off = 0.2, amplitude = { 1, -1 }, of = "theta.b" } }
     local s = rig:steady { M = M }
     equal(s.status, "steady")
-    local long = rig:simulate { M = M, t_end = 400 }
-    local switches = {}
-    for _, e in ipairs(long.events) do if e.kind == "switch" then switches[#switches + 1] = e.t end end
-    near(s.period, switches[#switches] - switches[#switches - 2], 1e-9)
+    near(s.period, since(rig:simulate { M = M, t_end = 400 }, "switch", 2), 1e-9)
 end)
 
 test("one body whose friction depends on more: as the same with numbers", function()
@@ -143,14 +136,14 @@ test("rest, and what is refused", function()
     near(s.a.mean, run.a.theta[1001], 1e-9)
     equal(s.period, nil)
     equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
-    raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end } } end,
-        "the period of the excitation is not known; give it with period = ...")
-    raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end }, period = 3 } end, "does not repeat itself")
-    raises_here(function() rig:steady { M = { a = excitation.sampled(function(t) return 0 end, { every = 0.1 }), b = sine(1) } } end,
-        "no common period", "run it for long")
-    raises_here(function() rig:steady { M = { a = excitation.delayed(function(t, theta) return -theta.a end, { by = 0.1 }) } } end,
-        "no common period")
-    near(rig:steady { M = { a = function(t) return math.sin(t) end }, omega = 1 }.b.amplitude,
+    local function scripted(t) return math.sin(t) end
+    support.refuses(function(o) rig:steady(o) end, {
+        { { M = { a = scripted } }, "the period of the excitation is not known; give it with period = ..." },
+        { { M = { a = scripted }, period = 3 }, "does not repeat itself" },
+        { { M = { a = excitation.sampled(function() return 0 end, { every = 0.1 }), b = sine(1) } }, "no common period", "run it for long" },
+        { { M = { a = excitation.delayed(function(t, theta) return -theta.a end, { by = 0.1 }) } }, "no common period" },
+    })
+    near(rig:steady { M = { a = scripted }, omega = 1 }.b.amplitude,
         rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
 end)
 
@@ -168,13 +161,8 @@ test("controllers that sample or wait: the motion on their grid, as a long run h
         equal(s.status, "steady")
         near(s.period, T, 1e-12)
         equal(s.stable, true)
-        local long = rig:simulate { M = M, t_end = 200 * T }
-        local low, high = 1e9, -1e9
-        for i = 0, 2000 do
-            local theta = long.b:at(199 * T + i / 2000 * T)
-            low, high = math.min(low, theta), math.max(high, theta)
-        end
-        near(s.b.amplitude, (high - low) / 2, 1e-6)
+        local long = rig:simulate { M = M, t_end = 200 * T, times = vector.linspace(199 * T, 200 * T, 2001) }
+        near(s.b.amplitude, (long.b.theta:max() - long.b.theta:min()) / 2, 1e-6)
         near(s.run.b:at(s.run.t_end), long.b:at(200 * T), 1e-8)
     end
     -- nothing else depends on t: it comes to rest at the instants' period
@@ -199,9 +187,11 @@ test("the response of a chain has the columns of its bodies, and follows at", fu
     equal(tostring(map.M0), "vector{ 1, 1, 2, 2, 3, 3 }")
     for i = 1, #map do near(map["b.amplitude"][i], map.M0[i] * select(2, amplitudes(map.omega[i])), 1e-9) end
     assert(tostring(map:plot { z = "b.amplitude", show = false }):find("M0"))
-    raises_here(function() chain():response { over = { x = { 1 }, y = { 1 }, z = { 1 } }, at = function() return {} end } end, "varies one or two")
-    raises_here(function() chain():response { over = { x = { 1 } } } end, "needs at")
-    raises_here(function() chain():response { over = { x = { 1 } }, at = function(p) return p.x end } end, "at returned 1")
+    support.refuses(function(o) chain():response(o) end, {
+        { { over = { x = { 1 }, y = { 1 }, z = { 1 } }, at = function() return {} end }, "varies one or two" },
+        { { over = { x = { 1 } } }, "needs at" },
+        { { over = { x = { 1 } }, at = function(p) return p.x end }, "at returned 1" },
+    })
 end)
 
 test("bifurcation looks at one of the bodies", function()

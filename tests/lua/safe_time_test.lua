@@ -46,6 +46,7 @@ strangers.check({
     ["a run of dinal1989 with tiny steps"] = "nondimensional{}:simulate{ theta0 = 1, t_end = 1, times = {}, integrator = integrator.dinal1989{ h = 1e-12 } }",
     ["a run with feedback"] = "nondimensional{}:simulate{ M = function(t, theta, v) return -v end, theta0 = 1, t_end = 1e9, times = {} }",
     ["a run in a coroutine in a pcall"] = "pcall(coroutine.wrap(function() nondimensional{ zeta = 0.1 }:simulate{ M = 1, theta0 = 1, t_end = 1e9, dt = 1e6, integrator = integrator.rk4{ h = 0.001 } } end)) print 'escaped'",
+    ["a search for a steady motion"] = "nondimensional{ friction_ratio = 0.01 }:steady{ M = excitation.harmonic{ frequency = 1e-9 } } print 'escaped'",
     ["run:at again and again"] = "local r = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, times = {} } while true do pcall(r.at, r, 999.9) end",
     ["vectors of vectors"] = "local v = vector.linspace(0, 1, 2e6) while true do pcall(v.sin, v) pcall(function() return v ^ 0.3 end) end",
     ["the energy, the story and plots of a run"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1e4, dt = 1 } while true do pcall(run.energy, run) pcall(run.explain, run) pcall(run.plot, run, { show = false }) end",

@@ -6,6 +6,12 @@ local test, equal, near, raises, raises_here = support.test, support.equal, supp
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
 local sliding = nondimensional{ friction_ratio = 0.5 }
 
+--- The amplitude and the number of stops of what happens after that time.
+local function late(run, from)
+    local events = run.events:filter(function(e) return e.t > from end)
+    return (events.theta:max() - events.theta:min()) / 2, #events:filter(function(e) return e.kind == "stick" end)
+end
+
 test("all that is known about a steady motion", function()
     local s = sliding:steady{ M = harmonic(1.35) }
     equal(s.status, "steady")
@@ -82,14 +88,6 @@ test("the halves of a function's period are alike only when they are", function(
     local native = light:steady{ M = excitation.square{ period = 2.5, amplitude = 1, duty = 0.2 } + 1 }
     near(plain.mean, 0.4, 1e-10)
     near(plain.lag, native.lag, 1e-8)
-    -- With friction: where a long run gets to.
-    local braked = nondimensional{ zeta = 0.1, friction_ratio = 0.3 }
-    local function M(t) return math.sin(0.8 * math.pi * t) + 0.3 * math.sin(1.6 * math.pi * t) end
-    local uneven = braked:steady{ M = M, period = 2.5 }
-    local late = braked:simulate{ M = M, t_end = 502.5, dt = 2.5 / 2048 }.theta
-    local last = late:slice(#late - 2048, #late)
-    near(uneven.amplitude, (last:max() - last:min()) / 2, 1e-5) -- rows miss the peaks by (pi/2048)^2 / 2
-    assert(not uneven.symmetric)
     assert(light:steady{ M = function(t) return math.sin(0.8 * math.pi * t) end, period = 2.5 }.symmetric)
 end)
 
@@ -152,19 +150,13 @@ test("run:steady goes on from where the run has got to", function()
     raises_here(function() load(file):steady() end, "has no system")
 end)
 
-test("an error of M ends the search, and so does a limit of time; tests/lua/interrupt_test.lua has Ctrl-C", function()
-    local long = support.temporary ".lua"
-    support.write(long, "nondimensional{ friction_ratio = 0.01 }:steady{ M = excitation.harmonic{ frequency = 1e-9 } }")
-    local pipe <close> = io.popen(("ulimit -t 20; '%s' --max-time 0.1 %s 2>&1"):format(support.program(), long))
-    local said = pipe:read "a"
-    assert(said:find("it ran longer than the 0.1 s that --max-time allows", 1, true), said)
+test("an error of M ends the search", function()
     local calls = 0
     raises(function()
         sliding:steady{ M = function(t) calls = calls + 1 if calls > 500 then error("enough") end return math.sin(t) end,
             period = 2*math.pi }
     end, "enough")
 end)
-
 
 test("with a dead time in the loop the run itself goes on until it repeats itself: a linear oscillator by hand", function()
     local light, w, G, D = system{ I = 1, k = 1, C = 0.3 }, 1.2, 0.2, 0.05
@@ -178,14 +170,10 @@ test("with a dead time in the loop the run itself goes on until it repeats itsel
         near(s.amplitude, 1 / math.sqrt(real^2 + imaginary^2), 1e-9) -- it is taken when 1e-10 away
         equal(s.status, "steady")
         equal(s.periods, 1)
-        equal(s.symmetric, true)
-        equal(s.stable, true)
-        equal(s.unique, "not seen")
-        equal(s.multipliers, nil)
+        assert(s.symmetric and s.stable and s.unique == "not seen" and s.multipliers == nil)
         near(s.mean, 0, 1e-9)
-        equal(s:explain():gsub("%s+", " "):find("no multipliers", 1, true) ~= nil, true)
+        assert(s:explain():gsub("%s+", " "):find("no multipliers", 1, true))
         local run = s.run
-        equal(#run, 401)
         near(run.t_end - run.t_start, s.period, 1e-9)
         local on = run:continue{ times = { run.t_end + 7 * s.period } } -- with the past that it has
         near(on.theta[#on], run.theta[1], 1e-9)
@@ -206,15 +194,8 @@ test("with a dead time, friction and stops it is the end of a long run, also in 
     end
     local period = 4 * math.pi
     local s = dry:steady{ M = M(0.5), period = period }
-    local run = dry:simulate{ M = M(0.5), t_end = 60 * period, dt = period }
-    local low, high, stops = math.huge, -math.huge, 0
-    for _, event in ipairs(run.events) do
-        if event.t > 59 * period then
-            low, high = math.min(low, event.theta), math.max(high, event.theta)
-            if event.kind == "stick" then stops = stops + 1 end
-        end
-    end
-    near(s.amplitude, (high - low) / 2, 1e-9)
+    local amplitude, stops = late(dry:simulate{ M = M(0.5), t_end = 60 * period, dt = period }, 59 * period)
+    near(s.amplitude, amplitude, 1e-9)
     equal(s.stops, stops)
     local c = dry:response{ over = { f = { 0.5 / (2 * math.pi), 0.1, 0.15 } },
         at = function(p) return { M = M(2 * math.pi * p.f), period = 1 / p.f } end }
@@ -260,15 +241,13 @@ test("the peak of a motion that stands at its top is where it came to stand, whe
 end)
 
 test("a motion of any size is as it is in other units", function()
-    local function amplitude(u, M) return system{ I = 1, k = 40, C = 0.1, Rd = 0.3 * u, Re = 0.35 * u }:steady(M).amplitude / u end
+    local function amplitude(u, task) return system{ I = 1, k = 40, C = 0.1, Rd = 0.3 * u, Re = 0.35 * u }:steady(task).amplitude / u end
+    local sine, square = excitation.harmonic{ frequency = 0.7 }, excitation.square{ frequency = 0.7 }
     for _, u in ipairs{ 1e-290, 1e-200, 1e-160, 1e99, 1e101, 1e200, 1e290 } do
-        local sine, square = { M = u * excitation.harmonic{ frequency = 0.7 } }, { M = u * excitation.square{ frequency = 0.7 } }
-        local script = { M = function(t) return u * math.sin(1.4 * math.pi * t) end, period = 1 / 0.7 }
-        for _, asked in ipairs{ { sine, { M = excitation.harmonic{ frequency = 0.7 } } }, { square, { M = excitation.square{ frequency = 0.7 } } },
-            { script, { M = excitation.harmonic{ frequency = 0.7 } } } } do
-            local one = amplitude(1, asked[2])
-            near(amplitude(u, asked[1]), one, 1e-9 * one)
-        end
+        local function script(t) return u * math.sin(1.4 * math.pi * t) end
+        near(amplitude(u, { M = u * sine }), amplitude(1, { M = sine }), 1e-9)
+        near(amplitude(u, { M = script, period = 1 / 0.7 }), amplitude(1, { M = sine }), 1e-9)
+        near(amplitude(u, { M = u * square }), amplitude(1, { M = square }), 1e-9)
     end
 end)
 
@@ -276,32 +255,13 @@ test("with Re > Rd the motion that a run comes to is told, not another one besid
     local sys = nondimensional{ friction_ratio = 0.2, breakaway_ratio = 0.4 }
     for _, r in ipairs{ 0.545, 0.55, 0.555, 0.56 } do -- below 0.56 the run stops once a period, and a motion without stops is near
         local M = excitation.harmonic{ frequency = r }
-        local s, run = sys:steady{ M = M }, sys:simulate{ M = M, t_end = 100 / r, dt = 1 / r }
-        local low, high, stops = math.huge, -math.huge, 0
-        for i = #run.events, 1, -1 do
-            local e = run.events[i]
-            if e.t < 98.6 / r then break end
-            low, high = math.min(low, e.theta), math.max(high, e.theta)
-            if e.kind == "stick" and e.t > 99 / r then stops = stops + 1 end
-        end
-        near(s.amplitude, (high - low) / 2, 1e-10)
+        local s = sys:steady{ M = M }
+        local amplitude, stops = late(sys:simulate{ M = M, t_end = 100 / r, dt = 1 / r }, 99 / r)
+        near(s.amplitude, amplitude, 1e-10)
         equal(s.stops, stops)
         equal(s.symmetric, stops == 0)
     end
     near(sys:steady{ M = excitation.harmonic{ frequency = 0.55 } }.amplitude, 1.4584044928, 1e-9) -- by exact steps elsewhere
-end)
-
-test("the peak of a motion that stands at its top when M jumps and frees it is where it came to stand", function()
-    local M = excitation.square{ amplitude = 0.6, period = 2.5 } + excitation.triangle{ amplitude = 0.5, period = 2.5 / 3 }
-    local sys = system{ I = 0.05, C = 0.45, k = 2, Rd = 0.2 }
-    local s = sys:steady{ M = M }
-    local came, top = nil, s.run.theta:max()
-    for _, e in ipairs(s.run.events) do
-        if e.kind == "stick" and math.abs(e.theta - top) < 1e-9 then came = e.t end
-        if e.kind == "slip" and e.theta == top then near(e.t, 1.25, 1e-12) end
-    end
-    near(s.peak_lag, math.rad(360 * came / 2.5 - 90), 1e-8) -- the fundamental of M is greatest after a quarter of the period
-    near(s.peak_lag, sys:steady{ M = M:delay(0.3) }.peak_lag, 1e-6)
 end)
 
 test("what a load comes to just before it jumps back, at the end of its period, counts for where the mass may rest", function()
