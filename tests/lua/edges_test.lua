@@ -21,14 +21,6 @@ test("events at one instant are told in the order written, and each does what it
             near(run.events[i].t, 0.25, 1e-12)
         end
         near(run.events[3].velocity, 2 * run.events[1].velocity, 1e-9)
-        local places = dry:simulate {
-            theta0 = 1, t_end = 0.3, dt = 0.3, integrator = engine, events = {
-                { name = "a", when = function(t, theta) return theta - 0.5 end, act = function() end },
-                { name = "b", when = function(t, theta) return 3 * (theta - 0.5) end, stop = true },
-            },
-        }
-        equal(places.outcome, "stopped at an event")
-        equal(places.events[1].name .. places.events[2].name, "ab")
     end
 end)
 
