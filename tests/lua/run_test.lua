@@ -175,15 +175,7 @@ end)
 local function check_repeats(first, what)
     local name, again = support.temporary ".csv", support.temporary ".csv"
     first:save(name)
-    local lines = {}
-    for line in io.lines(name) do
-        if line:sub(1, 2) == "# " then
-            lines[#lines + 1] = line:sub(3)
-        end
-    end
-    local environment = setmetatable({}, { __index = _G })
-    assert(load(table.concat(lines, "\n"), "=comments", "t", environment))()
-    environment.run:save(again)
+    support.repeated(name):save(again)
     local function rows(file)
         return (support.read(file):gsub("#[^\n]*\n", ""))
     end

@@ -125,6 +125,14 @@ function support.read(name)
     return file:read("a")
 end
 
+--- The run that the header of a file makes again.
+function support.repeated(name)
+    local lines, world = {}, setmetatable({}, { __index = _G })
+    for line in io.lines(name) do lines[#lines + 1] = line:match "^# (.*)" end
+    assert(load(table.concat(lines, "\n"), "=header", "t", world))()
+    return world.run
+end
+
 --- The path of the dinal that runs the tests.
 function support.program()
     local first = 0
