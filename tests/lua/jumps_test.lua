@@ -52,10 +52,6 @@ test("a belt that sets off along a wall takes a mass from it, by sliding or by s
             near(run.theta[#run], theta, 1e-12)
         end
     end
-    -- Towards the wall it lets go what only sticking held: 0.6 - 0.5 pulls 2.
-    local into = sys:simulate { belt = function(t) return -t end, M = 0.6, t_end = 1, dt = 1 }
-    near(into.theta[#into], 0.1 / 2 / 2, 1e-12)
-    equal(sys:simulate { belt = function(t) return -t end, M = 0.4, t_end = 1, dt = 1 }.theta[2], 0)
 end)
 
 test("what happens at the time of a row is in the row, and in the motion at that time", function()
@@ -84,57 +80,12 @@ test("what an impact takes past zero is told there, and so is its way back", fun
     near(run.events[4].t, hit + 2 * (math.sqrt(0.5) + 0.1), 1e-13)
 end)
 
-test("a switch that stops a mass at its turn is followed by a stick", function()
-    -- It comes up under -1 and would go back; the relay that looks at its velocity then pulls with 0.3 < Re.
-    local run = system { I = 1, k = 0, Rd = 0.5 }:simulate {
-        M = excitation.relay { on = 0, off = 0.25, amplitude = { 0.3, -1 }, of = "velocity", start = "off" },
-        velocity0 = 1.5, t_end = 3, dt = 1,
-    }
-    equal(kinds(run):gsub("rest", "stick"), "turn switch stick")
-    near(run.events[3].t, 1, 1e-14)
-    near(run.theta[#run], 0.75, 1e-14)
-end)
-
 test("a run may end where a function jumps, at t = 0, too", function()
     local run = system { I = 1, k = 0 }:simulate {
         M = function(t) return t / 4 % 1 < 0.5 and 1 or -1 end, velocity0 = 2.5, t_start = -1, t_end = 0, dt = 0.5,
     }
     near(run.velocity[#run], 1.5, 1e-13)
     near(run.theta[#run], 2, 1e-13)
-end)
-
-test("a belt that is rounded to eight digits has the slope of one that is not", function()
-    local cases = { { k = 4, Rd = 0.3, Re = 0.4, w = 3 }, { k = 0, Rd = 0.1, Re = 0.15, w = 2 }, { k = 1, Rd = 0.1, Re = 0.35, w = 2, velocity0 = 1 } }
-    for _, case in ipairs(cases) do
-        local sys = system { I = 1, k = case.k, Rd = case.Rd, Re = case.Re }
-        local function on(belt)
-            return sys:simulate { belt = belt, velocity0 = case.velocity0 or 0, t_end = 10, dt = 0.5, integrator = integrator.spectral { tolerance = 1e-6 } }
-        end
-        local smooth = on(function(t) return 0.2*math.sin(case.w*t) end)
-        local rough = on(function(t) return math.floor(0.2*math.sin(case.w*t)*1e8)/1e8 end)
-        support.same_events(rough, smooth, 1e-5)  -- the noise in the belt's acceleration, some hundred times that in it
-        near(rough.theta, smooth.theta, 1e-6)
-    end
-end)
-
-test("under rk4 a belt that jumps, and does not say so, leaves the mass on it its velocity", function()
-    local sys, block = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }
-    for _, s in ipairs { sys, block } do
-        for _, at in ipairs { 1, 1.2345 } do -- 1 is the end of a step
-            for _, belt in ipairs { { 0.5, -0.5 }, { 0.5, 0 }, { 0.5, 0.2 }, { -0.3, 0.3 }, { 0, 0.5 }, { 0.2, -0.5 } } do
-                local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { amplitude = belt[2] - belt[1], at = at } }
-                local told = s:simulate(task)
-                task.belt = function(t) return t < at and belt[1] or belt[2] end
-                for _, h in ipairs(at == 1 and { 0.01, 0.001 } or { 0.01 }) do
-                    task.integrator = integrator.rk4 { h = h }
-                    local run = s:simulate(task)
-                    equal(run.outcome, told.outcome)
-                    equal(#run.events, #told.events)
-                    near(run.theta, told.theta, 1e-9)  -- Runge-Kutta's own at h = 0.01 is 3e-10
-                end
-            end
-        end
-    end
 end)
 
 -- Evenly spaced levels, alternating or any, on a swing or not; the belt tells its jumps, or it does not.
@@ -211,24 +162,6 @@ test("what acts and jumps, and does not say so, does what it does when it says s
     end
 end)
 
-test("a mass that comes to a belt whose jumps lie evenly before it knows the belt's slope", function()
-    -- At t = 7.39 the next four jumps lie so that the last coefficients of what goes through them are 0.
-    local period, phase, low, high = 0.36336544648718, 0.5471020722211, -0.36948853095513, -0.2958722289323
-    local swing = excitation.harmonic { amplitude = 0.24764967527153, omega = 1 }
-    local function f(t) return 0.24764967527153 * math.sin(t) + ((t / period + phase) % 1 < 0.5 and low or high) end
-    local told = swing + f(0)
-    for m = 2, 118 do
-        told = told + excitation.step { amplitude = m % 2 == 1 and high - low or low - high, at = (m / 2 - phase) * period }
-    end
-    local task = { M = excitation.harmonic { amplitude = 0.3, omega = 1.5 }, velocity0 = 0.2, t_end = 20, dt = 0.5, belt = told }
-    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3 }
-    local expected = sys:simulate(task)
-    task.belt = f
-    local run = sys:simulate(task)
-    equal(#run.events, #expected.events)
-    near(run.theta, expected.theta, 1e-9)
-end)
-
 test("a belt may jump right behind the start", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, v0 in ipairs { 0, 0.1, 0.5 } do
@@ -242,22 +175,6 @@ test("a belt may jump right behind the start", function()
             near(run.theta, expected.theta, 1e-12)
         end
     end
-end)
-
-test("noise of a belt is not taken for jumps: a step of rk4 asks it a few times", function()
-    local function noise(t)
-        local x = math.sin(t * 12.9898e4) * 43758.5453
-        return x - math.floor(x) - 0.5
-    end
-    local calls = 0
-    system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }:simulate {
-        velocity0 = 0.1, t_end = 10, dt = 0.5, integrator = integrator.rk4 { h = 0.01 },
-        belt = function(t)
-            calls = calls + 1
-            return 0.3 + 1e-3 * noise(t)
-        end,
-    }
-    assert(calls < 80 * 1000, calls) -- 17 for the step, and a halving down to two neighbours
 end)
 
 support.finish()

@@ -58,25 +58,28 @@ test("what is given depends on the number, and on nothing else", function()
 end)
 
 test("an unknown question, sheet or value is refused in a sentence", function()
-  support.raises_here(function() check("1z", 3) end, "check: there is no question '1z'; sheet 1 asks 1a to 1h")
-  support.raises_here(function() check("a1", 3) end, "check: there is no question 'a1'; did you mean '1a'?")
-  support.raises_here(function() check("9a", 3) end, "check: there is no question '9a'; a name is the number of a sheet and a letter")
-  support.raises_here(function() check("", 3) end, "check: there is no question ''")
-  support.raises_here(function() check("1ä", 3) end, "check: there is no question '1ä'")
-  support.raises_here(function() check(1, 3) end, "the name of a question, got 1; for example check(\"1a\", 3.2)")
-  support.raises_here(function() check("1a") end, "check: the answer is a number, got nil; for example")
-  support.raises_here(function() check("1a", "3.2") end, 'got the string "3.2"; write it without quotes')
-  support.raises_here(function() check("1a", "three") end, 'got the string "three"; for example check("1a", 3.2)')
-  support.raises_here(function() check("1a", {}) end, "check: the answer is a number, got a table")
-  for _, wrong in ipairs { 0/0, math.huge } do
-    support.raises_here(function() check("1a", wrong) end, "check: the answer must be a finite number")
+  for _, case in ipairs {
+    { check, "check: there is no question '1z'; sheet 1 asks 1a to 1h", "1z", 3 },
+    { check, "check: there is no question 'a1'; did you mean '1a'?", "a1", 3 },
+    { check, "check: there is no question '9a'; a name is the number of a sheet and a letter", "9a", 3 },
+    { check, "check: there is no question ''", "", 3 },
+    { check, "check: there is no question '1ä'", "1ä", 3 },
+    { check, "the name of a question, got 1; for example check(\"1a\", 3.2)", 1, 3 },
+    { check, "check: the answer is a number, got nil; for example", "1a" },
+    { check, 'got the string "3.2"; write it without quotes', "1a", "3.2" },
+    { check, 'got the string "three"; for example check("1a", 3.2)', "1a", "three" },
+    { check, "check: the answer is a number, got a table", "1a", {} },
+    { check, "check: the answer must be a finite number", "1a", 0/0 },
+    { check, "check: the answer must be a finite number", "1a", math.huge },
+    { check, "check: expects a question and one value; after that comes 43", "1a", 1,43 },
+    { check, "after that comes", "1a", 3, "s" },
+    { lab.given, "lab.given: the sheets are 1, 2, 3, 4, 5, 6", 17 },
+    { lab.given, "lab.given: the first argument is the number of a sheet, got the string", "1" },
+    { lab.given, "got nil; for example lab.given(1)" },
+    { lab.experiment, "lab.experiment(2, x): x", 2, "fast" },
+  } do
+    support.raises_here(function() case[1](table.unpack(case, 3)) end, case[2])
   end
-  support.raises_here(function() check("1a", 1,43) end, "check: expects a question and one value; after that comes 43")
-  support.raises_here(function() check("1a", 3, "s") end, "after that comes")
-  support.raises_here(function() lab.given(17) end, "lab.given: the sheets are 1, 2, 3, 4, 5, 6")
-  support.raises_here(function() lab.given("1") end, "lab.given: the first argument is the number of a sheet, got the string")
-  support.raises_here(function() lab.given() end, "got nil; for example lab.given(1)")
-  support.raises_here(function() lab.experiment(2, "fast") end, "lab.experiment(2, x): x")
   equal(#lab.marks(), 0)
 end)
 
