@@ -1,7 +1,7 @@
 -- run:animate into files, and what it says where there is nothing to show it on; tests/prompt/animate_test.py has a terminal.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, raises_here = support.test, support.equal, support.raises_here
+local test, equal, raises_here, has = support.test, support.equal, support.raises_here, support.has
 
 local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }
 local run = sys:simulate{ theta0 = 1, t_end = 10, times = {} }
@@ -37,7 +37,7 @@ test("the mass of an SVG is where run:at says, at equal steps of time", function
         local part = (run:at((i - 1) * 10 / 125) - low) / (high - low)
         support.near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
     end
-    assert(svg:find('dur="5.000s"', 1, true) and svg:find('role="img"', 1, true))
+    has(svg, 'dur="5.000s"', 'role="img"')
     assert(svg:match("<desc>.-</desc>"):find("Below, θ from %S+ to %S+ over t from 0 to 10%."), "the axes in words")
 end)
 
@@ -60,7 +60,8 @@ test("a belt moves, walls and springs are there if the system has them", functio
     support.near(tonumber(belt[6]), last * 5 / (#belt - 1), 0.11)  -- evenly
     equal(#values(svg, 'attributeName="points'), 0)
     equal(#values(animated(run, {}), 'attributeName="points')[1], 251)
-    assert(svg:find("between walls", 1, true) and not animated(run, {}):find("patternTransform", 1, true))
+    has(svg, "between walls")
+    support.has_not(animated(run, {}), "patternTransform")
 end)
 
 test("the axis ends at the extremes of the run, which lie between two steps of the animation", function()
@@ -72,21 +73,21 @@ test("the axis ends at the extremes of the run, which lie between two steps of t
     for _, one in ipairs{ swing, load(file) } do
         for _, part in ipairs{ { speed = 8/0.32 }, { speed = 8/0.4, from = 0, to = 8 } } do  -- some ten steps
             local svg = animated(one, part)
-            assert(svg:find(">-0.87</text>", 1, true), svg:match ">-0[^<]*</text>")
+            has(svg, ">-0.87</text>")
         end
     end
     local later = animated(swing, { from = 3, to = 8, speed = 20 })  -- the turn is not in this part
-    assert(not later:find(">-0.87</text>", 1, true))
+    support.has_not(later, ">-0.87</text>")
 end)
 
 test("a part of a run, a run from a file, units", function()
     local part = animated(run, { from = 2, to = 4, speed = 1 })
-    assert(part:find("t = 2 to 4", 1, true))
+    has(part, "t = 2 to 4")
     equal(#values(part, 'type="translate')[1], 51)
     local file = support.temporary ".csv"
     sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }:save(file)
     assert(animated(load(file), {}):find "</svg>")
-    assert(animated(run, { units = { theta = "<m>", t = "s" } }):find("θ, &lt;m&gt;", 1, true))
+    has(animated(run, { units = { theta = "<m>", t = "s" } }), "θ, &lt;m&gt;")
 end)
 
 test("what cannot be shown is said", function()

@@ -64,7 +64,7 @@ test("a spectrum is drawn over decades, a response near a pole up to where most 
     picture = drawn(pole)
     assert(picture:find "\n10 %+" and not picture:find "20 %+", picture)
     assert(drawn(pole, { ylog = true }):find "\n100 %+", "all of it")
-    assert(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }):find "theta'", "symbols of a run")
+    support.has(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }), "theta'")
 end)
 
 support.finish()

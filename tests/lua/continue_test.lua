@@ -71,7 +71,7 @@ test("a run that goes on can be saved, repeated and asked for its energy and sto
     local file = support.temporary ".csv"
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
     longer:save(file)
-    assert(support.read(file):find("t_end = 8, dt = 0.1", 1, true))
+    support.has(support.read(file), "t_end = 8, dt = 0.1")
     local total = longer:energy().total
     local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
     near(total.input, whole:energy().total.input, 1e-12)
@@ -126,7 +126,7 @@ test("acts that die out do so at the same time wherever the run went on", functi
         }
     end
     local whole = run(9)
-    assert(whole.outcome:find("endlessly", 1, true))
+    support.has(whole.outcome, "endlessly")
     for _, parts in ipairs { { 1, 9 }, { 2.5, 3.5, 3.9, 4, 9 }, { whole.events[4].t, whole.events[7].t, 9 } } do
         local on = run(parts[1])
         for i = 2, #parts do on = on:continue { t_end = parts[i] } end

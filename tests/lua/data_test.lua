@@ -1,7 +1,7 @@
 -- Named columns: made, read, picked, sorted, saved and loaded as a user would. Run by dinal.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, raises, raises_here = support.test, support.equal, support.raises, support.raises_here
+local test, equal, raises, raises_here, has = support.test, support.equal, support.raises, support.raises_here, support.has
 
 local read = load
 local function load(text)
@@ -98,8 +98,8 @@ end)
 
 test("a picture of columns", function()
     local d = data{ r = { 1, 2, 3 }, A = { 1, 0/0, 3 }, B = { 2, 2, 2 }, w = { "a", "b", "c" } }
-    assert(tostring(d:plot{ x = "r", y = { "A", "B" }, show = false }):find("B"))
-    assert(tostring(d:plot{ x = "r", style = "points", title = "T", show = false }):find("T"))
+    has(d:plot{ x = "r", y = { "A", "B" }, show = false }, "B")
+    has(d:plot{ x = "r", style = "points", title = "T", show = false }, "T")
     raises_here(function() d:plot{ x = "r", y = "w" } end, "holds words")
     raises_here(function() d:plot{ x = "rr" } end, "there is no column 'rr'")
     raises_here(function() d:plot{ z = "A", style = "points" } end, "style is for curves: leave it out, or z")
@@ -139,7 +139,7 @@ test("a long or wide table is cut, and says so", function()
     local columns = {}
     for i = 1, 40 do columns[i] = { "column" .. i, vector.linspace(0, 1, 20) } end
     local text = tostring(data(columns))
-    assert(text:find("more columns", 1, true) and text:find("... 5 more rows", 1, true), text)
+    has(text, "more columns", "... 5 more rows")
     for line in text:gmatch("[^\n]+") do assert(#line < 80, line) end
 end)
 

@@ -1,7 +1,7 @@
 -- The documentation cannot lie: it is complete, its examples run and print what they say, docs/manual.md is up to date.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal = support.test, support.equal
+local test, equal, has, has_not = support.test, support.equal, support.has, support.has_not
 
 local function printed(option)
     local pipe <close> = io.popen(('"%s" %s'):format(support.program(), option))
@@ -25,10 +25,10 @@ test("docs/manual.md is what the program prints", function()
 end)
 
 test("the page has what takes no options as a row, and options of several calls once", function()
-    assert(page:find("\n| `sys.I -> number` | The moment of inertia. |\n", 1, true))
-    assert(not page:find("\n### sys.I\n", 1, true))
+    has(page, "\n| `sys.I -> number` | The moment of inertia. |\n")
+    has_not(page, "\n### sys.I\n")
     equal(select(2, page:gsub("\n%- `units`: names of the units, for cards", "")), 1)
-    assert(page:find("- [shared](#options-of-several-calls): `M`, `velocity0`", 1, true))
+    has(page, "- [shared](#options-of-several-calls): `M`, `velocity0`")
     for _, entry in ipairs(entries) do assert(page:find("`" .. entry.signature:match "^[^({ ]+", 1, true), entry.heading) end
 end)
 
@@ -109,7 +109,7 @@ end
 
 test("help knows functions, methods, modules, objects and names", function()
     local harmonic = output "help(excitation.harmonic)"
-    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega | period, phase = 0 } ->", 1, true), harmonic)
+    has(harmonic, "excitation.harmonic{ amplitude = 1, frequency | omega | period, phase = 0 } ->")
     for _, same in ipairs { 'help "excitation.harmonic"', 'help "harmonic"' } do
         equal(output(same), harmonic)
     end
@@ -119,34 +119,35 @@ test("help knows functions, methods, modules, objects and names", function()
     end
     local both = output 'help "simulate"'
     assert(both:find(simulate, 1, true) == 1 and both:find("rig:simulate{", #simulate, true), both)
-    assert(output "help(excitation)":find("excitation.pulse", 1, true))
-    assert(output "help(nondimensional{})":find("sys.dead_zone", 1, true))
-    assert(output 'help "excitation"':find("excitation.pulse", 1, true))
-    assert(output 'help "sys.omega0"':find("natural frequency", 1, true))
-    assert(output 'help "system"':find("system{ I, k, C = 0", 1, true))
-    assert(output "help(help)":find("help(x)", 1, true))
+    has(output "help(excitation)", "excitation.pulse")
+    has(output "help(nondimensional{})", "sys.dead_zone")
+    has(output 'help "excitation"', "excitation.pulse")
+    has(output 'help "sys.omega0"', "natural frequency")
+    has(output 'help "system"', "system{ I, k, C = 0")
+    has(output "help(help)", "help(x)")
 end)
 
 test("help searches words, suggests names, and shows where to begin", function()
-    assert(output 'help "dead zone"':find("sys.dead_zone", 1, true))
+    has(output 'help "dead zone"', "sys.dead_zone")
     local many = output 'help "the"'
-    assert(select(2, many:gsub("\n  %S", "")) <= 10 and many:find("more: use more of the word", 1, true), many)
-    assert(output 'help "harmonc"':find("did you mean 'harmonic'?", 1, true))
-    assert(output 'help "run.enrgy"':find("did you mean 'energy'?", 1, true))
-    assert(output 'help "thta0"':find("did you mean 'theta0'?", 1, true))
-    assert(output "help()":find("sys = system{", 1, true) and output "help()":find("help(2)", 1, true))
+    assert(select(2, many:gsub("\n  %S", "")) <= 10, many)
+    has(many, "more: use more of the word")
+    has(output 'help "harmonc"', "did you mean 'harmonic'?")
+    has(output 'help "run.enrgy"', "did you mean 'energy'?")
+    has(output 'help "thta0"', "did you mean 'theta0'?")
+    has(output "help()", "sys = system{", "help(2)")
     equal(output "help(1)", output "help()")
     equal(output 'help " "', output "help()")
-    assert(output "help(7)":find("pages 1 to 6", 1, true))
-    assert(output 'help "contents"':find("excitation.harmonic", 1, true))
+    has(output "help(7)", "pages 1 to 6")
+    has(output 'help "contents"', "excitation.harmonic")
     equal(output "help(dinal)", output 'help "contents"')
-    assert(output 'help "brakaway"':find("did you mean 'breakaway'?", 1, true))
-    assert(output 'help "elseif"':find("if condition then ... elseif", 1, true))
-    assert(output "help(nil)":find("in quotes", 1, true))
-    assert(output "help(3.5)":find("in quotes", 1, true))
+    has(output 'help "brakaway"', "did you mean 'breakaway'?")
+    has(output 'help "elseif"', "if condition then ... elseif")
+    has(output "help(nil)", "in quotes")
+    has(output "help(3.5)", "in quotes")
     equal(output "help(print)", output 'help "print"')
     equal(output "help(math.cos)", output 'help "math.cos"')
-    assert(output "help(function() end)":find("no help", 1, true))
+    has(output "help(function() end)", "no help")
 end)
 
 test("help shows what steers a terminal, and does not send it", function()
@@ -170,7 +171,7 @@ test("an entry names what to look at next, and help knows these names", function
         end
         return all
     end
-    assert(pages{ "simulate" }.simulate:match "See also: (.+)":find("integrator.", 1, true))
+    has(pages{ "simulate" }.simulate:match "See also: (.+)", "integrator.")
     local headings, wanted, named_by = {}, {}, {}
     for _, entry in ipairs(entries) do
         if not entry.heading:find "[ #%-]" and #entry.heading > 1 then headings[#headings + 1] = entry.heading end
@@ -184,7 +185,8 @@ test("an entry names what to look at next, and help knows these names", function
     assert(#wanted > 30, #wanted)
     local known = pages(wanted)
     for _, name in ipairs(wanted) do
-        assert(known[name] and not known[name]:find("nothing about", 1, true), named_by[name] .. " names " .. name)
+        assert(known[name], named_by[name] .. " names " .. name)
+        has_not(known[name], "nothing about")
     end
 end)
 
@@ -206,7 +208,7 @@ test("Lua's words are explained in a line, with an example that runs", function(
         i = i + 1
         local example, wanted = page:match "\n\n    ([^\n]-)  %-%-> ([^\n]*)\n"
         assert(example, words[i] .. " has no example: " .. page)
-        assert(not page:find "nothing about", words[i])
+        has_not(page, "nothing about")
         local printed = output(example):gsub("\n$", ""):gsub("\n", ", ")
         equal(printed, wanted, "example of " .. words[i])
     end

@@ -59,8 +59,8 @@ test("a record that is cut off is fitted as one, and said to be", function()
     local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
     local said = tonumber(tostring(fit):match "(%d+) samples have the extreme values of the record, as if it were clipped there")
     assert(said > 20 and said <= #stand, said)  -- two or three by chance are none
-    assert(not tostring(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }):find "clipped")
-    assert(not tostring(identify{ data = run }):find "clipped", "where it rests is no end of the scale")
+    support.has_not(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }, "clipped")
+    support.has_not(identify{ data = run }, "clipped")
 end)
 
 test("with I or k given a free decay tells the torques, too", function()
@@ -82,7 +82,7 @@ test("a driven record with a known M tells the parameters that are asked for", f
     assert(fit.noise < 0.0023, fit.noise)
     equal(fit.I, 0.02)
     equal(#fit.residual, #run)
-    assert(tostring(fit:plot{ show = false }):find("record"))
+    support.has(fit:plot{ show = false }, "record")
 end)
 
 test("what cannot be a record is told in a sentence", function()
@@ -274,7 +274,7 @@ test("no error is below what a double can tell, a held offset and a missing spri
     local fit = identify{ data = decay, I = 1 }
     for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.std_error[name] >= 2^-52 * fit[name], name) end
     local held = identify{ data = decay, I = 1, free = { "k", "C", "Rd" } }
-    assert(tostring(held):find("offset is held at 0", 1, true))
+    support.has(held, "offset is held at 0")
     for _, free in ipairs{ { "k", "offset" }, false } do
         assert(not tostring(identify{ data = decay, I = 1, free = free or nil }):find("held at 0", 1, true))
     end

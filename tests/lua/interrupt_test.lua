@@ -29,7 +29,8 @@ end
 local function check(code, output)
     local exit, text = interrupted(code)
     equal(exit, 130, text)
-    assert(text:find "^up\n" and text:find("dinal: interrupted", 1, true), text) -- by its own word, not by the signal
+    assert(text:find "^up\n", text)
+    support.has(text, "dinal: interrupted") -- by its own word, not by the signal
     if output then
         assert(text:find(output, 1, true), text)
     end
@@ -91,7 +92,8 @@ test("coroutine functions behave as those of Lua", function()
     local ok, message = pcall(wrapped, "x")
     assert(not ok and message:find("interrupt_test.lua:%d+: bad x"), message)
     ok, message = pcall(wrapped)
-    assert(not ok and message:find("cannot resume dead coroutine", 1, true), message)
+    assert(not ok, message)
+    support.has(message, "cannot resume dead coroutine")
     support.raises(function() coroutine.resume(1) end, "bad argument #1 to 'resume'", "thread expected")
     support.raises(function() coroutine.wrap(1) end, "bad argument #1 to 'wrap'")
     support.raises(function() coroutine.close(coroutine.running()) end, "cannot close a running coroutine")

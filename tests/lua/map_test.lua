@@ -1,7 +1,7 @@
 -- Maps of columns and diagrams of bifurcation: what is drawn, and what is refused.
 package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
 local support = require "support"
-local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+local test, equal, near, raises_here, has = support.test, support.equal, support.near, support.raises_here, support.has
 
 local map = sweep { over = { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9) }, run = function(p)
     return { steps = math.floor(p.x + p.y), slope = p.x + p.y }
@@ -9,18 +9,19 @@ end }
 
 test("a map shows digits where z has a few whole numbers", function()
     local text = tostring(map:plot { z = "steps", show = false, width = 40, height = 12 })
-    assert(text:find("steps:   0   1   2   3", 1, true), text)
+    has(text, "steps:   0   1   2   3")
     local lines = {}
     for line in text:gmatch("[^\n]+") do lines[#lines + 1] = line end
     assert(lines[2]:find("[│┤]2+3") or lines[2]:find("2+3"), lines[2])
-    assert(lines[#lines - 2]:find("0000"), lines[#lines - 2])
+    has(lines[#lines - 2], "0000")
 end)
 
 test("a map shows shades of other values, in ASCII too", function()
     local text = tostring(map:plot { z = "slope", show = false })
-    assert(text:find("█", 1, true) and text:find("·", 1, true) and text:find("slope:", 1, true), text)
+    has(text, "█", "·", "slope:")
     local plain = tostring(map:plot { z = "slope", show = false, ascii = true })
-    assert(plain:find("###", 1, true) and not plain:find("[\128-\255]"), plain)
+    assert(not plain:find("[\128-\255]"), plain)
+    has(plain, "###")
 end)
 
 test("points over two parameters are a map, or a curve for each value of the first", function()
@@ -40,12 +41,12 @@ test("points over two parameters are a map, or a curve for each value of the fir
     equal(tostring(one:plot{ show = false }), tostring(data{ b = one.b, v = one.v }:plot{ x = "b", y = "v", show = false }))
     local three = sweep{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = function(p) return { v = p.a } end }
     raises_here(function() three:plot{ show = false } end, "points over a, b, c are not a map")
-    assert(tostring(three:filter(function(p) return p.a == 1 end):plot{ show = false }):find("v:", 1, true))
+    has(three:filter(function(p) return p.a == 1 end):plot{ show = false }, "v:")
 end)
 
 test("contours lie over the shades and have names", function()
     local text = tostring(map:plot { z = "slope", contours = { 1, 2 }, show = false })
-    assert(text:find("slope = 1", 1, true) and text:find("slope = 2", 1, true), text)
+    has(text, "slope = 1", "slope = 2")
     local dotted = 0
     for _, code in utf8.codes(text) do
         if code > 0x2800 and code <= 0x28FF then dotted = dotted + 1 end
@@ -71,9 +72,9 @@ test("a map goes into files with a legend, and an SVG of a fine one stays small"
     local svg = support.read(file)
     assert(#svg < 300000, #svg)
     assert(svg:find("rgb%(253, 231,  ?37%)") or svg:lower():find("fde725"), "the bright end of the colours is there")
-    assert(svg:find("z = 0", 1, true))
+    has(svg, "z = 0")
     fine:plot { z = "z", file = commands }
-    assert(support.read(commands):find("boxxyerror", 1, true))
+    has(support.read(commands), "boxxyerror")
 end)
 
 test("what is no grid is refused", function()
@@ -123,11 +124,12 @@ test("its plot shows points", function()
         return { system = nondimensional { zeta = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1.3 } }
     end }
     local text = tostring(b:plot { show = false, ascii = true })
-    assert(text:find("theta", 1, true) and text:find("a", 1, true))
+    has(text, "theta", "a")
     local file = support.temporary ".gp"
     b:plot { file = file }
     local commands = support.read(file)
-    assert(commands:find("with points", 1, true) and not commands:find("with lines lw", 1, true))
+    has(commands, "with points")
+    support.has_not(commands, "with lines lw")
 end)
 
 test("a million points make a picture below 300 kB", function()
@@ -149,7 +151,7 @@ test("the same for any number of workers, and points that fail have a row", func
     local one, two = run(1), run(2)
     equal(#one, 6)
     equal(one.error[3], "not this one")
-    assert(one.error[4]:find("M must be a function, a number or an excitation", 1, true), one.error[4])
+    has(one.error[4], "M must be a function, a number or an excitation")
     for i = 1, #one do
         for _, name in ipairs { "a", "theta", "velocity" } do
             local x, y = one[i][name], two[i][name]
@@ -170,7 +172,7 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
     local kept = load(file)
     equal(#b, 5)
     assert(kept.theta[1] == b.theta[1] and kept.velocity[5] == b.velocity[5])
-    assert(kept.error[3]:find("no two"))
+    has(kept.error[3], "no two")
     local again = diagram(2)
     equal(tostring(again), tostring(b))
     support.raises(function() diagram(3) end, "is not the result of this sweep")

@@ -33,7 +33,7 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     equal(again.states.e, run.states.e)
     raises_here(function() return again.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
     assert(run:plot { y = "e", show = false })
-    assert(run:explain():find("feedback", 1, true))
+    support.says(run, "feedback")
     assert(run:energy().total.closure < 1e-11)
 end)
 

@@ -1,7 +1,7 @@
 -- report{}: what goes in comes out in HTML and in Markdown, nothing in it is taken for markup, and what is wrong is told.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, raises_here = support.test, support.equal, support.raises_here
+local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
 
 local function read(name)
     local file <close> = assert(io.open(name))
@@ -48,7 +48,7 @@ test("all kinds of things, in their order, on one page", function()
         end
         assert(not page:find "<%?xml")
     end
-    assert(not page:find("<1>", 1, true))
+    has_not(page, "<1>")
 end)
 
 test("Markdown has its pictures beside it, and text stays text", function()
@@ -57,13 +57,13 @@ test("Markdown has its pictures beside it, and text stays text", function()
     r:add("fence", "```")
     r:plot(run:plot{ show = false })
     local text, name = saved(r, ".md")
-    assert(text:find("# A\\_b\\*c", 1, true), text)
-    assert(text:find("\\[x\\](y)", 1, true) and text:find("R&amp;D &lt;b&gt;", 1, true), text)
-    assert(text:find("````\nfence = ```\n````", 1, true), text)
+    has(text, "# A\\_b\\*c")
+    has(text, "\\[x\\](y)", "R&amp;D &lt;b&gt;")
+    has(text, "````\nfence = ```\n````")
     if has_gnuplot then
         local picture = name:gsub("%.md$", "-1.svg")
         assert(text:find("![θ over t](" .. picture:match "[^/]+$" .. ")", 1, true), text)
-        assert(read(picture):find("<svg", 1, true))
+        has(read(picture), "<svg")
         os.remove(picture)
     end
 end)
@@ -75,8 +75,9 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
     r:add{ 1, "two", { three = 3 } }
     r:add("list", { 1, 2 })
     local markdown, page = saved(r, ".md"), saved(r, ".html")
-    assert(markdown:find("| &lt;b&gt;a&lt;/b&gt; | \\`c\\` \\[d](e) |", 1, true), markdown)
-    assert(not page:find "<b>" and utf8.len(page) and page:find("\u{FFFD} and \u{E4}", 1, true), page)
+    has(markdown, "| &lt;b&gt;a&lt;/b&gt; | \\`c\\` \\[d](e) |")
+    assert(not page:find "<b>" and utf8.len(page), page)
+    has(page, "\u{FFFD} and \u{E4}")
     r = report{ title = "a\nb\27]0;c\7", author = "\127\194\155x" }
     r:text "\226\128\174turned"
     r:add "\27[2J\tkept\255"
@@ -85,8 +86,8 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
         assert(utf8.len(text) and not text:find "[%z\1-\8\11-\31\127]", text)
         assert(not text:find "\194\155" and not text:find "\226\128\174" and text:find "\tkept", text)
     end
-    assert(own_markdown:find("# a b?\\]0;c?\n", 1, true), own_markdown)
-    assert(markdown:find('{ 1, "two", { three = 3 } }\nlist = { 1, 2 }', 1, true), markdown)
+    has(own_markdown, "# a b?\\]0;c?\n")
+    has(markdown, '{ 1, "two", { three = 3 } }\nlist = { 1, 2 }')
     raises_here(function() r:add{ io.stdout } end, "r:add: this table contains values that cannot be shown")
 end)
 
@@ -96,10 +97,10 @@ test("nothing wide pushes the page apart, and what is long may go on over the ne
     r:add(("line\n"):rep(40))
     r:add "short"
     local page = saved(r, ".html")
-    assert(page:find('<div class="table" style="overflow-x: auto"><table>\n<thead>', 1, true), page)
-    assert(page:find('<pre class="long">line', 1, true), page)
-    assert(page:find("overflow-wrap: anywhere", 1, true) and page:find("only light", 1, true))
-    assert(page:find("padding: .15em .5em; overflow-wrap: anywhere", 1, true)) -- on paper no column is beyond the edge
+    has(page, '<div class="table" style="overflow-x: auto"><table>\n<thead>')
+    has(page, '<pre class="long">line')
+    has(page, "overflow-wrap: anywhere", "only light")
+    has(page, "padding: .15em .5em; overflow-wrap: anywhere") -- on paper no column is beyond the edge
 end)
 
 test("a run in motion is on the page, and beside Markdown", function()
@@ -108,11 +109,11 @@ test("a run in motion is on the page, and beside Markdown", function()
     r:animate(run)
     local page = saved(r, ".html")
     equal(select(2, page:gsub("<title>A run in motion, t = 1 to 3</title>", "")), 1)
-    assert(page:find('id="p2-floor0"', 1, true) and page:find('url(#p2-floor0)', 1, true) and page:find('dur="1.000s"', 1, true))
+    has(page, 'id="p2-floor0"', 'url(#p2-floor0)', 'dur="1.000s"')
     local text, name = saved(r, ".md")
     for i = 1, 2 do
         local picture = name:gsub("%.md$", ("-%d.svg"):format(i))
-        assert(read(picture):find("animateTransform", 1, true))
+        has(read(picture), "animateTransform")
         os.remove(picture)
     end
     assert(text:find("![A run in motion, t = 0 to 6](", 1, true), text)
@@ -124,10 +125,11 @@ test("the end of CDATA in a label leaves the picture well formed", function()
     local r = report{ title = "x" }
     r:plot{ { run.t, run.theta, label = "]]><!--" }, title = "]]>", xlabel = "a]]]>" }
     local text, name = saved(r, ".md")
-    assert(not text:match("^(.-)\nThe script"):find("]]>", 1, true), text)
+    has_not(text:match("^(.-)\nThe script"), "]]>")
     if has_gnuplot then
         local picture = name:gsub("%.md$", "-1.svg")
-        assert(not read(picture):find("]]>", 1, true) and read(picture):find("a]]]&gt;", 1, true))
+        has_not(read(picture), "]]>")
+        has(read(picture), "a]]]&gt;")
         os.remove(picture)
     end
 end)

@@ -1,6 +1,6 @@
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+local test, near, equal, raises_here, has = support.test, support.near, support.equal, support.raises_here, support.has
 
 local function closes(run, what, within)
     local total = run:energy().total
@@ -56,7 +56,7 @@ test("energy of one body whose friction varies, with bristles, and of a locked p
     local run = system { I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }:simulate { theta0 = 1.03, t_end = 20 }
     near(run:energy().total.dry, one.total.dry, 1e-12)
     closes(run, "varying")
-    assert(run:explain():find("The body swung between", 1, true))
+    support.says(run, "The body swung between")
     closes(system { I = 1, k = 2, friction = friction.lugre { Rd = 1, Re = 1.5, speed = 0.1, stiffness = 100, damping = 1 } }
         :simulate { M = function(t) return 3 * math.sin(t) end, t_end = 5 }, "bristles", 1e-10)
     local pair = system { bodies = { a = { I = 1, k = 1, Rd = 5 }, b = { I = 1 } }, links = { glue = { "a", "b", Rd = 5 } } }
@@ -100,7 +100,7 @@ test("energy over time: of all, and of one body or link as of a system of one bo
     near(dry, a.total.dry, 1e-11)
     near(others, a.total.others, 1e-11)
     assert(#a.half_cycles > 5)
-    assert(tostring(a):find("work of its links on it", 1, true))
+    has(a, "work of its links on it")
     local varying = system { I = 1, k = 1, Rd = 0.12, normal = function() return 1 end }:simulate { theta0 = 1, t_end = 20 }:energy()
     near(varying.half_cycles[1].dry, 0.2112, 1e-12)
     near(varying.dry[1001], 0.4992, 1e-12)
@@ -113,8 +113,8 @@ test("a run is told in sentences", function()
         assert(story:find(part, 1, true), part .. " is missing in\n" .. story)
     end
     story = rig:simulate { M = { motor = 0.05 }, t_end = 4 }:explain():gsub("%s+", " ")
-    assert(story:find("load never moved", 1, true), story)
-    assert(story:find("stuck together all the time", 1, true), story)
+    has(story, "load never moved")
+    has(story, "stuck together all the time")
 end)
 
 test("what a run of several bodies can do besides: save, load, status, plot, go on", function()

@@ -37,6 +37,26 @@ function support.near(found, wanted, tolerance)
     end
 end
 
+--- The text, or what tostring makes of a value, has each of these pieces (plain text, no patterns) in it.
+function support.has(text, ...)
+    text = tostring(text)
+    for _, piece in ipairs { ... } do
+        if not text:find(piece, 1, true) then error(("%q is not in\n%s"):format(piece, text), 2) end
+    end
+end
+
+function support.has_not(text, ...)
+    text = tostring(text)
+    for _, piece in ipairs { ... } do
+        if text:find(piece, 1, true) then error(("%q is in\n%s"):format(piece, text), 2) end
+    end
+end
+
+--- The story of a run or of a motion has each of these pieces in it, wherever its lines end.
+function support.says(run, ...)
+    support.has((run:explain():gsub("%s+", " ")), ...)
+end
+
 --- The same events in both runs, at the same times.
 function support.same_events(a, b, tolerance, what)
     support.equal(#a.events, #b.events, what)
