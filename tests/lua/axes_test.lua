@@ -1,53 +1,31 @@
 -- The axes of pictures of a run: one for each unit, with the unit that the user says.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, raises_here, equal = support.test, support.raises_here, support.equal
+local test, raises_here, has, has_not = support.test, support.raises_here, support.has, support.has_not
 
 local metres = { theta = "m", t = "s" }
 local sys = system{ I = 1, k = 4, Rd = 0.1 }
 local run = sys:simulate{ M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
 
-local function picture(method, options)
+local function picture(of, method, options)
     options = options or {}
     options.show, options.width, options.ascii = false, 60, true
-    return tostring(run[method](run, options))
+    return tostring(of[method](of, options))
 end
-local function has(text, ...)
-    for _, piece in ipairs{ ... } do assert(text:find(piece, 1, true), piece .. " is not in\n" .. text) end
-end
-
-test("axes have the units that are asked for", function()
-    has(picture("plot", { y = "theta", units = metres }), "theta, m", "t, s")
-    has(picture("plot", { y = "velocity", units = metres }), "theta', m/s")
-    has(picture("plot", { y = "velocity", units = { theta = "mm" } }), "theta', mm/time")
-    has(picture("phase_plot", { units = metres }), "theta'/omega0, m", "theta, m")
-    has(picture("plot", { y = "velocity" }), "theta', rad/time")
-end)
-
 test("what measures something else has an axis of its own, one below the other", function()
-    local text = picture("plot", { y = { "theta", "velocity", "M", "friction" }, units = metres })
+    local text = picture(run, "plot", { y = { "theta", "velocity", "M", "friction" }, units = metres })
     has(text, "theta, m", "theta', m/s", "torque", "a M", "b friction")
     local first, second, third = text:find("theta, m", 1, true), text:find("theta', m/s", 1, true), text:find("torque", 1, true)
     assert(first < second and second < third)
-    has(picture("plot", { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
-    has(picture("plot", { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
+    has(picture(run, "plot", { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
+    has(picture(run, "plot", { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
     raises_here(function() run:plot{ y = { "theta", "velocity" }, ylim = { 0, 1 }, show = false } end, "ylim is for one unit",
         "give ylabel")
     raises_here(function() run:plot{ labels = 3, show = false } end, "labels must be a list of words")
 end)
 
-test("wrong units are said", function()
-    raises_here(function() run:plot{ units = "m", show = false } end, "units must be a table such as")
-    raises_here(function() run:plot{ units = { theta = 1 }, show = false } end, "theta")
-    raises_here(function() run:plot{ units = { time = "s" }, show = false } end, "'time'")
-end)
-
 test("a spectrum is drawn over decades, a response near a pole up to where most of it says something", function()
-    local function drawn(d, options)
-        options = options or {}
-        options.show, options.ascii, options.width = false, true, 60
-        return tostring(d:plot(options))
-    end
+    local function drawn(d, options) return picture(d, "plot", options) end
     local sys = nondimensional { zeta = 0.05 }
     local spectrum = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.05 }:spectrum {}
     local picture = drawn(spectrum)
@@ -55,7 +33,7 @@ test("a spectrum is drawn over decades, a response near a pole up to where most 
     assert(not drawn(spectrum, { ylog = false }):find "1e%-", "a user's word counts")
     -- Beyond the frequencies at which a spectrum is that high there is nothing to see.
     local smooth = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.005 }:spectrum {}
-    equal(smooth.frequency:max() > 99, true)
+    assert(smooth.frequency:max() > 99)
     picture = drawn(smooth)
     assert(not picture:find "%f[%d]50%f[^%d]" and not picture:find "%f[%d]100%f[^%d]", picture)
     assert(drawn(smooth, { xlim = { 0, 100 } }):find "%f[%d]100%f[^%d]", "a user's word counts")
@@ -64,7 +42,7 @@ test("a spectrum is drawn over decades, a response near a pole up to where most 
     picture = drawn(pole)
     assert(picture:find "\n10 %+" and not picture:find "20 %+", picture)
     assert(drawn(pole, { ylog = true }):find "\n100 %+", "all of it")
-    support.has(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }), "theta'")
+    has(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }), "theta'")
 end)
 
 support.finish()

@@ -1,7 +1,7 @@
 -- plot, run:plot, run:phase_plot: what they draw, what they return, and what they say to wrong input.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, raises_here = support.test, support.equal, support.raises_here
+local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
 
 local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12, units = { theta = "rad" } }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
@@ -19,15 +19,6 @@ local function vectors(options)
     options.show, options.ascii, options.width = false, true, options.width or 60
     return tostring(plot(options))
 end
-local function has(picture, ...)
-    for _, piece in ipairs { ... } do
-        assert(picture:find(piece, 1, true), ("no %q in\n%s"):format(piece, picture))
-    end
-end
-local function has_not(picture, piece)
-    assert(not picture:find(piece, 1, true), ("%q in\n%s"):format(piece, picture))
-end
-
 test("a driven run shows theta and M/k, a free one only theta, both where they stick", function()
     has(text(run, "plot"), "a theta", "b M/k", " t")
     has(text(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }, "plot"),

@@ -62,9 +62,8 @@ end)
 test("feedback acts as the damping that it imitates", function()
     local c = 0.05
     local imitated = nondimensional {}:simulate { M = function(t, theta, velocity) return -c * velocity end, theta0 = 1, t_end = 3, dt = 0.01 }
-    local sys = nondimensional {}
-    local real = system { I = sys.I, k = 1, C = c }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
-    assert((imitated.theta - real.theta):abs() < 1e-9) -- both are RK4 with the same stages but for rounding and stage order
+    local real = nondimensional {}:with { C = c }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
+    near(imitated.theta, real.theta, 1e-9)
 end)
 
 test("the default integrator is exact where that takes M, else spectral", function()
@@ -98,7 +97,6 @@ end)
 
 test("missing, superfluous and misspelt options are errors that show the way", function()
     support.refuses(function(o) nd:simulate(o) end, {
-        { { dt = 1 }, "t_end" },
         { { dt = 0.1 }, "sys:simulate needs t_end, for example" },
         { { times = {} }, "needs t_end" },
         { { t_end = 1, dt = 0.1, times = { 1 } }, "exclude each other" },
@@ -108,44 +106,31 @@ test("missing, superfluous and misspelt options are errors that show the way", f
     raises_here(function() nd:simulate(1, 2) end, "one table of named options")
     raises_here(function() nd:simulate { 1, 2 } end, "named options only")
     raises_here(function() nd.simulate { t_end = 1, dt = 0.1 } end, "use a colon: sys:simulate{")
-    raises_here(function() nd.simulate() end, "use a colon: sys:simulate{")
 end)
 
-test("values of a wrong kind are errors that name the option and the value", function()
+test("values of a wrong kind are errors that name the option and the value", function() -- option_rows_test.lua has all of them
     support.refuses(function(o) nd:simulate(o) end, {
         { { t_end = "1", dt = 0.1 }, "t_end must be a finite number", 'the string "1"' },
-        { { t_end = 1, dt = 0.1, theta0 = {} }, "theta0 must be a finite number, got a table" },
         { { t_end = 1, dt = 0.1, velocity0 = 0 / 0 }, "velocity0 must be a finite number", "nan" },
-        { { t_end = math.huge, dt = 0.1 }, "t_end must be a finite number", "inf" },
         { { t_end = 1, dt = 0.1, M = "sin" }, "M must be a function, a number or an excitation", '"sin"' },
         { { t_end = 1, dt = 0.1, M = 0 / 0 }, "M must be finite" },
-        { { t_end = 1, dt = 0.1, integrator = "rk4" }, "integrator.rk4{ h = 0.001 }", '"rk4"' },
         { { t_end = 1, dt = 0.1, integrator = integrator.rk4 }, "integrator must be an integrator" },
-        { { t_end = 1, dt = 0.1, integrator = nd }, "got a system" },
     })
 end)
 
 test("windows and grids that cannot be are errors with their values", function()
     support.refuses(function(o) nd:simulate(o) end, {
         { { t_end = 0, dt = 0.1 }, "t_end = 0 must be after t_start = 0" },
-        { { t_start = 2, t_end = 1, dt = 0.1 }, "t_end = 1 must be after t_start = 2" },
-        { { times = { 0, 2, 1 } }, "times[3] = 1", "must increase" },
         { { times = { 0, 1, 1 } }, "times[3] = 1", "must increase" },
         { { times = { -1, 1 } }, "times[1] = -1", "outside" },
         { { times = { 0, 3 }, t_end = 2 }, "times[2] = 3", "outside" },
-        { { times = { 0, "1" } }, "times" },
-        { { times = 3 }, "times" },
     })
 end)
 
 test("a step above the stability limit is refused with the limit", function()
     raises_here(function() nondimensional {}:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.5 } } end,
         "h = 0.5 exceeds the stability limit 0.45", "use h <=")
-    raises_here(function() integrator.rk4 {} end, "integrator.rk4 needs h, for example integrator.rk4{ h = 0.001 }")
-    support.refuses(integrator.dinal1989, {
-        { { h = 0.1, stop = "txt" }, "stop must be 'listing' or 'text'", "did you mean 'text'?" },
-        { { h = 0.1, slip = 1 }, "slip must be true or false, got 1" },
-    })
+    raises_here(function() integrator.dinal1989 { h = 0.1, stop = "txt" } end, "stop must be 'listing' or 'text'", "did you mean 'text'?")
 end)
 
 test("more rows than memory allows are refused with their size and the cure, before anything is computed", function()
@@ -155,21 +140,12 @@ test("more rows than memory allows are refused with their size and the cure, bef
     assert(os.clock() - before < 1)
 end)
 
-test("an unstable 1989 run ends with an outcome and rows that are all finite", function()
-    local run = nondimensional {}:simulate { theta0 = 1, t_end = 2000, dt = 1, integrator = integrator.dinal1989 { h = 0.5 } }
-    support.has(run.outcome, "became infinite")
-    assert(#run > 0 and #run < 2001)
-    assert(run.theta:abs():max() < math.huge)
-end)
-
 test("without dt and times a run has 1001 rows, and goes on with the same distance", function()
     local run = nd:simulate { theta0 = 1, t_start = 3, t_end = 7 }
     equal(#run, 1001)
     near(run.t[2] - run.t[1], 0.004, 1e-15)
     equal(run.t[1001], 7.0)
     equal(#run:continue { t_end = 8 }, 1251)
-    equal(#nd:simulate { theta0 = 1, t_end = 7, times = {} }, 0)
-    equal(#nd:simulate { theta0 = 1, times = { 1, 2 } }, 2)
     equal(nd:simulate { theta0 = 1, t_end = 1 }.theta[501], nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta[501])
 end)
 

@@ -69,23 +69,25 @@ end)
 
 test("a spring that fails is told with the angle and its line, and what ran is kept", function()
     local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
-    local ok, problem = pcall(soft.simulate, soft, { velocity0 = 4, t_end = 20, dt = 0.01 })
-    assert(not ok and tostring(problem):find "spring_test.lua:%d+: spring returned nil at theta = 1.%d+; it must return a finite number", problem)
-    assert(#dinal.partial > 10)
-    ok, problem = pcall(soft.simulate, soft, { velocity0 = 4, t_end = 20, dt = 0.01, integrator = integrator.rk4 { h = 0.01 } })
-    assert(not ok, problem)
-    support.has(problem, "spring returned nil at theta = 1")
-    raises_here(function() system { I = 1, k = 1, spring = function() return nil end } end, "spring returned nil at theta = 0")
-    raises_here(function() system { I = 1, k = 1, spring = function() return 0 / 0 end } end, "nan at theta = 0")
-    raises_here(function() system { I = 1, k = 1, spring = function() error("no spring") end } end, "no spring")
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        support.raises(function() soft:simulate { velocity0 = 4, t_end = 20, dt = 0.01, integrator = method } end,
+            "spring_test.lua:", ": spring returned nil at theta = 1.", "; it must return a finite number")
+        assert(#dinal.partial > 10)
+    end
+    for message, own in pairs {
+        ["spring returned nil at theta = 0"] = function() return nil end,
+        ["nan at theta = 0"] = function() return 0 / 0 end,
+        ["no spring"] = function() error("no spring") end,
+        ["system: spring must be a function of theta, or a spring such as"] = 3,
+    } do
+        support.raises(function() system { I = 1, k = 1, spring = own } end, message)
+    end
 end)
 
 test("what is wrong with a spring is one sentence with the name of the option", function()
-    raises_here(function() system { I = 1, k = 1, spring = 3 } end, "system: spring must be a function of theta, or a spring such as", "got 3")
     raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
     support.refuses(spring.polynomial, {
         { { [0.5] = 1 }, "the power 0.5 must be a whole number from 1 to 31" },
-        { { [-1] = 1 }, "the power -1 must be a whole number from 1 to 31" },
         { { [32] = 1 }, "the power 32 must be" },
         { { [0] = 1 }, "the power 0 is a constant torque, not a spring" },
         { { cubic = 1 }, "the power the string \"cubic\" must be" },
@@ -122,7 +124,7 @@ test("a motion that a softening spring lets go ends with a sentence about itself
         for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 1e-3 } } do
             local run = sys:simulate { M = M, t_end = 20, dt = 0.1, integrator = with }
             support.has(run.outcome, "the state became infinite")
-            assert(run:explain():gsub("%s+", " "):find("stopped early, at t = [%d.]+: the state became infinite"), run:explain())
+            support.says(run, "stopped early, at t = ", ": the state became infinite")
         end
     end
 end)
