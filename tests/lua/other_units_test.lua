@@ -6,7 +6,6 @@ local test = support.test
 
 -- Each gives the options of a system and of a run; u has the units: t, angle, torque, k, and speed = angle/t.
 local cases = {
-    ["a harmonic load"] = function() end,
     ["terms with breaks"] = function(u, _, run)
         run.M = run.M + excitation.pulse { amplitude = 0.4*u.torque, at = 3*u.t, width = u.t } +
             excitation.square { amplitude = 0.2*u.torque, frequency = 1/(7*u.t) } + excitation.ramp { slope = 0.05*u.torque/u.t, at = 9*u.t, duration = 4*u.t }
@@ -15,7 +14,6 @@ local cases = {
         run.M = excitation.gaussian { amplitude = 2*u.torque, at = 5*u.t, sigma = 0.1*u.t } +
             excitation.chirp { amplitude = 0.8*u.torque, from = 0.05/u.t, to = 0.4/u.t, duration = 20*u.t }
     end,
-    ["a function of time"] = function(u, _, run) run.M = function(t) return u.torque*math.cos(0.7*t/u.t)*math.sin(0.31*t/u.t) end end,
     ["a feedback"] = function(u, _, run) run.M = function(t, theta, v) return u.torque*math.cos(t/u.t) - u.k*(0.2*theta + 0.1*v*u.t) end end,
     ["a sampled controller"] = function(u, _, run)
         local sum = 0
@@ -30,7 +28,6 @@ local cases = {
         run.events = { { when = function(_, theta) return theta - 0.2*u.angle end, direction = "up", act = function(_, theta, v) return theta, v/2 end },
             { when = function(_, _, v) return v - 0.3*u.speed end } }
     end,
-    ["Stribeck's friction"] = function(u, system) system.friction = friction.stribeck { Rd = 0.1*u.torque, Re = 0.2*u.torque, speed = 0.2*u.speed } end,
     ["a table of friction"] = function(u, system)
         system.friction = friction.table { speed = { 0, 0.1*u.speed, 0.4*u.speed, 3*u.speed }, torque = { 0.2*u.torque, 0.1*u.torque, 0.13*u.torque, 0.2*u.torque } }
     end,
@@ -38,7 +35,7 @@ local cases = {
     ["other friction each way"] = function(u, system)
         system.friction = friction.asymmetric { forward = { Rd = 0.1*u.torque, Re = 0.15*u.torque }, backward = { Rd = 0.17*u.torque } }
     end,
-    ["a belt"] = function(u, system, run)
+    ["Stribeck's friction on a belt"] = function(u, system, run)
         system.friction = friction.stribeck { Rd = 0.1*u.torque, Re = 0.2*u.torque, speed = 0.3*u.speed }
         run.belt = 0.25*u.speed
     end,
@@ -49,8 +46,9 @@ local cases = {
         run.M = run.M + 0.6*u.torque
         run.theta0 = 0
     end,
-    ["a cubic spring"] = function(u, system) system.spring = spring.polynomial { [3] = 0.5*u.k/u.angle^2 } end,
-    ["a spring of a function"] = function(u, system) system.spring = function(theta) return 0.5*u.torque*math.sin(theta/u.angle) end end,
+    ["springs"] = function(u, system)
+        system.spring = function(theta) return 0.5*u.torque*math.sin(theta/u.angle) + 0.1*u.torque*(theta/u.angle)^3 end
+    end,
     ["a block"] = function(u, system, run) system.k, run.base = 0, function(t) return 0.5*u.angle/u.t^2*math.sin(1.1*t/u.t) end end,
 }
 

@@ -3,19 +3,12 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
 
-local function read(name)
-    local file <close> = assert(io.open(name))
-    return file:read "a"
-end
+local read = support.read
 
 local function saved(r, ending)
-    local name = os.tmpname()
-    os.remove(name)
-    name = name .. ending
+    local name = support.temporary(ending)
     r:save(name)
-    local text = read(name)
-    os.remove(name)
-    return text, name
+    return read(name), name
 end
 
 local sys = system{ I = 1, k = 40, Rd = 1, Re = 1.5 }

@@ -2,20 +2,10 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
 
-test("a system shows what it was given", function()
-    local sys = system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }
-    equal(sys.I, 2.0)
-    equal(sys.k, 8.0)
-    equal(sys.C, 0.5)
-    equal(sys.Rd, 1.0)
-    equal(sys.Re, 1.5)
-end)
-
-test("C and Rd are zero and Re is Rd unless given", function()
-    local sys = system { I = 1, k = 1 }
-    equal(sys.C, 0.0)
-    equal(sys.Rd, 0.0)
-    equal(sys.Re, 0.0)
+test("a system shows what it was given; C and Rd are zero and Re is Rd unless given", function()
+    local function shown(sys) return table.concat({ sys.I, sys.k, sys.C, sys.Rd, sys.Re }, " ") end
+    equal(shown(system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }), "2.0 8.0 0.5 1.0 1.5")
+    equal(shown(system { I = 1, k = 1 }), "1.0 1.0 0.0 0.0 0.0")
     equal(system { I = 1, k = 1, Rd = 3 }.Re, 3.0)
 end)
 
@@ -30,12 +20,11 @@ test("derived values are fields", function()
 end)
 
 test("the regime is undamped, underdamped, critical or overdamped, and only a swinging system has omega1", function()
-    equal(system { I = 1, k = 4 }.regime, "undamped")
-    equal(system { I = 1, k = 4, C = 3.9 }.regime, "underdamped")
-    equal(system { I = 1, k = 4, C = 4 }.regime, "critical")
-    equal(system { I = 1, k = 4, C = 4.1 }.regime, "overdamped")
-    equal(system { I = 1, k = 4, C = 4 }.omega1, nil)
-    equal(system { I = 1, k = 4, C = 4.1 }.omega1, nil)
+    for C, regime in pairs { [0] = "undamped", [3.9] = "underdamped", [4] = "critical", [4.1] = "overdamped" } do
+        local sys = system { I = 1, k = 4, C = C }
+        equal(sys.regime, regime)
+        equal(sys.omega1 ~= nil, C < 4)
+    end
 end)
 
 test("the nondimensional system has k = 1, T0 = 1, and the ratios it was given", function()
@@ -56,22 +45,18 @@ test("friction ratio and characteristic torque are those of the report", functio
     equal(sys:characteristic_torque(3, 8), 20.0)
     equal(sys:characteristic_torque(3), 12.0)
     raises_here(function() sys:friction_ratio(0) end, "Mc = 0")
-    raises_here(function() sys:friction_ratio("2") end, "a finite number")
     raises_here(function() sys.friction_ratio(2) end, "use a colon", "sys:friction_ratio(Mc)")
 end)
 
 test("a system cannot be changed", function()
     local sys = system { I = 1, k = 4 }
     raises_here(function() sys.I = 2 end, "a system cannot be changed, so 'I' cannot be set; make a new one")
-    raises_here(function() sys.new = 2 end, "cannot be changed")
-    equal(sys.I, 1.0)
 end)
 
 test("a misspelt field is an error with a suggestion", function()
     local sys = system { I = 1, k = 4 }
     raises_here(function() return sys.omga0 end, "a system has no field 'omga0'; did you mean 'omega0'?")
     raises_here(function() return sys[1] end, "a system has no field [1]")
-    raises_here(function() return sys.xyzzy end, "a system has no field 'xyzzy'")
 end)
 
 test("the integrator objects show themselves and cannot be changed", function()
@@ -79,13 +64,11 @@ test("the integrator objects show themselves and cannot be changed", function()
     equal(tostring(integrator.dinal1989 { h = 0.01, stop = "text", slip = true }),
         'integrator.dinal1989{ h = 0.01, stop = "text", slip = true }')
     equal(integrator.rk4 { h = 0.5 }.name, "rk4")
-    equal(integrator.dinal1989 { h = 0.5 }.name, "dinal1989")
     raises_here(function() integrator.rk4 { h = 1 }.h = 2 end, "an integrator cannot be changed")
     equal(tostring(integrator.spectral {}), "integrator.spectral{}")
     equal(tostring(integrator.spectral { tolerance = 1e-9, max_panel = 0.25 }), "integrator.spectral{ tolerance = 1e-09, max_panel = 0.25 }")
     equal(integrator.spectral { max_panel = 0.25 }.max_panel, 0.25)
     equal(integrator.spectral {}.h, nil)
-    equal(integrator.rk4 { h = 0.5 }.tolerance, nil)
     raises_here(function() return integrator.rk5 end, "did you mean 'rk4'?")
 end)
 
@@ -118,12 +101,12 @@ test("a spring of -0 is none, friction beyond all numbers is told", function()
     local block = system{ I = 1, k = -0.0, Rd = 0.5 }
     equal(tostring(block.k), "0.0")
     local r = block:simulate{ velocity0 = 1, t_end = 3, dt = 1 }  -- it stops at v^2/(2 Rd) = 1
-    assert(math.abs(r.theta[4] - 1) < 1e-12, r.theta[4])
+    near(r.theta[4], 1, 1e-12)
     raises_here(function() nondimensional{ friction_ratio = 1e308 } end,
         "nondimensional: friction of 1e+308 and k = 1 are too far apart for double precision")
     raises_here(function() system{ I = 1e-10, k = 0, Rd = 1e300 } end, "friction of 1e+300 and I = 1e-10")
     -- What is a thousandth of that holds the mass where it is.
-    equal(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs():max() < 1e-12, true)
+    assert(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs() < 1e-12)
 end)
 
 support.finish()

@@ -38,30 +38,21 @@ test("theory is in the table dinal and a global, and all of its functions are tr
     end
 end)
 
-test("numbers give numbers", function()
+test("numbers give numbers, and a vector or a table in any option gives vectors of the same numbers", function()
     for name, arguments in pairs(calls) do
-        local results = table.pack(theory[name](arguments))
-        equal(results.n, two_results[name] and 2 or 1, name)
-        for i = 1, results.n do
-            equal(math.type(results[i]), "float", name)
-        end
-    end
-end)
-
-test("each option may be a vector or a table, and then the results are vectors of the same numbers", function()
-    for name, arguments in pairs(calls) do
+        local wanted = table.pack(theory[name](arguments))
+        equal(wanted.n, two_results[name] and 2 or 1, name)
+        for i = 1, wanted.n do equal(math.type(wanted[i]), "float", name) end
         for option, value in pairs(arguments) do
-            if type(value) == "number" then
-                -- the same value three times, so that it is good for every function
-                for _, many in ipairs { vector { value, value, value }, { value, value, value } } do
-                    local copy = {}
-                    for k, v in pairs(arguments) do copy[k] = v end
-                    copy[option] = many
-                    local wanted, found = table.pack(theory[name](arguments)), table.pack(theory[name](copy))
-                    equal(found.n, wanted.n, name)
-                    for i = 1, wanted.n do
-                        equal(found[i], vector { wanted[i], wanted[i], wanted[i] }, name .. " with many " .. option)
-                    end
+            -- the same value three times, so that it is good for every function
+            for _, many in ipairs(type(value) == "number" and { vector { value, value, value }, { value, value, value } } or {}) do
+                local copy = {}
+                for k, v in pairs(arguments) do copy[k] = v end
+                copy[option] = many
+                local found = table.pack(theory[name](copy))
+                equal(found.n, wanted.n, name)
+                for i = 1, wanted.n do
+                    equal(found[i], vector { wanted[i], wanted[i], wanted[i] }, name .. " with many " .. option)
                 end
             end
         end
@@ -74,7 +65,7 @@ test("where a closed form does not hold there is nil, and nan among others", fun
     local A, lag = theory.den_hartog { r = { 2, 2 }, friction_ratio = { 0.5, 0.6 } }
     near(A[1], 0.220479276, 0.51e-9)
     assert(A[2] ~= A[2] and lag[2] ~= lag[2])
-    equal(theory.den_hartog { r = 2, friction_ratio = 0.57 } ~= nil, true)
+    assert(theory.den_hartog { r = 2, friction_ratio = 0.57 })
     equal(theory.den_hartog { r = 2, friction_ratio = 0.57, breakaway_ratio = 1.25 * 0.57 }, nil)
     equal(theory.linearised { r = 0.5, friction_ratio = 0.8 }, nil)
     equal(theory.identify { X0 = 1, X1 = 1.2, X2 = 0.5 }, nil)
@@ -94,8 +85,8 @@ test("a run agrees with theory.free_response, turns and rest included", function
     local run = nd:simulate { velocity0 = 2 * math.pi, t_end = 3, dt = 0.01, integrator = integrator.rk4 { h = 0.001 } }
     local theta, velocity = theory.free_response { system = nd, velocity0 = 2 * math.pi, t = run.t }
     -- rk4 is good to 8e-11 of the amplitude a period; the velocity is greater by 2 pi
-    assert((theta - run.theta):abs():max() < 1e-9)
-    assert((velocity - run.velocity):abs():max() < 1e-8)
+    near(theta, run.theta, 1e-9)
+    near(velocity, run.velocity, 1e-8)
     local t, X = theory.extremes { system = nd, velocity0 = 2 * math.pi }
     equal(#run.events, #t)
     for i, event in ipairs(run.events) do
@@ -120,13 +111,10 @@ test("extremes stop at rest, at count, or ask for it", function()
     near(X[4], 0.05, 1e-15)
     equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
     equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)
-    raises_here(function() theory.extremes { system = nondimensional {}, theta0 = 1 } end,
-        "theory.extremes: count is needed, because this motion never comes to rest")
-    raises_here(function() theory.extremes { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 } end,
-        "count is needed, because there are 5e+11 extremes until rest")
     support.refuses(theory.extremes, {
+        { { system = nondimensional {}, theta0 = 1 }, "theory.extremes: count is needed, because this motion never comes to rest" },
+        { { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 }, "count is needed, because there are 5e+11 extremes until rest" },
         { { theta0 = 1 }, "theory.extremes needs system, for example" },
-        { { system = 3 }, "system must be a system such as", "got 3" },
     })
 end)
 
@@ -135,12 +123,12 @@ test("half_cycle takes a system, too, and stops in the dead zone", function()
     equal(theory.half_cycle { X = 1, system = sys },
         theory.half_cycle { X = 1, zeta = sys.zeta, x_f = sys.Rd / sys.k, dead_zone = sys.dead_zone })
     equal(theory.half_cycle { X = 0.08, system = sys }, 0.08)
-    raises_here(function() theory.half_cycle { X = 1, system = sys, zeta = 0.1 } end, "system excludes zeta")
-    raises_here(function() theory.half_cycle { X = 1, system = nondimensional { zeta = 1 } } end,
-        "the system has zeta = 1: without a swing there is no next extreme")
-    raises_here(function() theory.half_cycle { X = 1, zeta = 1.2 } end, "zeta = 1.2 must be from 0 to less than 1")
-    raises_here(function() theory.half_cycle { X = 1, x_f = 0.2, dead_zone = { 0.3, 0.1 } } end,
-        "dead_zone[2] = 0.1 must be at least x_f = 0.2")
+    support.refuses(theory.half_cycle, {
+        { { X = 1, system = sys, zeta = 0.1 }, "system excludes zeta" },
+        { { X = 1, system = nondimensional { zeta = 1 } }, "the system has zeta = 1: without a swing there is no next extreme" },
+        { { X = 1, zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
+        { { X = 1, x_f = 0.2, dead_zone = { 0.3, 0.1 } }, "dead_zone[2] = 0.1 must be at least x_f = 0.2" },
+    })
 end)
 
 test("the three step limits", function()
@@ -149,38 +137,28 @@ test("the three step limits", function()
     near(theory.step_limit { system = sys, rule = "corrected", velocity0 = 6.283311 }, 0.167 / 6.283311, 1e-9)
     near(theory.step_limit { system = sys }, 0.4502 * sys.T0, 1e-4)
     support.refuses(theory.step_limit, {
-        { { system = sys, rule = "euler" }, "rule must be 'rk4', 'report' or 'corrected', got" },
         { { system = sys, rule = "reprot" }, "did you mean 'report'?" },
         { { system = sys, rule = "report" }, "theta0 or velocity0 is needed" },
     })
-    raises_here(function() theory.step_limit { system = sys, rule = "report", theta0 = 1, Mc = 0 } end,
-        "Mc = 0 must not be zero")
 end)
 
 test("wrong values are refused with the option, the element and the limit", function()
-    raises_here(function() theory.magnification { r = { 1, 2, -3 } } end, "theory.magnification: r[3] = -3 must not be")
-    raises_here(function() theory.magnification { r = vector { 1, 2 }, zeta = { 1, 2, 3 } } end,
-        "r and zeta have 2 and 3 numbers; they must be equally long")
-    raises_here(function() theory.magnification { r = "1" } end,
-        'r must be a finite number or a vector, got the string "1"')
     support.refuses(theory.magnification, {
-        { { r = 0 / 0 }, "r must be a finite number, got", "nan" },
+        { { r = { 1, 2, -3 } }, "theory.magnification: r[3] = -3 must not be" },
+        { { r = vector { 1, 2 }, zeta = { 1, 2, 3 } }, "r and zeta have 2 and 3 numbers; they must be equally long" },
+        { { r = "1" }, 'r must be a finite number or a vector, got the string "1"' },
         { { r = { 1, "2" } }, 'r[2] must be a finite number, got the string "2"' },
         { {}, "theory.magnification needs r, for example" },
     })
-    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
-        "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")
-    raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end,
-        "r = 1e-05 must be 0 or from 0.0001 to 1e6")
-    raises_here(function() theory.stop_boundary { r = 0.5, Re_over_Rd = 0.9 } end, "Re_over_Rd = 0.9 must be at least 1")
     support.refuses(theory.free_response, {
         { { t = 1, theta0 = 1 }, "theory.free_response needs system, or omega0" },
         { { t = 1, system = nd, omega0 = 1 }, "system excludes omega0 and zeta" },
+        { { t = { 1, -1 }, system = nd, theta0 = 1 }, "t[2] = -1 must not be negative" },
     })
-    raises_here(function() theory.free_response { t = { 1, -1 }, system = nd, theta0 = 1 } end,
-        "t[2] = -1 must not be negative")
+    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
+        "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")
+    raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end, "r = 1e-05 must be 0 or from 0.0001 to 1e6")
     raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")
-    raises_here(function() theory.logarithmic_decrement { zeta = 1 } end, "zeta = 1 must be from 0 to less than 1")
 end)
 
 support.finish()
