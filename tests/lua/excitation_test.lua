@@ -1,4 +1,5 @@
--- Excitations: terms, operators, user functions and what is said about mistakes. Run by dinal.
+-- Excitations: terms, operators, user functions and what is said about mistakes. The examples of the manual, which
+-- help_test.lua runs, have the plain values.
 
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
@@ -9,9 +10,6 @@ local function line() return debug.getinfo(2, "l").currentline end
 local function near(a, b) assert(math.abs(a - b) <= 1e-14 * math.max(1, math.abs(b)), a .. " is not " .. b) end
 local e = excitation
 
--- Every term, with its options and their defaults.
-assert(e.constant{ amplitude = 3 }(9) == 3)
-near(e.harmonic{ frequency = 2 }(1 / 8), 1)
 near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8))
 -- A periodic term takes frequency, omega or period, one of them.
 for name, wave in pairs{ harmonic = e.harmonic, square = e.square, triangle = e.triangle, sawtooth = e.sawtooth } do
@@ -21,41 +19,29 @@ for name, wave in pairs{ harmonic = e.harmonic, square = e.square, triangle = e.
     fails(function() wave{} end, "period", "omega", " is needed")
 end
 -- The values at many times, and a number alone where one option is meant.
-assert(e.ramp{ slope = 2 }{ 0, 1, 4 } == vector{ 0, 2, 8 } and e.ramp{}(vector{ 1, 2 }) == vector{ 1, 2 })
-assert(e.constant(3) { 0, 1 } == vector{ 3, 3 } and tostring(e.constant(3)) == "excitation.constant{ amplitude = 3 }")
+assert(e.ramp{}(vector{ 1, 2 }) == vector{ 1, 2 } and tostring(e.constant(3)) == "excitation.constant{ amplitude = 3 }")
 -- The names of before lead to the new ones.
 for wanted, call in pairs{ amplitude = function() e.step{ level = 1 } end, sigma = function() e.gaussian{ at = 1, width = 1 } end,
     duration = function() e.ramp{ width = 1 } end } do
     fails(call, "did you mean '" .. wanted .. "'?")
 end
 support.has(e.relay{ on = 1, off = 2, amplitude = 3 }, "amplitude = { 3, -3 }")
-assert(e.step{}(0) == 1 and e.step{ amplitude = 5, at = 2 }(1.9) == 0 and e.step{ amplitude = 5, at = 2 }(2) == 5)
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
-assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2)
-assert(e.gaussian{ amplitude = 2, at = 3, sigma = 0.5 }(3) == 2)
-near(e.gaussian{ at = 1, sigma = 0.5 }(2), math.exp(-2))
-assert(e.ramp{}(7) == 7 and e.ramp{ slope = 2, at = 1, duration = 3 }(9) == 6)
-assert(e.square{ period = 2 }(1) == -1 and e.square{ frequency = 0.5, duty = 0.75 }(1) == 1)
-assert(e.sawtooth{ period = 2 }(1) == 0 and e.triangle{ frequency = 0.25 }(1) == 1)
+assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2 and e.ramp{}(7) == 7)
 near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi))
 near(e.exponential{ amplitude = 2, tau = 0.5, at = 1 }(2), 2 * math.exp(-2))
-assert(e.polynomial{ coefficients = { 1, 2, 3 }, at = 1 }(3) == 17)
-assert(e.polynomial{ coefficients = vector{ 1, 2 } }(3) == 7)
-assert(e.samples{ t = { 0, 2 }, M = { 1, 5 } }(0.5) == 2)
+assert(e.polynomial{ coefficients = vector{ 1, 2, 3 }, at = 1 }(3) == 17)
 assert(e.samples{ t = vector{ 0, 2 }, M = vector{ 1, 5 } }(3) == 5)
 
 -- e:value and e(t) are the same; breaks are told; a block is what its values are.
 local train = e.pulse{ at = 0.3, width = 0.5 } + e.pulse{ at = 2, width = 0.5 }
-assert(train:value(0.4) == 1 and train(0.4) == 1 and train(1) == 0)
 assert(train:next_break(0) == 0.3 and train:next_break(0.3) == 0.8 and train:next_break(2.5) == math.huge)
-assert(train:values{ 0, 0.5, 1, 2 } == vector{ 0, 1, 0, 1 } and train:values(vector.linspace(0, 2, 5)):sum() == 2)
+assert(train:values{ 0, 0.5, 1, 2 } == vector{ 0, 1, 0, 1 })
 
 -- Operators, with numbers and functions on either side.
 local step = e.step{}
 local double = function(t) return 2 * t end
-assert((step + 2)(1) == 3 and (2 + step)(1) == 3 and (step + double)(3) == 7 and (double + step)(3) == 7)
-assert((step - 2)(1) == -1 and (2 - step)(1) == 1 and (double - step)(3) == 5)
-assert((3 * step)(1) == 3 and (step * 3)(1) == 3 and (step / 4)(1) == 0.25 and (-step)(1) == -1)
+assert((2 + step)(1) == 3 and (double + step)(3) == 7 and (step - 2)(1) == -1 and (double - step)(3) == 5 and (step * 3)(1) == 3)
 assert((2 * (step + double - 1) / 4)(3) == 3)
 assert(step(1) == 1, "the operands stay as they are")
 fails(function() return step * step end, "excitation_test.lua:" .. line() .. ": ", "multiplied by a number only, got an excitation")
@@ -67,7 +53,6 @@ fails(function() return step + math.huge end, "must be finite, got inf")
 
 -- Delay and window, in either order.
 assert((step + double):delay(1)(3) == 5)
-assert(e.ramp{}:window(1, 3)(0.5) == 0 and e.ramp{}:window(1, 3)(2) == 2)
 assert(e.ramp{}:window(0, 3):delay(2)(4) == 2 and e.ramp{}:delay(2):window(0, 3)(4) == 0)
 assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
 fails(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
@@ -180,7 +165,6 @@ local again = rebuilt(all)
 local times = vector.linspace(-1, 5, 601)
 assert(again:values(times) == all:values(times))
 for _, at in ipairs{ -1, 0, 0.3, 0.8, 1, 2.5 } do assert(again:next_break(at) == all:next_break(at)) end
-assert(tostring(0.5 * e.step{ at = 2 }) == "0.5 * excitation.step{ amplitude = 1, at = 2 }")
 assert(tostring(-e.step{} - e.step{} * 2) ==
        "-excitation.step{ amplitude = 1, at = 0 } - 2 * excitation.step{ amplitude = 1, at = 0 }")
 assert(tostring(e.scripted(math.sin)) == "excitation.scripted(math.sin)")

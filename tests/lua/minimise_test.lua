@@ -26,15 +26,6 @@ test("the least value of two parameters is found, in a valley that turns, too", 
     near(best.b, 2, 1e-6)
 end)
 
-test("the resonance of a damped oscillator, and the damper that is best for it", function()
-    local sys = nondimensional{ zeta = 0.1 }
-    local best = minimise{ over = { r = { 0.2, 2 } }, run = function(p)
-        return -sys:steady{ M = excitation.harmonic{ frequency = p.r } }.amplitude
-    end }
-    near(best.r, math.sqrt(1 - 2 * 0.1 ^ 2), 1e-6)
-    near(-best.value, 1 / (0.2 * math.sqrt(1 - 0.1 ^ 2)), 1e-9)
-end)
-
 test("what is wrong with the call is told", function()
     local function run() return 1 end
     support.refuses(minimise, {

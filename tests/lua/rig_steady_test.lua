@@ -60,17 +60,6 @@ test("a chain that rubs: the motion of a long run, with all that sticks", functi
     assert(s.multipliers[1].abs < 1)
 end)
 
-test("squeal of a mass that drags another one along: the cycle of a long run", function()
-    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.02, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },
-        links = { rod = { "a", "b", k = 2, C = 0.1 } } }
-    local s = rig:steady { belt = { a = 0.1 }, theta0 = { a = 0.3 } }
-    equal(s.status, "steady")
-    local long = rig:simulate { belt = { a = 0.1 }, theta0 = { a = 0.3 }, t_end = 400 }
-    near(s.period, since(long, "stick", 1), 1e-9)
-    equal(s.a.stops, 1)
-    equal(#s.multipliers, 3)
-end)
-
 test("a drill string sticks and slips while it goes round", function()
     local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
         links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }

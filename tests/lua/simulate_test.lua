@@ -3,7 +3,6 @@ local support = require "support"
 local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
 
 local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
-local two_pi = 2 * math.pi
 
 test("rows stand exactly on the grid, and the last one exactly at t_end", function()
     local run = nd:simulate { t_end = 1, dt = 0.3 }
@@ -75,16 +74,6 @@ test("the default integrator is exact where that takes M, else spectral", functi
     equal(tostring(nd:simulate { M = chirp, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
     raises_here(function() nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
       "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}")
-end)
-
-test("dinal1989 with its slip reproduces the printed numbers of chapter 6", function()
-    local function at_half(options)
-        local sys = system { I = 1, k = 39.48 } -- the report's rounded 4 pi^2
-        return sys:simulate { theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989(options) }.theta[2]
-    end
-    near(at_half { h = 0.1, slip = true }, -1.0143600, 5e-8)
-    near(at_half { h = 0.01, slip = true }, -1.0000161, 5e-8)
-    near(at_half { h = 0.1 }, -0.997964, 5e-7)
 end)
 
 test("t_start shifts the window, and nothing is recorded as an event there", function()

