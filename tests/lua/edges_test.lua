@@ -105,20 +105,6 @@ test("a mass at rest waits for a slow load as long as that takes", function()
     near(run.events[1].t, slip, 1e-3) -- a few roundings of such a time
 end)
 
-test("a mass that the support shakes too little comes to rest for good, as under the load that it is", function()
-    local sys = system { I = 2, k = 1, Rd = 0.3, Re = 0.5 }
-    local shaking = excitation.harmonic { amplitude = 0.1, omega = 1.3 } -- 0.2 as a load
-    local task = { theta0 = 0.9, t_end = 20, dt = 1 }
-    task.M = -2 * shaking
-    local loaded = sys:simulate(task)
-    task.M, task.base = nil, shaking
-    local shaken = sys:simulate(task)
-    equal(loaded.outcome, "at rest")
-    equal(shaken.outcome, "at rest")
-    equal(shaken.events[#shaken.events].kind, "rest")
-    near(shaken.events[#shaken.events].t, loaded.events[#loaded.events].t, 1e-12)
-end)
-
 test("a state that does not exist is neither read nor written", function()
     local function states() return { n = { rate = function() return 0 end } } end
     raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")
@@ -140,18 +126,6 @@ test("a feedback in single precision is noise, not a stair of ten million steps"
     near(run.theta[2], smooth.theta[2], 6e-8 / 40 * 2) -- the rounding of M over k, and its resonance
 end)
 
-test("what follows lines and powers of t late is left to spectral, which says the same as exact", function()
-    local late = nondimensional { zeta = 250, friction_ratio = 0.01 }
-    for _, M in ipairs { excitation.polynomial { coefficients = { 0, 0.1, -0.01 } }, excitation.triangle { frequency = 0.3 } } do
-        local task = { M = M, theta0 = 1, t_end = 5, dt = 5 }
-        local run = late:simulate(task)
-        equal(tostring(run.integrator), "integrator.spectral{}")
-        task.integrator = integrator.exact {}
-        near(run.theta[2], late:simulate(task).theta[2], 1e-11)
-    end
-    equal(tostring(late:simulate { M = excitation.harmonic { frequency = 1 }, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
-end)
-
 test("an exponential that outgrows the motion is followed at once", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.3 }
     local M = excitation.exponential { tau = -0.02, amplitude = 1e-3 }
@@ -163,17 +137,11 @@ test("an exponential that outgrows the motion is followed at once", function()
     end
     -- The exponential itself is a number where exp(x) is none, and nothing times any of them is nothing.
     near(excitation.exponential { amplitude = 1e-300, tau = -1 }(750)/(math.exp(375)*1e-300*math.exp(375)), 1, 1e-14)
-    equal(excitation.exponential { amplitude = 0, tau = -1 }(1e10), 0.0)
-    equal(sys:simulate { M = excitation.exponential { amplitude = 0, tau = -1e-3 }, theta0 = 1, t_end = 5, dt = 5 }.outcome, "at rest")
     -- It comes to an end where M does.
     local run = sys:simulate { M = M, t_end = 1e9, dt = 1e8 }
     assert(#run == 1, run.outcome)
     has(run.outcome, "finite")
-    -- The motion is too great before its fourth derivative is.
-    local slow = excitation.exponential { amplitude = -1.5, tau = -1.766 }
-    run = system { I = 1.8, k = 1.6, C = 1.2, Rd = 1.8 }:simulate { M = slow, theta0 = -1.25, velocity0 = -1.5, t_end = 1e12, dt = 1e11, integrator = integrator.exact {} }
-    assert(#run == 1, run.outcome)
-    has(run.outcome, "finite")
+
 end)
 
 support.finish()

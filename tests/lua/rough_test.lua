@@ -1,7 +1,7 @@
 -- Functions with noise in them, in runs with more in them: what ends such a run says what is rough, and what goes on.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, near = support.test, support.near
+local test, near, equal = support.test, support.near, support.equal
 
 -- A number within 1 that depends on t alone, and not smoothly anywhere.
 local function noise(t)
@@ -52,46 +52,24 @@ for who, options in pairs(noisy) do
     end)
 end
 
--- Runs whose M has this much noise.
-local followed = {
-    ["a state"] = function(size)
-        return sys:simulate {
-            M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u + size * noise(t) end, velocity0 = 1,
-            states = { u = { rate = function(_, theta, _, z) return theta - z.u end } }, t_end = 12, dt = 0.5,
-        }
-    end,
-    ["an idle event"] = function(size)
-        return sys:simulate {
-            M = function(t) return math.sin(0.7 * t) + size * noise(t) end, velocity0 = 1, t_end = 12, dt = 0.5,
-            events = { { when = function(_, theta) return theta - 100 end } },
-        }
-    end,
-    ["two bodies"] = function(size)
+test("noise in M is followed as exactly as it can be, also with two bodies", function()
+    local function run(size)
         local rig = system {
             bodies = { a = { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, b = { I = 1, k = 2, Rd = 0.1 } },
             links = { c = { "a", "b", k = 0.5 } },
         }
-        local run = rig:simulate {
-            M = { a = function(t) return math.sin(0.7 * t) + size * noise(t) end }, velocity0 = { a = 1 },
-            t_end = 12, dt = 0.5,
-        }
-        return setmetatable({ theta = run.a.theta }, { __index = run, __len = function() return #run end })
-    end,
-}
-
-for what, run in pairs(followed) do
-    test("noise in M is followed as exactly as it can be, with " .. what, function()
-        local clean = run(0)
-        assert(clean.outcome == "reached the end", clean.outcome)
-        for _, size in ipairs { 1e-11, 1e-9, 1e-8 } do
-            local found = run(size)
-            assert(#found == #clean, found.outcome)
-            local said = tonumber(found.outcome:match("within the noise of M, (%S+)"))
-            assert(said and said > size / 30 and said < 10 * size, found.outcome)
-            -- A constant error of that size would move the mass by its own size over k.
-            near((found.theta - clean.theta):abs():max(), 0, size)
-        end
-    end)
-end
+        local M = { a = function(t) return math.sin(0.7 * t) + size * noise(t) end }
+        return rig:simulate { M = M, velocity0 = { a = 1 }, t_end = 12, dt = 0.5 }
+    end
+    local clean = run(0)
+    equal(clean.outcome, "reached the end")
+    for _, size in ipairs { 1e-11, 1e-9, 1e-8 } do
+        local found = run(size)
+        local said = tonumber(found.outcome:match("within the noise of M, (%S+)"))
+        assert(said and said > size / 30 and said < 10 * size, found.outcome)
+        -- A constant error of that size would move the mass by its own size over k.
+        near(found.a.theta, clean.a.theta, size)
+    end
+end)
 
 support.finish()
