@@ -284,7 +284,7 @@ test("some columns can be saved, and what is rough is told", function()
     support.has_not(run.outcome, "rk4")
 end)
 
-test("two equal chains are one, a constant normal load is in Rd, and units that are powers of two change no bit", function()
+test("a constant normal load is in Rd, and units that are powers of two change no bit", function()
     local M = function(t) return 2 * math.sin(1.3 * t) end
     local function chain(scale, time)
         scale, time = scale or 1, time or 1
@@ -293,19 +293,10 @@ test("two equal chains are one, a constant normal load is in Rd, and units that 
             links = { rod = { "a", "b", k = torque(2), C = torque(0.125) * time } } }
     end
     local single = chain():simulate { M = { a = M }, t_end = 20, dt = 0.25 }
-    local bodies, links = {}, {}
-    for i = 1, 2 do
-        bodies["a" .. i], bodies["b" .. i] = { I = 1, k = 4, Rd = 0.3, Re = 0.4 }, { I = 0.5 }
-        links["rod" .. i] = { "a" .. i, "b" .. i, k = 2, C = 0.125 }
-    end
-    local twin = system { bodies = bodies, links = links }:simulate { M = { a1 = M, a2 = M }, t_end = 20, dt = 0.25 }
     local scaled = chain(2 ^ 20, 2 ^ -3):simulate { M = { a = function(t) return 2 ^ 20 * M(8 * t) end }, t_end = 2.5, dt = 0.25 / 8 }
     equal(#scaled.events, #single.events)
-    for _, name in ipairs { "a", "b" } do
-        near(twin[name .. 1].theta, single[name].theta, 1e-12)
-        equal(twin[name .. 1].theta, twin[name .. 2].theta)
-        equal(scaled[name].theta, single[name].theta)
-    end
+    equal(scaled.a.theta, single.a.theta)
+    equal(scaled.b.theta, single.b.theta)
     local function normal(load, Rd, Re)
         return system { bodies = { a = { I = 1, k = 4, Rd = Rd, Re = Re, normal = load } } }:simulate { M = { a = M }, t_end = 20, dt = 0.25 }
     end

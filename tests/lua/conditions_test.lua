@@ -122,22 +122,4 @@ test("digits that somebody cuts off are noise, not conditions", function()
     support.says(run, "which are sampled")
 end)
 
-test("rates of states and functions of several bodies are read as well", function()
-    local rate = function(_, theta, _, z) return (theta > 0.1 and 1 or -1) - 0.5 * z.z end
-    local function go(f)
-        return system { I = 1, k = 4, C = 0.1 }:simulate {
-            M = function(t, _, _, z) return 0.2 * z.z + math.sin(t) end, t_end = 10, states = { z = { start = 0, rate = f } },
-        }
-    end
-    near(go(rate).theta, go(unread(rate)).theta, 1e-9)
-    local function rig(f)
-        return system { bodies = { a = { I = 1, k = 4 }, b = { I = 2, k = 3, Rd = 0.1, Re = 0.2 } }, links = { l = { "a", "b", k = 2 } } }
-            :simulate { M = { a = f }, theta0 = { b = 0.5 }, t_end = 10 }
-    end
-    local f = function(t, theta, velocity) return theta.b > 0.2 and math.sin(t) or -0.2 * velocity.a end
-    local x, y = rig(f), rig(unread(f))
-    near(x.a.theta, y.a.theta, 1e-9)
-    equal(#x.events, #y.events)
-end)
-
 support.finish()

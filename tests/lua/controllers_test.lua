@@ -37,25 +37,6 @@ test("a sampled controller is called once an instant, in order, and is late by i
     near(run.events[2].theta, 0.375, 1e-14)
 end)
 
-test("a relay makes the limit cycle of circles about its two places", function()
-    -- Without damping and friction the motion under level m is a circle about m in (theta, velocity).
-    local run = system{ I = 1, k = 1 }:simulate{ M = excitation.relay{ on = -0.1, off = 0.1, amplitude = { 0.4, -0.4 } }, theta0 = -0.05, velocity0 = 0.5,
-        t_end = 40, dt = 0.25 }
-    local t, theta, v, level, switches = 0, -0.05, 0.5, 0.4, 0
-    for _, event in ipairs(run.events) do
-        local radius, phase = math.sqrt((theta - level)^2 + v^2), math.atan(v, theta - level)
-        local limit = level > 0 and 0.1 or -0.1
-        local x = event.kind == "switch" and (limit - level)/radius or (event.theta > level and 1 or -1)
-        local way = math.abs(x) == 1 and x or (level > 0 and 1 or -1)  -- a switch is met on the way up under 0.4
-        t = t + (phase - way*math.acos(x)) % (2*math.pi)
-        near(event.t, t, 1e-12)
-        theta, v = level + radius*x, event.kind == "switch" and way*radius*math.sqrt(1 - x*x) or 0
-        near(event.theta, theta, 1e-13)
-        if event.kind == "switch" then level, switches = -level, switches + 1 end
-    end
-    assert(switches > 10)
-end)
-
 test("a stiff state, the lag of an actuator, costs no accuracy", function()
     -- On the motion cos(t) the lagged -velocity/2 is u = sin(t)/2, and the sine beside it closes the equation of motion.
     local lag = 6e-4  -- 1e-4 T0

@@ -139,8 +139,6 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
         { function(t) return 1 + 2 * math.sin(3 * t + 0.3) - math.cos(2 * t) / 2 + math.sin(2 * (t - 1)) end, 2 * math.pi },
         { function(t) return math.cos(-w * t + 1) * 2 - (t - t) + 0.25 ^ 2 end, 2 * math.pi / 3 },
         { function(t) return 3 * math.exp(-t / 2) + 0.1 * t - 0.01 * t ^ 2 + (1 - t) * (2 + t) / 50 end },
-        { function() return 3 end },
-        { function(t) return t % 2 < 1 and 1 or -1 end, 2 },
         { function(t) return t % 2 < 0.7 and 2 or t % 2 < 1.1 and 0.5 or -1 end, 2 },
         { function(t) return math.floor(t / 0.5) % 3 end, 1.5 },
         { function(t) return math.max(0, math.sin(3 * t)) end, 2 * math.pi / 3 },
@@ -149,7 +147,7 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
     }
     for i, case in ipairs(cases) do
         local f, period = case[1], case[2]
-        local within = i < 6 and 1e-12 or 1e-9
+        local within = i < 5 and 1e-12 or 1e-9
         local function run(M, integrator, t_end)
             return sys:simulate { M = M, t_start = -1, t_end = t_end or 20, dt = 0.1, theta0 = 0.5, integrator = integrator }
         end
@@ -160,7 +158,6 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
         near(found.theta, sampled.theta, within)
         assert(found.gap == nil)
         support.says(found, "sum of native terms")
-        equal(tostring(run(f, integrator.spectral {}).integrator), "integrator.spectral{}")
         equal(run(f, integrator.exact {}).theta, found.theta)
         near((run(f, nil, 8):continue { t_end = 20 }:at(20)), (found:at(20)), 1e-13)
         if period then
@@ -212,21 +209,23 @@ test("theta, velocity and states come in, and a run is the same to the last bit"
 end)
 
 -- A law that is read goes on below speed 0 as its formula does, one that is called with a bend: stretches differ.
-test("functions of several bodies, and of the speed, are read: a run is the same to rounding", function()
-    local M = function(t, theta, velocity, z) return math.sin(2 * t) - 0.3 * theta.b + 0.1 * velocity.a - 0.2 * z.e end
+test("functions of several bodies, of the speed, and rates of states are read, with their conditions: a run is the same to rounding", function()
+    local M = function(t, theta, velocity, z)
+        return (theta.b > 0.2 and math.sin(2 * t) or -0.3 * theta.b) + 0.1 * velocity.a - 0.2 * z.e
+    end
     local friction = function(speed, t, theta, velocity) return 0.3 + 0.1 * speed + 0.05 * theta.a * velocity.b end
     local alone = function(speed, t, theta) return 0.3 + 0.1 * speed + 0.05 * math.sin(theta) end
     local function rig(of)
         local run = system { bodies = { a = { I = 1, k = 4 }, b = { I = 2, k = 3, friction = of(friction), Re = 0.5 } },
             links = { l = { "a", "b", k = 2 } } }:simulate { M = { a = of(M) }, theta0 = { b = 0.8 }, t_end = 10, dt = 0.1,
-            states = { e = { start = 0.1, rate = of(function(_, theta, _, z) return theta.a - z.e end) } } }
+            states = { e = { start = 0.1, rate = of(function(_, theta, _, z) return (theta.a > 0.1 and 1 or -1) - z.e end) } } }
         local one = system { I = 1, k = 4, friction = of(alone), Re = 0.5 }:simulate { theta0 = 2, t_end = 10, dt = 0.1 }
         return run, one
     end
     local x, one = rig(function(f) return f end)
     local y, other = rig(support.unread)
-    near(x.a.theta, y.a.theta, 1e-12)
-    near(x.b.velocity, y.b.velocity, 1e-12)
+    near(x.a.theta, y.a.theta, 1e-11)
+    near(x.b.velocity, y.b.velocity, 1e-11)
     near(one.theta, other.theta, 1e-12)
     equal(#x.events, #y.events)
     assert(#x.events > 3 and #one.events > 3)

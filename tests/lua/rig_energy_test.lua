@@ -87,20 +87,13 @@ test("energy over time: of all, and of one body or link as of a system of one bo
     end
     near(e.error:abs():max(), 0, 1e-11)
     near(e.kinetic[last] + e.spring[last] - e.kinetic[1] - e.spring[1], e.total.kinetic + e.total.spring, 1e-12)
-    local a, rod = run.a:energy(), run.rod:energy()
-    equal(#a.t, last)
-    equal(a.error, nil)
-    equal(e.t[2], run.t[2])
-    near(rod.kinetic:max(), 0, 0)
+    local a = run.a:energy()
     local dry, others = 0, 0
     for _, half in ipairs(a.half_cycles) do dry, others = dry + half.dry, others + half.others end
     near(dry, a.total.dry, 1e-11)
     near(others, a.total.others, 1e-11)
     assert(#a.half_cycles > 5)
     support.has(a, "work of its links on it")
-    local varying = system { I = 1, k = 1, Rd = 0.12, normal = function() return 1 end }:simulate { theta0 = 1, t_end = 20 }:energy()
-    near(varying.half_cycles[1].dry, 0.2112, 1e-12)
-    near(varying.dry[1001], 0.4992, 1e-12)
 end)
 
 test("a run is told in sentences", function()

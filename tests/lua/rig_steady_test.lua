@@ -167,11 +167,6 @@ test("the response of a chain has the columns of its bodies, and follows at", fu
         near(c["b.amplitude"][i], b, 1e-10)
     end
     equal(c.status[2], "steady")
-    c = chain():response { over = { C = { 0.1, 0.2 } }, at = function(p)
-        return { system = system { bodies = { a = { I = 1, k = 1, C = p.C }, b = { I = 2, k = 1 } }, links = { rod = { "a", "b", k = 3 } } }, M = { a = sine(1.3) } }
-    end }
-    near(c["a.amplitude"][1], amplitudes(1.3), 1e-10)
-    assert(c["a.amplitude"][2] ~= c["a.amplitude"][1])
     local map = chain():response { over = { M0 = { 1, 2, 3 }, omega = { 0.5, 1.5 } }, at = function(p) return { M = { a = p.M0 * sine(p.omega) } } end }
     equal(tostring(map.M0), "vector{ 1, 1, 2, 2, 3, 3 }")
     for i = 1, #map do near(map["b.amplitude"][i], map.M0[i] * select(2, amplitudes(map.omega[i])), 1e-9) end

@@ -23,9 +23,7 @@ test("a column outlives its run", function()
         collectgarbage()
         nd:simulate { theta0 = 2, t_end = 1, dt = 0.001 }
     end
-    for i = 1, #theta do
-        equal(theta[i], copy[i])
-    end
+    equal(theta, vector(copy))
 end)
 
 test("run:columns picks by name or number", function()
@@ -39,19 +37,11 @@ test("run:columns picks by name or number", function()
 end)
 
 test("a run is data with more, and events always have a velocity", function()
-    local picked = run:select("t", "theta")
-    equal(picked.theta, run.theta)
-    equal(run:column "velocity", run.velocity)
-    equal(#run:filter(function(row) return row.t > 1 end), #run - #run:filter(function(row) return row.t <= 1 end))
+    equal(run:select("t", "theta").theta, run.theta)
     equal(run:sort("theta").theta[1], run.theta:min())
     equal(run[2].t, run.t[2])
     equal(run[#run + 1], nil)
-    local rows = 0
-    for i, row in ipairs(run) do
-        rows = rows + 1
-        equal(row.theta, run.theta[i])
-    end
-    equal(rows, #run)
+    for i, row in ipairs(run) do equal(row.theta, run.theta[i]) end
     assert(run:markdown():find("| t, T0 | theta, Mc/k |", 1, true) == 1)
     equal(run.events.velocity, 0 * run.events.t)
     equal(run:spectrum("velocity").amplitude, run:spectrum{ of = "velocity" }.amplitude)
@@ -248,9 +238,9 @@ test("the acceleration is the derivative of the velocity, and 0 at rest", functi
         local r = sys:simulate(options)
         local a = r.acceleration
         equal(#a, #r)
-        local off = {}
-        for i = 2, #r - 1, 50 do off[#off + 1] = math.abs(a[i] - (r.velocity[i + 1] - r.velocity[i - 1]) / 2e-4) end
-        assert(vector(off):quantile(0.95) < 1e-6, vector(off):quantile(0.95)) -- where friction jumps no difference tells
+        local differences = (r.velocity:slice(3) - r.velocity:slice(1, #r - 2)) / 2e-4
+        local off = (a:slice(2, #r - 1) - differences):abs()
+        assert(off:quantile(0.95) < 1e-6) -- where friction jumps no difference tells
     end
     local stuck = system{ I = 1, k = 4, Rd = 1 }:simulate{ M = 0.5, t_end = 1 }
     equal(stuck.acceleration:max(), 0.0)
