@@ -60,6 +60,7 @@ test("what is wrong with a response is told", function()
     local function empty() return {} end
     support.refuses(function(o) sys:response(o) end, {
         { { over = { 1, 2 } }, "over[1] must be a name and its values" },
+        { { over = {} }, "over must be a name and its values" },
         { { over = { frequency = { "a" } } }, "over.frequency must be a list of numbers" },
         { { over = { frequency = {} } }, "frequency has no values" },
         { { over = { frequency = 3 } }, "over.frequency must be a vector or a table" },
