@@ -151,7 +151,7 @@ def lua_tests_can_fail():
         if re.search(r"tests/lua/\w+_test\.lua$", path) and any(re.match(r"test\(", line) for _, line in lines(path)):
             said = [line for _, line in lines(path) if line.strip()]
             if "finish()" not in said[-1]:
-                complain(path, len(lines(path)), "a file of tests ends with support.finish()")
+                complain(path, len(lines(path)), "a file of tests ends with finish()")
 
 
 def tests_are_namespaces():

@@ -1,8 +1,6 @@
 -- What a user does at his events, and what comes at the same instant as something else: where things end that rounding
 -- must not decide.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0 }
 local methods = { integrator.spectral {}, integrator.rk4 { h = 0.01 } }
@@ -60,11 +58,11 @@ test("bounces by act that die out end the run with what to do, and never fall th
         for _, direction in ipairs { "down", "both" } do
             for kept, most in pairs { [0.9] = 1e-3, [0.5] = 1e-4, [0.01] = 1e-4, [1e-5] = 1e-4, [0] = 1e-4 } do
                 local run = fall(function(_, theta, v) return theta, -kept * v end, 100, method, direction)
-                support.has(run.outcome, "endlessly", "walls")
+                has(run.outcome, "endlessly", "walls")
                 -- the sum of the bounces; the last ones, 1e-5 of the first, are not waited for
                 near(run.events[#run.events].t, math.sqrt(3) * (1 + 2 * kept / (1 - kept)), most)
                 assert(run.theta:min() >= 0.1 - 1e-12)
-                support.says(run, "bounces made by act never come to rest")
+                says(run, "bounces made by act never come to rest")
             end
         end
     end
@@ -90,7 +88,7 @@ test("what an act stops may stick there, go back, or be carried on by time", fun
         near(clock.theta[#clock], 1.05 + 0.05 * 2 ^ 2, 1e-12)
         -- a stop that does not hold is not for ever
         local slips = stopped(dry, { velocity0 = 1, M = excitation.ramp { slope = 0.05 } })
-        support.has(slips.outcome, "endlessly")
+        has(slips.outcome, "endlessly")
         near(slips.t_end, 2, 1e-6)
         near(slips.theta:max(), 0.5, 1e-13)
     end
@@ -190,4 +188,4 @@ test("an event at a flat zero is at that zero", function()
     near(run.events[1].t, 1, 1e-15)
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- run:animate into files, and what it says where there is nothing to show it on; tests/prompt/animate_test.py has a terminal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises_here, has = support.test, support.equal, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }
 local run = sys:simulate{ theta0 = 1, t_end = 10, times = {} }
@@ -17,9 +15,9 @@ local function values(svg, kind)
     return lists
 end
 local function animated(of, options)
-    options.file = support.temporary ".svg"
+    options.file = temporary ".svg"
     of:animate(options)
-    return support.read(options.file)
+    return read(options.file)
 end
 
 test("the mass of an SVG is where run:at says, at equal steps of time", function()
@@ -35,7 +33,7 @@ test("the mass of an SVG is where run:at says, at equal steps of time", function
     for i = 1, 126 do right = math.min(right, tonumber(mass[i])) end
     for i = 1, 126 do
         local part = (run:at((i - 1) * 10 / 125) - low) / (high - low)
-        support.near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
+        near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
     end
     has(svg, 'dur="5.000s"', 'role="img"')
     assert(svg:match("<desc>.-</desc>"):find("Below, θ from %S+ to %S+ over t from 0 to 10%."), "the axes in words")
@@ -45,7 +43,7 @@ test("it is another colour while it sticks, from when to when the events say", f
     local svg = animated(run, {})
     local times = svg:match('keyTimes="([^"]*)"')
     local stick = run.events[#run.events].t  -- it comes to rest
-    support.near(tonumber(times:match "[^;]+$"), stick / 10, 1 / 250)
+    near(tonumber(times:match "[^;]+$"), stick / 10, 1 / 250)
     equal(select(2, times:gsub(";", "")) + 1, #values(svg, 'attributeName="fill')[1])
 end)
 
@@ -57,18 +55,18 @@ test("a belt moves, walls and springs are there if the system has them", functio
     local first, last = tonumber(belt[1]), tonumber(belt[#belt])
     equal(first, 0)
     assert(last > 0)
-    support.near(tonumber(belt[6]), last * 5 / (#belt - 1), 0.11)  -- evenly
+    near(tonumber(belt[6]), last * 5 / (#belt - 1), 0.11)  -- evenly
     equal(#values(svg, 'attributeName="points'), 0)
     equal(#values(animated(run, {}), 'attributeName="points')[1], 251)
     has(svg, "between walls")
-    support.has_not(animated(run, {}), "patternTransform")
+    has_not(animated(run, {}), "patternTransform")
 end)
 
 test("the axis ends at the extremes of the run, which lie between two steps of the animation", function()
     local swing = system{ I = 1, k = 4, Rd = 0.26, Re = 0.5 }:simulate{ theta0 = 1, t_end = 8, dt = 0.001 }
     local least = swing.events[1].theta
-    support.near(least, -0.87, 1e-12)
-    local file = support.temporary ".csv"
+    near(least, -0.87, 1e-12)
+    local file = temporary ".csv"
     swing:save(file)
     for _, one in ipairs{ swing, load(file) } do
         for _, part in ipairs{ { speed = 8/0.32 }, { speed = 8/0.4, from = 0, to = 8 } } do  -- some ten steps
@@ -77,14 +75,14 @@ test("the axis ends at the extremes of the run, which lie between two steps of t
         end
     end
     local later = animated(swing, { from = 3, to = 8, speed = 20 })  -- the turn is not in this part
-    support.has_not(later, ">-0.87</text>")
+    has_not(later, ">-0.87</text>")
 end)
 
 test("a part of a run, a run from a file, units", function()
     local part = animated(run, { from = 2, to = 4, speed = 1 })
     has(part, "t = 2 to 4")
     equal(#values(part, 'type="translate')[1], 51)
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }:save(file)
     assert(animated(load(file), {}):find "</svg>")
     has(animated(run, { units = { theta = "<m>", t = "s" } }), "θ, &lt;m&gt;")
@@ -92,7 +90,7 @@ end)
 
 test("what cannot be shown is said", function()
     raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
-    support.refuses(function(o) run:animate(o) end, {
+    refuses(function(o) run:animate(o) end, {
         { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
         { { file = "x.svg", speed = 0 }, "speed", "positive" },
         { { file = "x.svg", speed = 1e-6 }, "give a greater speed" },
@@ -103,4 +101,4 @@ test("what cannot be shown is said", function()
     })
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- The axes of pictures of a run: one for each unit, with the unit that the user says.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, raises_here, has, has_not = support.test, support.raises_here, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
 local metres = { theta = "m", t = "s" }
 local sys = system{ I = 1, k = 4, Rd = 0.1 }
@@ -45,4 +43,4 @@ test("a spectrum is drawn over decades, a response near a pole up to where most 
     has(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }), "theta'")
 end)
 
-support.finish()
+finish()

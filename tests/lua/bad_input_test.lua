@@ -1,10 +1,8 @@
 -- Wrong values get a sentence with the value, the limit and the user's line; simulate_test.lua has those of simulate.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises_here = support.test, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 test("a system that cannot exist is refused with the parameter and its value", function()
-    support.refuses(system, { -- option_rows_test.lua has those of one option alone
+    refuses(system, { -- option_rows_test.lua has those of one option alone
         { { I = 0, k = 1 }, "system: I = 0 must be positive" },
         { { I = 1, k = 1, Rd = 2, Re = 1 }, "Re = 1 must be at least Rd = 2" },
         { { I = 1e-300, k = 1e300 }, "too far apart" },
@@ -14,7 +12,7 @@ test("a system that cannot exist is refused with the parameter and its value", f
 end)
 
 test("a missing parameter is named, with an example", function()
-    support.refuses(system, {
+    refuses(system, {
         { { I = 1 }, "system needs k, for example system{ I = 1, k = 39.5" },
         { {}, "system needs I" },
     })
@@ -25,10 +23,10 @@ test("a missing parameter is named, with an example", function()
 end)
 
 test("a misspelt parameter gets a suggestion and the list", function()
-    support.refuses(system, {
+    refuses(system, {
         { { i = 1, k = 1 }, "system has no option 'i' among I, k, C, Rd, Re, friction, normal, spring, walls, bodies, links and units; did you mean 'I'?" },
     })
-    support.refuses(nondimensional, {
+    refuses(nondimensional, {
         { { zetta = 1 }, "did you mean 'zeta'?" },
         { { friction = 1 }, "did you mean 'friction_ratio'?" },
     })
@@ -69,7 +67,7 @@ test("errors of a call through pcall and in a tail call still tell a line", func
     raises_here(tail, "system: I = 0")
     local ok, message = pcall(system, { I = 0, k = 1 })
     assert(not ok, message)
-    support.has(message, "system: I = 0")
+    has(message, "system: I = 0")
 end)
 
-support.finish()
+finish()

@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here, has = support.test, support.near, support.equal, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local function first(run, kind, where)
     for _, e in ipairs(run.events) do
@@ -237,7 +235,7 @@ test("mistakes are named with the body or link, and the nearest name", function(
     local memory = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
     has(memory.outcome, "evaluated again")
     local function relay(of) return excitation.relay { on = -0.1, off = 0.1, amplitude = 1, of = of } end
-    support.refuses(system, {
+    refuses(system, {
         { { bodies = { a = { I = 1, q = 3 } } }, "bodies.a has no option 'q'" },
         { { bodies = { a = { k = 3 } } }, "bodies.a needs I" },
         { { bodies = bodies, I = 1 }, "I is an option of a body" },
@@ -264,24 +262,24 @@ test("mistakes are named with the body or link, and the nearest name", function(
         { { M = { motor = relay "theta.lod" } }, "did you mean 'theta.load'?" },
     } do
         case[1].t_end = 1
-        support.raises(function() rig:simulate(case[1]) end, table.unpack(case, 2))
+        raises(function() rig:simulate(case[1]) end, table.unpack(case, 2))
     end
     local run, nothing = rig:simulate { t_end = 1 }, system { bodies = { a = { I = 1, Rd = 1, normal = function() return 0 / 0 end } } }
     raises_here(function() return run.laod end, "this run has no 'laod'", "did you mean 'load'?")
     raises_here(function() return run.spectrum end, "spectrum is of one body or link: run.load:spectrum")
-    support.raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
+    raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
 end)
 
 test("some columns can be saved, and what is rough is told", function()
     local rig = clutch { Rd = 2 }
     local run = rig:simulate { velocity0 = { motor = 3 }, t_end = 1, dt = 0.5 }
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file, { columns = { "t", "load.theta" } })
     equal(table.concat(load(file).names, " "), "t load.theta")
     run = rig:simulate { M = { load = function(t) return (math.sin(1e9 * t) * 1e4) % 1 end }, t_end = 1 }
     has(run.outcome, "M of load is rough on every scale")
     has(run.outcome, "excitation.sampled")
-    support.has_not(run.outcome, "rk4")
+    has_not(run.outcome, "rk4")
 end)
 
 test("a constant normal load is in Rd, and units that are powers of two change no bit", function()
@@ -349,4 +347,4 @@ test("a body that creeps beside one that swings changes nothing of its motion or
     end
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- What a user's M may do: whatever it is, the outcome is clear and the session goes on.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises, has = support.test, support.near, support.equal, support.raises, support.has
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
 
@@ -144,4 +142,4 @@ test("feedback that pushes at rest and holds in motion ends the run with an outc
     assert(#run > 0 and #run.events < 1000 and run.t[#run] < 5, tostring(run))
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- Conditions on theta, velocity and states in functions that are read: each change of one is located.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, unread = support.test, support.near, support.equal, support.unread
+dofile "tests/lua/support.lua"
 
 test("feedback of the sign of theta: the period of a bang-bang motion is known", function()
     local A, a = 0.5, 1.25
@@ -16,7 +14,7 @@ test("feedback of the sign of theta: the period of a bang-bang motion is known",
         near((run:at((n - 0.5) * T)), -A, 1e-13)
     end
     local story = run:explain():gsub("%s+", " ")
-    support.has(story, "also those on theta, velocity or states, are located")
+    has(story, "also those on theta, velocity or states, are located")
     equal(run.gap, nil)
 end)
 
@@ -111,7 +109,7 @@ test("a jump that drives the motion back from both sides ends the run with a sen
     for _, M in ipairs { f, unread(f) } do
         local run = system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.7, t_end = 40 }
         equal(run.status, "failed")
-        support.has(run.outcome, "switched endlessly")
+        has(run.outcome, "switched endlessly")
         near(run.t_end, 4.8154495, 1e-6)
     end
 end)
@@ -119,7 +117,7 @@ end)
 test("digits that somebody cuts off are noise, not conditions", function()
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
     near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)
-    support.says(run, "which are sampled")
+    says(run, "which are sampled")
 end)
 
-support.finish()
+finish()

@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.01, friction_ratio = 0.4, breakaway_ratio = 0.5 }
 local M = excitation.harmonic { frequency = 0.3, phase = 0.4 }
@@ -11,7 +9,7 @@ local function same_rows(a, b)
     near(a.t, b.t, 0)
     near(a.theta, b.theta, 1e-12 * b.theta:abs():max())
     near(a.velocity, b.velocity, 1e-11 * b.velocity:abs():max())
-    support.same_events(a, b, 1e-11)
+    same_events(a, b, 1e-11)
     equal(a.outcome, b.outcome)
 end
 
@@ -68,10 +66,10 @@ test("what M interrupted goes on to where it should have ended", function()
 end)
 
 test("a run that goes on can be saved, repeated and asked for its energy and story", function()
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
     longer:save(file)
-    support.has(support.read(file), "t_end = 8, dt = 0.1")
+    has(read(file), "t_end = 8, dt = 0.1")
     local total = longer:energy().total
     local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
     near(total.input, whole:energy().total.input, 1e-12)
@@ -126,7 +124,7 @@ test("acts that die out do so at the same time wherever the run went on", functi
         }
     end
     local whole = run(9)
-    support.has(whole.outcome, "endlessly")
+    has(whole.outcome, "endlessly")
     for _, parts in ipairs { { 1, 9 }, { 2.5, 3.5, 3.9, 4, 9 }, { whole.events[4].t, whole.events[7].t, 9 } } do
         local on = run(parts[1])
         for i = 2, #parts do on = on:continue { t_end = parts[i] } end
@@ -139,7 +137,7 @@ end)
 test("wrong uses get a sentence", function()
     local run = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1 }
     raises_here(function() run:continue() end, "reached its end at t = 3", "run:continue{ t_end = 40 }")
-    support.refuses(function(o) run:continue(o) end, {
+    refuses(function(o) run:continue(o) end, {
         { { t_end = 3 }, "t_end = 3 must be after t = 3, where the run ended" },
         { { tend = 4 }, "did you mean 't_end'" },
         { "4", "t_end must be a finite number, got the string" },
@@ -147,17 +145,17 @@ test("wrong uses get a sentence", function()
     })
     equal(run:continue(4).t_end, 4.0)
     local listed = nd:simulate { M = M, theta0 = 2, times = { 1, 3 } }
-    support.refuses(function(o) listed:continue(o) end, {
+    refuses(function(o) listed:continue(o) end, {
         { { times = { 3 } }, "times[1] = 3 must be after t = 3" },
         { { times = { 5, 4 } }, "times[2] = 4" },
         { { times = { 5, 7 }, t_end = 6 }, "times[2] = 7 is outside" },
         { { times = {} }, "reached its end" },
     })
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file)
     local loaded = load(file)
     equal(loaded.t_end, 3.0)
     raises_here(function() loaded:continue { t_end = 5 } end, "read from a file")
 end)
 
-support.finish()
+finish()

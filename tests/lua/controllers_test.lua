@@ -1,7 +1,5 @@
 -- Controllers that hold what they give: between their instants and switches the motion is a damped oscillation about a place.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 test("between the instants of a sampled controller arcs say what panels say, at every damping", function()
     local hair = 1e-12
@@ -19,7 +17,7 @@ test("between the instants of a sampled controller arcs say what panels say, at 
         end
         local arcs, panels = run(), run{ idle = { rate = function() return 0 end } }
         equal(arcs.outcome, panels.outcome, name)
-        support.same_events(panels, arcs, 1e-9, name)
+        same_events(panels, arcs, 1e-9, name)
         near(arcs.theta, panels.theta, 1e-11)
     end
 end)
@@ -47,4 +45,4 @@ test("a stiff state, the lag of an actuator, costs no accuracy", function()
     near(run.states.u, run.t:sin()/2, 1e-10)
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- sys:steady of runs with more in them, and of limit cycles, whose period is found. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here, says = support.test, support.equal, support.near, support.raises_here, support.says
+dofile "tests/lua/support.lua"
 
 local function extent(theta) return (theta:max() - theta:min()) / 2 end
 
@@ -188,4 +186,4 @@ test("a function of the time needs a period, and one that does not depend on it 
         "not a state of this run")
 end)
 
-support.finish()
+finish()

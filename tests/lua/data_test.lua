@@ -1,12 +1,10 @@
 -- Named columns: made, read, picked, sorted, saved and loaded as a user would. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises, raises_here, has = support.test, support.equal, support.raises, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local read = load
 local function load(text)
-    local name = support.temporary ".csv"
-    support.write(name, text)
+    local name = temporary ".csv"
+    write(name, text)
     return read(name), name
 end
 
@@ -39,7 +37,7 @@ end)
 
 test("what is saved reads back to the last bit: gaps, infinities, words that look like numbers", function()
     local d = data{ x = { 1/3, 0/0, -1/0 }, w = { "1.5", "a, \"b\"", "" }, ["a name; #2"] = { 1e-320, -0.0, 1e300 } }
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     d:save(name)
     local back = read(name)
     equal(table.concat(back.names, "|"), table.concat(d.names, "|"))
@@ -87,7 +85,7 @@ test("events are data: columns, rows, save and load", function()
     local run = nondimensional{ friction_ratio = 0.167 }:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 1 }
     local events = run.events
     equal(#events.theta, #events)
-    support.near(events.theta[1], 0.846848608, 1e-9) -- docs/report.md, figure 22
+    near(events.theta[1], 0.846848608, 1e-9) -- docs/report.md, figure 22
     equal(events.kind[#events], "rest")
     equal(events[1].kind, "turn")
     equal(events:filter(function(e) return e.kind == "turn" end).t[1], events[1].t)
@@ -99,7 +97,7 @@ test("a picture of columns", function()
     local d = data{ r = { 1, 2, 3 }, A = { 1, 0/0, 3 }, B = { 2, 2, 2 }, w = { "a", "b", "c" } }
     has(d:plot{ x = "r", y = { "A", "B" }, show = false }, "B")
     has(d:plot{ x = "r", style = "points", title = "T", show = false }, "T")
-    support.refuses(function(o) d:plot(o) end, {
+    refuses(function(o) d:plot(o) end, {
         { { x = "r", y = "w" }, "holds words" },
         { { x = "rr" }, "there is no column 'rr'" },
         { { z = "A", style = "points" }, "style is for curves: leave it out, or z" },
@@ -109,7 +107,7 @@ test("a picture of columns", function()
 end)
 
 test("what is no data is told in a sentence", function()
-    support.refuses(data, {
+    refuses(data, {
         { {}, "there is no column" },
         { { a = 3 }, "a must be a vector, or a table of numbers or of strings, got 3" },
         { { a = { 1, 2 }, b = { 1 } }, "a has 2 and b has 1" },
@@ -144,4 +142,4 @@ test("a long or wide table is cut, and says so", function()
     for line in text:gmatch("[^\n]+") do assert(#line < 80, line) end
 end)
 
-support.finish()
+finish()

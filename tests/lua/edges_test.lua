@@ -1,7 +1,5 @@
 -- Edges of runs with more in them: what happens at one instant, just at a limit, or closer together than can be told.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises, has = support.test, support.near, support.equal, support.raises, support.has
+dofile "tests/lua/support.lua"
 
 local both_engines = { integrator.spectral {}, integrator.rk4 { h = 1e-3 } }
 local dry = system { I = 1, k = 40, C = 0.4, Rd = 0.3, Re = 0.45 }
@@ -40,7 +38,7 @@ test("rk4 takes an instant that rounding puts beside its step for the end of the
     for _, h in ipairs { 1e-3, 2e-4 } do
         task.integrator = integrator.rk4 { h = h }
         local steps = dry:simulate(task)
-        support.same_events(steps, right, 20 * h ^ 2) -- a step's cubic, where M jumps within it
+        same_events(steps, right, 20 * h ^ 2) -- a step's cubic, where M jumps within it
         near(steps.theta[2], right.theta[2], h ^ 2)
     end
 end)
@@ -144,4 +142,4 @@ test("an exponential that outgrows the motion is followed at once", function()
 
 end)
 
-support.finish()
+finish()

@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 -- Figure 27 of the report: steady after a while, both frictions, no stops.
 local sys = nondimensional { zeta = 0.119, friction_ratio = 0.418 }
@@ -64,7 +62,7 @@ end)
 
 test("it shows itself as a small table", function()
     local text = tostring(energy)
-    support.has(text, "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles")
+    has(text, "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles")
     for line in text:gmatch("[^\n]+") do
         assert(utf8.len(line) <= 80, line)
     end
@@ -75,7 +73,7 @@ test("runs that have not kept their motion say what to do", function()
     raises_here(function() rk4:energy() end, "run:energy(): ", "integrator.exact and integrator.spectral")
     local sparse = sys:simulate { M = M, t_end = 1, dt = 0.1, dense = false }
     raises_here(function() sparse:energy() end, "without dense = false")
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     run:save(name)
     raises_here(function() load(name):energy() end, "read from a file", "simulate the system again")
     raises_here(function() run.energy() end, "use a colon: run:energy()")
@@ -114,4 +112,4 @@ test("half cycles on a belt run from one extreme of theta to the next and make u
     end
 end)
 
-support.finish()
+finish()

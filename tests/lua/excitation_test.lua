@@ -1,9 +1,8 @@
 -- Excitations: terms, operators, user functions and what is said about mistakes. The examples of the manual, which
 -- help_test.lua runs, have the plain values.
 
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local fails = support.raises
+dofile "tests/lua/support.lua"
+local fails = raises
 
 -- The line of the caller.
 local function line() return debug.getinfo(2, "l").currentline end
@@ -25,7 +24,7 @@ for wanted, call in pairs{ amplitude = function() e.step{ level = 1 } end, sigma
     duration = function() e.ramp{ width = 1 } end } do
     fails(call, "did you mean '" .. wanted .. "'?")
 end
-support.has(e.relay{ on = 1, off = 2, amplitude = 3 }, "amplitude = { 3, -3 }")
+has(e.relay{ on = 1, off = 2, amplitude = 3 }, "amplitude = { 3, -3 }")
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
 assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2 and e.ramp{}(7) == 7)
 near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi))
@@ -73,7 +72,7 @@ do
     assert(map.y[1] == 0.6875 and map.y[2] == 0.6875)
     local sys = nondimensional{ zeta = 0.1 }
     assert(sys:steady{ M = s }.period == 4)
-    support.has(sys:simulate{ M = s, t_end = 3, dt = 1 }.integrator, "exact")
+    has(sys:simulate{ M = s, t_end = 3, dt = 1 }.integrator, "exact")
     fails(function() return e.samples{ t = t, M = M, period = 2 } end, "period = 2 is shorter than the points")
     fails(function() return e.samples{ t = t, M = M, period = 3 } end, "M = 0 at t = 0, but -1 one period later")
 end
@@ -187,9 +186,8 @@ local callable = setmetatable({}, { __call = function(_, t) return t end })
 assert(tostring(e.scripted(callable)) == "excitation.scripted(--[[ a table with __call ]])")
 
 -- Samples from a file.
-local path = support.temporary()
-local function write(text) support.write(path, text) end
-write("# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
+local path = temporary()
+write(path, "# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
 assert(e.samples(path)(1) == 2, "columns t and M are found by name")
 assert(math.abs(e.samples(path, { interpolation = "cubic" })(1) - 5/3) < 1e-14, "three points are a parabola")
 assert(tostring(e.samples(path, { interpolation = "cubic", period = 100 })) ==
@@ -208,7 +206,7 @@ assert(rebuilt(e.samples(path):delay(3))(4) == 2)
 fails(function() return e.samples(path, { value = "mo" }) end, path, "no column 'mo'", "moment")
 fails(function() return e.samples(path, { value = 7 }) end, path, "column 7")
 fails(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
-write("0 1\n1 3\n2 5\n")
+write(path, "0 1\n1 3\n2 5\n")
 assert(e.samples(path)(0.5) == 2, "without names, the first two columns")
 for text, pieces in pairs{
     ["a,b\n0,1\n2,3\n1,5\n"] = { "row 3", "a = 1", "not after 2", "times must increase" },
@@ -217,7 +215,7 @@ for text, pieces in pairs{
     ["a,b\n"] = { "no rows" },
     [""] = { "empty" },
 } do
-    write(text)
+    write(path, text)
     fails(function() e.samples(path) end, path, table.unpack(pieces))
 end
 os.remove(path)

@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, says, has, has_not = support.test, support.equal, support.says, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { friction_ratio = 0.167 }
 local free = nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01 }
@@ -40,7 +38,7 @@ test("a user's function is not called again", function()
 end)
 
 test("a run read from a file, one of 1989 and a broken one have a story, too", function()
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     free:save(name)
     says(load(name), "read from a file")
     says(load(name), "The velocity changes sign 3 times")
@@ -168,4 +166,4 @@ test("a beat on a shaking base is no growth", function()
     has_not(told(run), "The motion grows")
 end)
 
-support.finish()
+finish()

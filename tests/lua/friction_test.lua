@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here, has = support.test, support.near, support.equal, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local stribeck = friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4 }
 
@@ -33,10 +31,10 @@ test("a law that fails, or is negative, is told with the speed, and what ran is 
 end)
 
 test("what is wrong with a law is one sentence with the name of the option", function()
-    support.refuses(friction.stribeck, {
+    refuses(friction.stribeck, {
         { { Rd = 0.3, Re = 0.2, speed = 1 }, "friction.stribeck: Re = 0.2 must be at least Rd = 0.3" },
     })
-    support.refuses(friction.asymmetric, {
+    refuses(friction.asymmetric, {
         { { forward = { Rd = 1 }, backward = 2 }, "backward must be a table such as" },
         { { forward = { Rd = 1 }, backward = { Rd = 2, Re = 1 } }, "backward.Re = 1 must be at least backward.Rd = 2" },
         { { forward = { Rd = 1 }, backward = { Rf = 2 } }, "friction.asymmetric: backward has no option 'Rf'" },
@@ -79,7 +77,7 @@ test("k = 0 is a block: nothing that needs a period has a value", function()
     near(run.events[1].t, 10, 1e-12)
     near((run:at(12)), 7.5, 1e-12)
     near(run:energy().total.dry, 2.25, 1e-12)
-    support.says(run, "a block without a spring")
+    says(run, "a block without a spring")
     raises_here(function() theory.time_to_rest { system = block, theta0 = 1 } end, "this system has k = 0")
     raises_here(function() run:save(os.tmpname() .. ".dat") end, "this system has k = 0")
     raises_here(function() block:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "divides by k")
@@ -91,7 +89,7 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     local run = block(jump):simulate { M = 0.45, t_end = 5, dt = 1 }
     has(run.outcome, "it chatters at speed 0.5, where the law of friction")
     has(run, "at speed 0.5")
-    support.says(run, "at speed 0.5")
+    says(run, "at speed 0.5")
     -- The cure: the mass comes to 0.5 at t = 0.5/0.15 and stays there, within the width of the line.
     local line = friction.table { speed = { 0, 0.5, 0.50001 }, torque = { 0.3, 0.3, 0.6 } }
     run = block(line):simulate { M = 0.45, t_end = 5, dt = 1 }
@@ -107,7 +105,7 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 5, dt = 1,
         states = { x = { start = 1, rate = function(t, theta, velocity, z) return z.x > 0 and -1 or 1 end } } }
     has(run.outcome, "the rate of x jumps to and fro and drives it back each time; a steep line or tanh in its place would not")
-    support.has_not(run.outcome, "sampled")
+    has_not(run.outcome, "sampled")
 end)
 
 test("a law in Lua moves a mass as the native law with the same numbers does", function()
@@ -134,7 +132,7 @@ test("a law in Lua moves a mass as the native law with the same numbers does", f
             local function run(law) return system { I = 1, k = 4*math.pi^2, C = 0.1, friction = law }:simulate(load) end
             local native, own = run(laws[1]), run(laws[2])
             near(own.theta, native.theta, 1e-10)
-            support.same_events(own, native, 1e-10)
+            same_events(own, native, 1e-10)
             if not load.belt and i == 4 then assert(#own.events > 10) end
         end
     end
@@ -168,4 +166,4 @@ test("a system with Stribeck's law shows Rd, not the friction at standstill", fu
     has(told, "Rd = 0.3 while sliding, Re = 0.6 to break away. Friction falls from Re at rest to Rd at high speed.")
 end)
 
-support.finish()
+finish()

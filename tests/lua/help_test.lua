@@ -1,10 +1,8 @@
 -- The documentation cannot lie: it is complete, its examples run and print what they say, docs/manual.md is up to date.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, has, has_not = support.test, support.equal, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
 local function printed(option)
-    local pipe <close> = io.popen(('"%s" %s'):format(support.program(), option))
+    local pipe <close> = io.popen(('"%s" %s'):format(program(), option))
     return pipe:read "a"
 end
 local manual, page = printed "--manual=all", printed "--manual"
@@ -21,7 +19,7 @@ for part in (manual .. "\n## "):gsub("\n###? ", "\n\0"):gmatch "%z([^\0]*)" do
 end
 
 test("docs/manual.md is what the program prints", function()
-    assert(support.read "docs/manual.md" == page, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
+    assert(read "docs/manual.md" == page, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
 end)
 
 test("the page has what takes no options as a row, and options of several calls once", function()
@@ -101,9 +99,9 @@ end)
 
 --- What `code` prints.
 local function output(code)
-    local name = support.temporary ".lua"
-    support.write(name, code)
-    local pipe <close> = io.popen(('"%s" %s 2>&1'):format(support.program(), name))
+    local name = temporary ".lua"
+    write(name, code)
+    local pipe <close> = io.popen(('"%s" %s 2>&1'):format(program(), name))
     return pipe:read "a"
 end
 
@@ -151,9 +149,9 @@ test("help searches words, suggests names, and shows where to begin", function()
 end)
 
 test("help shows what steers a terminal, and does not send it", function()
-    local name = support.temporary ".lua"
-    support.write(name, [[help("\27]0;title\7") help "how do I \27[2J"]])
-    local pipe <close> = io.popen(('"%s" "%s" 2>&1'):format(support.program(), name))
+    local name = temporary ".lua"
+    write(name, [[help("\27]0;title\7") help "how do I \27[2J"]])
+    local pipe <close> = io.popen(('"%s" "%s" 2>&1'):format(program(), name))
     local said = pipe:read "a"
     assert(not said:find "[%z\1-\9\11-\31\127]" and said:find([['\x1B]0;title\x07']], 1, true), said)
 end)
@@ -215,4 +213,4 @@ test("Lua's words are explained in a line, with an example that runs", function(
     equal(i, #words)
 end)
 
-support.finish()
+finish()

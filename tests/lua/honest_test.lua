@@ -1,9 +1,7 @@
 -- M must depend on its arguments only: what breaks this is found out.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises, has = support.test, support.near, support.equal, support.raises, support.has
+dofile "tests/lua/support.lua"
 
-local asked = require "asked"
+local asked = dofile "tests/lua/asked.lua"
 local sys, methods, runs = asked.sys, asked.methods, asked.runs
 
 local function found_out(make, more)
@@ -124,7 +122,7 @@ test("a run that goes on is under oath again", function()
         late = false
         local run = sys:simulate { M = M, theta0 = 1, t_end = 5, dt = 0.1, integrator = method }
         assert(#run == 51, run.outcome)
-        support.has_not(run.outcome, "depends on more")
+        has_not(run.outcome, "depends on more")
         late = true
         run = run:continue { t_end = 15 }
         has(run.outcome, "M depends on more than its arguments")
@@ -184,4 +182,4 @@ test("the listing of 1989 asks in order, and takes what it gets", function()
     equal(backwards, 1)  -- the first, at t = 0
 end)
 
-support.finish()
+finish()

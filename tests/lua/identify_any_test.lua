@@ -1,7 +1,5 @@
 -- Identification from a guess: any parameter, any measured quantity. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here, fits = support.test, support.near, support.equal, support.raises_here, support.fits
+dofile "tests/lua/support.lua"
 
 local function noise(n, std, seed) return vector.normal { n = n, std = std, seed = seed } end
 
@@ -53,10 +51,10 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     local fit = identify { data = record, belt = 0.15, system = law(0.2, 0.5, 0.3), free = { "friction.Rd", "friction.Re", "friction.speed" },
         theta0 = 0, velocity0 = 0 }
     found(fit, { ["friction.Rd"] = 0.3, ["friction.Re"] = 0.6, ["friction.speed"] = 0.2 })
-    support.has_not(fit, "correlated")
+    has_not(fit, "correlated")
     -- with another law the residual is no noise, and the errors know that
     fit = identify { data = record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
-    support.has(fit, "correlated from sample to sample")
+    has(fit, "correlated from sample to sample")
     fits(fit, { k = 4 })
 
     local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
@@ -69,7 +67,7 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     r = bristles(0.2):simulate { theta0 = 1, t_end = 10, dt = 0.05 }
     fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 7) }, system = bristles(0.3), free = { "friction.Rd" } }
     found(fit, { ["friction.Rd"] = 0.2 })
-    support.has(fit.system, "lugre")
+    has(fit.system, "lugre")
 end)
 
 test("numbers of a table that M uses, which stays as it was; a spring and a shaking base", function()
@@ -96,7 +94,7 @@ test("exact data give errors of some ulps at least, and many records the coverag
         near(fit[name], value, 1e-6)
         assert(fit.std_error[name] >= 1e-15 * value)
     end
-    local judged, part, ratio = support.judge()
+    local judged, part, ratio = judge()
     for seed = 1, 40 do
         local v = run.velocity + noise(#run, 0.03, seed)
         part, ratio = judged(identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" },
@@ -107,7 +105,7 @@ end)
 
 test("what cannot be fitted is told", function()
     local record = { t = run.t, theta = run.theta }
-    support.refuses(identify, {
+    refuses(identify, {
         { { data = record, measured = "velocity" }, "measured (the string \"velocity\") needs a guess: system = system{ ... }" },
         { { data = record, system = guess, free = { "friction.speed" } }, "free has 'friction.speed', which is no number of the system" },
         { { data = record, system = guess, free = { "q.x" } }, "free has 'q.x'" },
@@ -119,4 +117,4 @@ test("what cannot be fitted is told", function()
     })
 end)
 
-support.finish()
+finish()

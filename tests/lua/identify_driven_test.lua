@@ -1,8 +1,5 @@
 -- identify: driven records whose mass stands, at first or on its way, or that are cut off; searches that flew away.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here, has_not = support.test, support.equal, support.near, support.raises_here, support.has_not
-local judge, fits = support.judge, support.fits
+dofile "tests/lua/support.lua"
 
 local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
 local function noisy(run, seed, std) return run.theta + vector.normal{ n = #run, seed = seed, std = std } end
@@ -109,7 +106,7 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
         local seen = noisy(run, 1, 0.002):map(function(x) return math.max(-ends, math.min(ends, x)) end)
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
         fits(fit, { k = 40, Rd = 1.2 })
-        support.has(fit, "samples have the extreme values of the record")
+        has(fit, "samples have the extreme values of the record")
     end
     local exact = identify{ data = run, M = two }
     near(exact.k, 40, 1e-6)
@@ -124,7 +121,7 @@ test("no search flies away: swings that no sample shows are none", function()
         fits(fit, { I = 0.4 })
         assert(fit.noise < 0.016, fit.noise)
     end
-    support.refuses(identify, {
+    refuses(identify, {
         { { data = decay, theta0 = -1e308 }, "no motion of such a system comes near this record" },
         { { data = decay, I = 1, Rd = 1.2, Re = 0.8 }, "Re = 0.8 must be at least Rd = 1.2" },
     })
@@ -158,7 +155,7 @@ test("noise alone is no system, and noise in a measured M is told", function()
     local t, M = vector.linspace(0, 10, 150), excitation.harmonic{ amplitude = 1, omega = 3 }
     for seed = 1, 15 do
         local noise = vector.normal{ n = #t, seed = seed, std = 0.03 }
-        support.has(identify{ data = { t = t, theta = noise }, M = M }, "the record no better than it would fit noise")
+        has(identify{ data = { t = t, theta = noise }, M = M }, "the record no better than it would fit noise")
     end
     local run = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ M = 3 * M, t_end = 20, dt = 0.05 }
     local function told(std)
@@ -168,4 +165,4 @@ test("noise alone is no system, and noise in a measured M is told", function()
     assert(told(0.05) and not told(0))
 end)
 
-support.finish()
+finish()

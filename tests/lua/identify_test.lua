@@ -1,8 +1,5 @@
 -- identify: free decays without a guess, driven records, errors that are true, and records that cannot be one.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
-local judge, fits = support.judge, support.fits
+dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
 local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
@@ -24,7 +21,7 @@ end)
 test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held by Re = Rd or by more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
-    local records = support.lots(200)
+    local records = lots(200)
     for seed = 1, records do
         local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
         local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
@@ -46,7 +43,7 @@ test("a phone camera: 30 samples a second, 2 % of noise, an unknown zero", funct
     local fit = identify{ data = { time = run.t, x = noisy(run, 5, 0.02) - 2 }, velocity0 = 0 }
     fits(fit, { omega0 = 30^0.5, Rd_over_k = 0.04, offset = -2 })
     equal(fit.std_error.velocity0, 0.0)
-    support.raises(function() return fit.error end, "a fit has no field 'error'; did you mean 'std_error'?")
+    raises(function() return fit.error end, "a fit has no field 'error'; did you mean 'std_error'?")
     equal(fit.velocity0, 0.0)
 end)
 
@@ -59,8 +56,8 @@ test("a record that is cut off is fitted as one, and said to be", function()
     local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
     local said = tonumber(tostring(fit):match "(%d+) samples have the extreme values of the record, as if it were clipped there")
     assert(said > 20 and said <= #stand, said)  -- two or three by chance are none
-    support.has_not(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }, "clipped")
-    support.has_not(identify{ data = run }, "clipped")
+    has_not(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }, "clipped")
+    has_not(identify{ data = run }, "clipped")
 end)
 
 test("with I or k given a free decay tells the torques, too", function()
@@ -82,12 +79,12 @@ test("a driven record with a known M tells the parameters that are asked for", f
     assert(fit.noise < 0.0023, fit.noise)
     equal(fit.I, 0.02)
     equal(#fit.residual, #run)
-    support.has(fit:plot{ show = false }, "record")
+    has(fit:plot{ show = false }, "record")
 end)
 
 test("what cannot be a record is told in a sentence", function()
     local t = vector.linspace(0, 1, 20)
-    support.refuses(identify, {
+    refuses(identify, {
         { {}, "identify needs data" },
         { { data = "run.csv" }, "data must be what load gives for that file" },
         { { data = 3 }, "data must be data, a run, or a table of columns" },
@@ -269,11 +266,11 @@ test("no error is below what a double can tell, a held offset and a missing spri
     local fit = identify{ data = decay, I = 1 }
     for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.std_error[name] >= 2^-52 * fit[name], name) end
     local held = identify{ data = decay, I = 1, free = { "k", "C", "Rd" } }
-    support.has(held, "offset is held at 0")
+    has(held, "offset is held at 0")
     for _, free in ipairs{ { "k", "offset" }, false } do
         assert(not tostring(identify{ data = decay, I = 1, free = free or nil }):find("held at 0", 1, true))
     end
     raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
 end)
 
-support.finish()
+finish()

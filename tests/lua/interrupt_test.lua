@@ -1,7 +1,5 @@
 -- Ctrl-C stops whatever runs, in coroutines and behind pcall, too; the program then ends with 130.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal = support.test, support.equal
+dofile "tests/lua/support.lua"
 
 --- Runs a script and sends SIGINT when it has said that it is up and has then computed for 0.1 s. No clock decides: the
 --- time is that of the processor, and so is the limit. Returns the exit code and the output.
@@ -18,11 +16,11 @@ local runner = [[
     wait $pid
     echo "exit $?" >>"$out"]]
 local function interrupted(code)
-    local name, output, shell = support.temporary ".lua", support.temporary(), support.temporary ".sh"
-    support.write(name, 'print "up" io.stdout:flush() ' .. code)
-    support.write(shell, runner)
-    os.execute(("sh %s '%s' %s %s"):format(shell, support.program(), name, output))
-    local text = support.read(output)
+    local name, output, shell = temporary ".lua", temporary(), temporary ".sh"
+    write(name, 'print "up" io.stdout:flush() ' .. code)
+    write(shell, runner)
+    os.execute(("sh %s '%s' %s %s"):format(shell, program(), name, output))
+    local text = read(output)
     return tonumber(text:match "exit (%d+)\n$"), text
 end
 
@@ -30,7 +28,7 @@ local function check(code, output)
     local exit, text = interrupted(code)
     equal(exit, 130, text)
     assert(text:find "^up\n", text)
-    support.has(text, "dinal: interrupted") -- by its own word, not by the signal
+    has(text, "dinal: interrupted") -- by its own word, not by the signal
     if output then
         assert(text:find(output, 1, true), text)
     end
@@ -93,10 +91,10 @@ test("coroutine functions behave as those of Lua", function()
     assert(not ok and message:find("interrupt_test.lua:%d+: bad x"), message)
     ok, message = pcall(wrapped)
     assert(not ok, message)
-    support.has(message, "cannot resume dead coroutine")
-    support.raises(function() coroutine.resume(1) end, "bad argument #1 to 'resume'", "thread expected")
-    support.raises(function() coroutine.wrap(1) end, "bad argument #1 to 'wrap'")
-    support.raises(function() coroutine.close(coroutine.running()) end, "cannot close a running coroutine")
+    has(message, "cannot resume dead coroutine")
+    raises(function() coroutine.resume(1) end, "bad argument #1 to 'resume'", "thread expected")
+    raises(function() coroutine.wrap(1) end, "bad argument #1 to 'wrap'")
+    raises(function() coroutine.close(coroutine.running()) end, "cannot close a running coroutine")
     local co = coroutine.create(function() coroutine.yield() end)
     coroutine.resume(co)
     equal(coroutine.close(co), true)
@@ -107,4 +105,4 @@ test("coroutine functions behave as those of Lua", function()
     equal(debug.gethook(), nil)
 end)
 
-support.finish()
+finish()

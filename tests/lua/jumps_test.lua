@@ -1,7 +1,5 @@
 -- What jumps while a run goes on: a belt that is a function, a velocity at a wall, and what stands at the instant of it.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 -- A jump that nobody announced is found to 1e-13 of a run of some time units.
 local found = 1e-11
@@ -103,7 +101,7 @@ end
 
 test("a belt that jumps, and does not say so, moves the mass as one that does, stuck or sliding", function()
     math.randomseed(5)
-    for trial = 1, support.lots(24) do
+    for trial = 1, lots(24) do
         local Rd, k, C = 0.3, math.random() < 0.2 and 0 or 1, math.random() < 0.5 and 0 or 0.1
         local sys = system { I = 1, k = k, C = C, Rd = Rd, Re = math.random() < 0.5 and Rd or 0.5 }
         -- The steps of rk4 end at jumps of 0.2, but for an ulp. Some even jumps in a piece cancel in its last coefficients.
@@ -128,7 +126,7 @@ test("what acts and jumps, and does not say so, does what it does when it says s
     local function any(size)
         return unannounced(size, 0.3 + 2 * math.random(), math.random(), math.random() < 0.4)
     end
-    for _ = 1, support.lots(50) do
+    for _ = 1, lots(50) do
         local Rd, Re = 0.2 + 0.2 * math.random(), 1 + math.random()
         local laws = {
             friction.coulomb { Rd = Rd },
@@ -177,4 +175,4 @@ test("a belt may jump right behind the start", function()
     end
 end)
 
-support.finish()
+finish()

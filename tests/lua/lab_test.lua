@@ -1,21 +1,19 @@
 -- lab and check: whose lab it is, what is refused, and that no answer is to be had but by working.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal = support.test, support.equal
+dofile "tests/lua/support.lua"
 
 local function output(code, options)
-  local name = support.temporary ".lua"
-  support.write(name, code)
-  local pipe <close> = io.popen(('"%s" %s %s 2>&1'):format(support.program(), options or "", name))
+  local name = temporary ".lua"
+  write(name, code)
+  local pipe <close> = io.popen(('"%s" %s %s 2>&1'):format(program(), options or "", name))
   return (pipe:read "a")
 end
 
 test("before a number is said, nothing is given and nothing judged", function()
   equal(lab.number(), nil)
-  support.raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")
-  support.raises_here(function() lab.given(1) end, "lab.given: first set your own student number")
-  support.raises_here(function() lab.experiment(1) end, "lab.experiment: first set your own student number")
-  support.raises_here(function() lab.marks() end, "lab.marks: first set your own student number")
+  raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")
+  raises_here(function() lab.given(1) end, "lab.given: first set your own student number")
+  raises_here(function() lab.experiment(1) end, "lab.experiment: first set your own student number")
+  raises_here(function() lab.marks() end, "lab.marks: first set your own student number")
 end)
 
 test("a sweep judges no answers: each of its workers would begin with all tries", function()
@@ -30,11 +28,11 @@ end)
 
 test("a number that is none gets one sentence", function()
   for _, wrong in ipairs { 0, -3, 1.5, 1e9, math.huge, 0/0 } do
-    support.raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
+    raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
   end
-  support.raises_here(function() lab.number("4711") end, 'got the string "4711"; write it without quotes')
-  support.raises_here(function() lab.number(nil) end, "got nil")
-  support.raises_here(function() lab.number({}) end, "got a table")
+  raises_here(function() lab.number("4711") end, 'got the string "4711"; write it without quotes')
+  raises_here(function() lab.number(nil) end, "got nil")
+  raises_here(function() lab.number({}) end, "got a table")
   equal(lab.number(), nil)
   equal(lab.number(4711), 4711)
   equal(lab.number(4711.0), 4711)
@@ -78,7 +76,7 @@ test("an unknown question, sheet or value is refused in a sentence", function()
     { lab.given, "got nil; for example lab.given(1)" },
     { lab.experiment, "lab.experiment(2, x): x", 2, "fast" },
   } do
-    support.raises_here(function() case[1](table.unpack(case, 3)) end, case[2])
+    raises_here(function() case[1](table.unpack(case, 3)) end, case[2])
   end
   equal(#lab.marks(), 0)
 end)
@@ -119,7 +117,7 @@ end)
 test("neither the program nor what students get shows the course", function()
   local pipe <close> = io.popen("cat src/lab/judge.lua sheets/[1-9]*.lua")
   local text = pipe:read "a"
-  local program = support.read(support.program())
+  local program = read(program())
   local looked_for = 0
   for line in text:gmatch "[^\n]+" do
     if #line > 40 then
@@ -132,7 +130,7 @@ end)
 
 test("a course that computes is stopped as everything else is", function()
   local said = output("lab.number(1) while true do lab.experiment(1) end", "--max-time 0.3")
-  support.has(said, "stopped", "--max-time allows")
+  has(said, "stopped", "--max-time allows")
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- Maps of columns and diagrams of bifurcation: what is drawn, and what is refused.
-package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here, has = support.test, support.equal, support.near, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local map = sweep { over = { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9) }, run = function(p)
     return { steps = math.floor(p.x + p.y), slope = p.x + p.y }
@@ -67,14 +65,14 @@ test("a map goes into files with a legend, and an SVG of a fine one stays small"
     local fine = sweep { over = { x = vector.linspace(0.1, 2, 150), y = vector.linspace(0, 1, 120) }, run = function(p)
         return { z = math.sin(9 * p.x) * math.cos(7 * p.y) }
     end }
-    local file, commands = support.temporary ".svg", support.temporary ".gp"
+    local file, commands = temporary ".svg", temporary ".gp"
     fine:plot { z = "z", contours = { 0 }, file = file }
-    local svg = support.read(file)
+    local svg = read(file)
     assert(#svg < 300000, #svg)
     assert(svg:find("rgb%(253, 231,  ?37%)") or svg:lower():find("fde725"), "the bright end of the colours is there")
     has(svg, "z = 0")
     fine:plot { z = "z", file = commands }
-    has(support.read(commands), "boxxyerror")
+    has(read(commands), "boxxyerror")
 end)
 
 test("what is no grid is refused", function()
@@ -83,7 +81,7 @@ test("what is no grid is refused", function()
     local v = vector.linspace(0, 1, 100)
     raises_here(function() data { x = v, y = v, z = v }:plot { x = "x", y = "y", z = "z" } end, "x and y form no grid")
     raises_here(function() d:plot { zlim = { 0, 1 } } end, "zlim is for maps")
-    support.refuses(function(o) map:plot(o) end, {
+    refuses(function(o) map:plot(o) end, {
         { { z = "steep" }, "no column 'steep'" },
         { { z = "error" }, "holds words" },
         { { z = "steps", zlim = { 1, 0 } }, "zlim must be two increasing numbers" },
@@ -124,11 +122,11 @@ test("its plot shows points", function()
     end }
     local text = tostring(b:plot { show = false, ascii = true })
     has(text, "theta", "a")
-    local file = support.temporary ".gp"
+    local file = temporary ".gp"
     b:plot { file = file }
-    local commands = support.read(file)
+    local commands = read(file)
     has(commands, "with points")
-    support.has_not(commands, "with lines lw")
+    has_not(commands, "with lines lw")
 end)
 
 test("the same for any number of workers, and points that fail have a row", function()
@@ -152,7 +150,7 @@ test("the same for any number of workers, and points that fail have a row", func
 end)
 
 test("a bifurcation in a file is the same rows, and the same call reads them", function()
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     local function diagram(keep)
         return bifurcation { over = { a = { 1, 2, 3 } }, period = 1, skip = 3, keep = keep, file = file, workers = 1, at = function(p)
             if p.a == 2 then error("no two") end
@@ -166,14 +164,14 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
     has(kept.error[3], "no two")
     local again = diagram(2)
     equal(tostring(again), tostring(b))
-    support.raises(function() diagram(3) end, "is not the result of this sweep")
+    raises(function() diagram(3) end, "is not the result of this sweep")
     raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, file = "b.txt", at = print } end, "must end in .csv")
 end)
 
 test("what is wrong with a bifurcation is told", function()
     local function at() return { system = nondimensional {}, M = 1 } end
     local function returns(more) return { over = { a = { 1 } }, period = 1, at = function() return more end } end
-    support.refuses(bifurcation, {
+    refuses(bifurcation, {
         { { over = { a = { 1 } }, at = at }, "bifurcation needs period" },
         { { over = { a = { 1 } }, period = 1, keep = 0, at = at }, "keep = 0 must be" },
         { { period = 1, at = at }, "bifurcation: there is no parameter" },
@@ -201,4 +199,4 @@ test("a bifurcation takes the period of each point in any of its forms", functio
     end
 end)
 
-support.finish()
+finish()

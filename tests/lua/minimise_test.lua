@@ -1,7 +1,5 @@
 -- minimise{ over, run }: places that are known, and what is refused. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+dofile "tests/lua/support.lua"
 
 test("the least value of one parameter is found, within and at the ends", function()
     local best = minimise{ over = { x = { -1, 3 } }, run = function(p) return (p.x - 0.7) ^ 2 + 2 end }
@@ -26,7 +24,7 @@ end)
 
 test("what is wrong with the call is told", function()
     local function run() return 1 end
-    support.refuses(minimise, {
+    refuses(minimise, {
         { { run = run }, "minimise needs over" },
         { { over = { x = { 1, 2 } } }, "minimise needs run" },
         { { over = { x = { 1 } }, run = run }, "over.x must be the two limits of x" },
@@ -39,4 +37,4 @@ test("what is wrong with the call is told", function()
     equal(pcall(minimise, { over = { x = { 1, 2 } }, run = function() error("mine") end }), false)
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- Runs with more in them: states, events, belt, base, controllers with a memory.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }
 local function pid(more)
@@ -26,14 +24,14 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     near(z.e, run.e[7], 1e-13)
     near(theta, run.theta[7], 1e-13)
     near(run.M[7], 8 * (1 - run.theta[7]) - 2 * run.velocity[7] + 3 * run.e[7], 1e-12)
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     run:save(name)
     local again = load(name)
     equal(again.e[7], run.e[7])
     equal(again.states.e, run.states.e)
     raises_here(function() return again.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
     assert(run:plot { y = "e", show = false })
-    support.says(run, "feedback")
+    says(run, "feedback")
     assert(run:energy().total.closure < 1e-11)
 end)
 
@@ -49,9 +47,9 @@ test("the header of a file repeats a run with more in it", function()
             events = { { when = function(t, theta) return theta - 0.4 end, act = function(t, theta, velocity, z) return theta, -velocity end } } },
     }
     for i, run in ipairs(runs) do
-        local name = support.temporary ".csv"
+        local name = temporary ".csv"
         run:save(name)
-        local again = support.repeated(name)
+        local again = repeated(name)
         equal(#again.events, #run.events)
         near(again.theta, run.theta, 1e-13)
     end
@@ -124,7 +122,7 @@ test("what fails in a rate, an event or a sampled function is told with its name
 end)
 
 test("what is wrong is one sentence with the name of the option", function()
-    support.refuses(function(more) block:simulate(pid(more)) end, {
+    refuses(function(more) block:simulate(pid(more)) end, {
         { { states = 3 }, "states must be a table such as" },
         { { states = { e = 3 } }, "states.e must be a table such as" },
         { { states = { theta = { rate = math.sin } } }, "'theta' is a name that a run has already" },
@@ -144,7 +142,7 @@ test("what is wrong is one sentence with the name of the option", function()
         { { M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is not a state of this run" },
     })
     raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
-    support.refuses(excitation.relay, {
+    refuses(excitation.relay, {
         { { on = 1, off = 1, amplitude = { 1, 2 } }, "on = 1 and off = 1 must differ" },
         { { on = 1, off = 2, amplitude = { 1 } }, "amplitude must be a number, or two: { on, off }, got 1" },
     })
@@ -160,7 +158,7 @@ test("an error in the function of a belt or a base arrives unchanged, with the r
                 local options = { theta0 = 1, t_end = 5, dt = 0.1, integrator = method }
                 options[what] = function(t) if t >= late then error("no " .. what) end return 0.1 end
                 local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
-                support.raises(function() sys:simulate(options) end, "no " .. what)
+                raises(function() sys:simulate(options) end, "no " .. what)
                 assert(#dinal.partial >= 8 * late and #dinal.partial <= 10 * late + 1, what .. " " .. #dinal.partial)
             end
         end
@@ -215,4 +213,4 @@ test("a mass that stands is torn off by a base as quick as one likes when I a = 
     near(sys:simulate { base = bump, t_end = 5, dt = 5 }.events[1].t, 2.123 - 0.1 * math.sqrt(2 * math.log(30)), 1e-12)
 end)
 
-support.finish()
+finish()

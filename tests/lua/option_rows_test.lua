@@ -1,12 +1,10 @@
 -- Every option of every call: a wrong name, a wrong kind and a number out of its range are each told by a sentence that
 -- names the call, the option and the value. The calls and their options are those of the manual, which lists the rows.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test = support.test
+dofile "tests/lua/support.lua"
 
 local calls = {} -- heading -> list of { name, meaning }
 do
-    local pipe <close> = io.popen(('"%s" --manual=all'):format(support.program()))
+    local pipe <close> = io.popen(('"%s" --manual=all'):format(program()))
     local heading
     local list -- of calls that take one of two tables: "excitation.samples 2" is the second
     for line in pipe:lines() do
@@ -44,7 +42,7 @@ local function example_of(heading)
     local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
         ["excitation.samples 2"] = "excitation.samples{}", ["excitation.constant"] = "excitation.constant{}", ["run:continue"] = "run:continue(true)",
         ["rig_run:save"] = 'rig_run:save("x.csv", 1)', ["rig_run:continue"] = "rig_run:continue(true)" }
-    local message = support.raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
+    local message = raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
 end
 
@@ -61,7 +59,7 @@ end
 
 --- The message of the call, which must name all that is asked.
 local function refused(example, change, ...)
-    local message = support.raises(call_with(example, change))
+    local message = raises(call_with(example, change))
     for _, part in ipairs { "call:1: ", ... } do
         assert(message:find(part, 1, true), ("%s\n  does not say %s"):format(message, part))
     end
@@ -120,16 +118,16 @@ test("names that are no options are told all at once, in an order that does not 
     for _ = 1, 20 do
         local given = { zz = 1, Rf = 2, kk = 3, I = 1 }
         given.aa, given.zz = 4, nil -- another order in the table
-        local message = support.raises(function() system(given) end)
-        support.has(message, "system has no options 'Rf', 'aa' and 'kk' among I, k,")
-        support.has(message, "; did you mean 'Rd' for 'Rf'")
+        local message = raises(function() system(given) end)
+        has(message, "system has no options 'Rf', 'aa' and 'kk' among I, k,")
+        has(message, "; did you mean 'Rd' for 'Rf'")
     end
 end)
 
 test("an option that belongs to the system, or to the run, is told where it belongs", function()
     local sys = system { I = 1, k = 4 }
     local function told(call, sentence)
-        local message = support.raises(call)
+        local message = raises(call)
         assert(message:sub(-#sentence) == sentence, message)
     end
     told(function() sys:simulate { walls = {}, t_end = 1 } end, "base and units; 'walls' is an option of sys:with")
@@ -139,4 +137,4 @@ test("an option that belongs to the system, or to the run, is told where it belo
         "'Rd' and 'walls' are options of sys:with; did you mean 't_end' for 't_en'?")
 end)
 
-support.finish()
+finish()

@@ -1,8 +1,6 @@
 -- The same problem in other units of time, angle and torque, each a power of two greater or smaller, is the same motion to
 -- the last bit: such factors change no digit of any number, so what differs hangs on a size that is nobody's business.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test = support.test
+dofile "tests/lua/support.lua"
 
 -- Each gives the options of a system and of a run; u has the units: t, angle, torque, k, and speed = angle/t.
 local cases = {
@@ -84,4 +82,4 @@ for name, change in pairs(cases) do
     end)
 end
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- plot, run:plot, run:phase_plot: what they draw, what they return, and what they say to wrong input.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12, units = { theta = "rad" } }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
@@ -32,7 +30,7 @@ test("x and y choose columns by name or number, torques over k as in the record 
     has(text(run, "plot", { x = "theta", y = "friction" }), "friction", "theta, rad")
     has(text(run, "plot", { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")
     has(text(run, "plot", { x = 1, y = { 2, 4 } }), "theta, rad", "M")
-    support.refuses(function(o) run:plot(o) end, {
+    refuses(function(o) run:plot(o) end, {
         { { y = "frction" }, "frction", "did you mean 'friction'?" },
         { { y = "M/kk" }, "M/kk" },
         { { x = 9 }, "9" },
@@ -60,10 +58,10 @@ test("a phase plane without k is that of the velocity, and has corners where a w
     -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
     local ball = system { I = 1, k = 1, walls = { upper = 0, restitution = 0.5 } }
     local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1 }
-    local gp = support.temporary ".gp"
+    local gp = temporary ".gp"
     run:phase_plot { file = gp }
     local before, corner
-    for x, y in support.read(gp):gmatch "(%S+) (%S+)\n" do
+    for x, y in read(gp):gmatch "(%S+) (%S+)\n" do
         local at_wall = tonumber(x) and math.abs(x) < 1e-9 and tonumber(y) -- as exact as the file writes it
         corner = corner or (before and at_wall and math.abs(before - 1) < 1e-9 and math.abs(at_wall + 0.5) < 1e-9)
         before = at_wall
@@ -72,15 +70,15 @@ test("a phase plane without k is that of the velocity, and has corners where a w
 end)
 
 test("a run from a file is drawn, too", function()
-    local csv, dat = support.temporary ".csv", support.temporary ".dat"
+    local csv, dat = temporary ".csv", temporary ".dat"
     run:save(csv)
     run:save(dat)
     has(text(load(csv), "plot"), "theta, rad")
     has(text(load(dat), "plot"), "a theta", "b M/k")
     has(text(load(dat), "phase_plot"), "theta'/omega0, rad")
     raises_here(function() load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
-    local other = support.temporary ".csv"
-    support.write(other, "time,acceleration\n0,1\n1,2.5\n")
+    local other = temporary ".csv"
+    write(other, "time,acceleration\n0,1\n1,2.5\n")
     has(text(load(other), "plot"), "acceleration", "time")
 end)
 
@@ -90,7 +88,7 @@ test("a run is a curve among curves: its theta over t", function()
     has(vectors { nondimensional {}:with { units = { theta = "m", t = "s" } }:simulate { theta0 = 1, t_end = 1, dt = 0.1 } }, "theta, m", "t, s")
     equal(vectors { run, ylabel = "angle" }, vectors { { run.t, run.theta }, xlabel = "t", ylabel = "angle" })
     raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {} } } end, "plot: curve 1: the run has no rows to draw")
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file, { columns = { "theta", "velocity" } })
     raises_here(function() plot { load(file) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
 end)
@@ -128,7 +126,7 @@ end)
 test("logarithmic axes", function()
     has(vectors { { { 1, 10, 100 }, { 1e-9, 1e-6, 1e-3 } }, xlog = true, ylog = true }, "10", "1e-9")
     has(vectors { { { 1, 10, 100 }, { 0, -1, 5 } }, ylog = true }, "5") -- what is not positive has no place
-    support.refuses(plot, {
+    refuses(plot, {
         { { line, xlog = true, xlim = { 0, 1 } }, "xlim", "must be positive" },
         { { line, xlog = true, xticks = 2 }, "xticks must be a list" },
         { { line, xlog = true, equal = true }, "equal = true needs linear axes" },
@@ -158,7 +156,7 @@ test("a picture outlives its run", function()
 end)
 
 test("wrong curves are told by their number", function()
-    support.refuses(plot, {
+    refuses(plot, {
         { {}, "plot needs a curve" },
         { { run.t, run.theta }, "item 1 must be a curve { x, y }, a run or a picture, got a vector" },
         { { { 0, 1 }, { 0, 1 } }, "item 1 must be a curve { x, y }" },
@@ -180,7 +178,7 @@ end)
 test("wrong options are told with their limits", function()
     raises_here(function() run:plot("x.svg") end, "named options")
     raises_here(function() run.plot() end, "use a colon: run:plot()")
-    support.refuses(function(o) run:plot(o) end, {
+    refuses(function(o) run:plot(o) end, {
         { { xlim = { 1, 0 } }, "xlim must be two increasing numbers" },
         { { xlim = { 1, 1 + 1e-15 } }, "xlim", "1e-13" },
         { { ylim = { -1e308, 1e308 } }, "ylim", "1e300" },
@@ -198,21 +196,21 @@ end)
 test("files begin as files of their kind begin, and an old one is replaced as a whole", function()
     local heads = { svg = "<?xml", png = "\x89PNG", pdf = "%PDF-", gp = "# A figure of dinal" }
     for ending, head in pairs(heads) do
-        local name = support.temporary("." .. ending)
-        support.write(name, ("old "):rep(100000))
+        local name = temporary("." .. ending)
+        write(name, ("old "):rep(100000))
         run:plot { file = name }
-        local bytes = support.read(name)
+        local bytes = read(name)
         equal(bytes:sub(1, #head), head)
         assert(#bytes < 200000, #bytes)
     end
-    local name = support.temporary ".txt"
+    local name = temporary ".txt"
     free:plot { file = name, ascii = true, width = 50 }
-    equal(support.read(name), text(free, "plot", { width = 50 }) .. "\n")
-    plot { plot { line, show = false }, free:phase_plot { show = false }, file = support.temporary ".svg", size = { 16, 6 } }
+    equal(read(name), text(free, "plot", { width = 50 }) .. "\n")
+    plot { plot { line, show = false }, free:phase_plot { show = false }, file = temporary ".svg", size = { 16, 6 } }
 end)
 
 test("labels are only words, whatever is in them", function()
-    local name, victim = support.temporary ".svg", os.tmpname()
+    local name, victim = temporary ".svg", os.tmpname()
     os.remove(victim)
     for _, attack in ipairs { "`touch %s`", "'; system('touch %s')", "'\n!touch %s\n", "\"`touch %s`\"", "$(touch %s)", "\27[2J%s" } do
         local words = attack:format(victim)
@@ -229,9 +227,9 @@ test("plot(x, y) is plot{ { x, y } }", function()
     local long = plot { { x, x ^ 2 }, width = 40, height = 8, title = "square", show = false }
     equal(tostring(plot(x, x ^ 2, options)), tostring(long))
     equal(tostring(plot(x:table(), (x ^ 2):table(), options)), tostring(long))
-    support.raises(function() plot(x, x, { colour = 1 }) end, "plot has no option 'colour'")
-    support.raises(function() plot(x, 3) end, "plot takes one table of curves")
+    raises(function() plot(x, x, { colour = 1 }) end, "plot has no option 'colour'")
+    raises(function() plot(x, 3) end, "plot takes one table of curves")
     equal(options.show, false)
 end)
 
-support.finish()
+finish()

@@ -1,15 +1,13 @@
 -- What is a function of its arguments is never accused of a memory, whatever else it does; and what that costs.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises = support.test, support.near, support.equal, support.raises
+dofile "tests/lua/support.lua"
 
-local asked = require "asked"
+local asked = dofile "tests/lua/asked.lua"
 local sys, methods, runs = asked.sys, asked.methods, asked.runs
 
 local function believed(make, more)
     for i, run in runs(make, more) do
         assert(#run > 10, i .. ": " .. run.outcome)
-        support.has_not(run.outcome, "no function")
+        has_not(run.outcome, "no function")
     end
 end
 
@@ -68,11 +66,11 @@ local another = "the function of excitation.sampled keeps a memory from one run 
 test("a sampled controller that remembers a run is refused in another one", function()
     local task = { M = summing(6), t_end = 5, dt = 1 }
     local run = spring:simulate(task)
-    support.raises_here(function() spring:simulate(task) end, another)
+    raises_here(function() spring:simulate(task) end, another)
     local whole = run:continue { t_end = 7 }:continue { t_end = 10 }
-    support.raises_here(function() run:continue { t_end = 10 } end, "the function of excitation.sampled has been used in another run since")
+    raises_here(function() run:continue { t_end = 10 } end, "the function of excitation.sampled has been used in another run since")
     near(whole:at(10), (spring:simulate { M = summing(6), t_end = 10, dt = 1 }:at(10)), 1e-10)
-    support.raises_here(function() spring:simulate { M = 1 + 2 * task.M, t_end = 5, dt = 1 } end, another)
+    raises_here(function() spring:simulate { M = 1 + 2 * task.M, t_end = 5, dt = 1 } end, another)
 end)
 
 test("so is a new one that shares its memory, unless that was reset; others may be used again", function()
@@ -82,7 +80,7 @@ test("so is a new one that shares its memory, unless that was reset; others may 
     end
     local first = spring:simulate(task())
     gain = 2
-    support.raises_here(function() spring:simulate(task()) end, another)
+    raises_here(function() spring:simulate(task()) end, another)
     sum, gain = 0, 1
     equal(spring:simulate(task()).theta[6], first.theta[6])
     local forgetful = { M = excitation.sampled(function(_, theta) return gain * (0.5 - theta) end, { every = 0.05 }), t_end = 5, dt = 1 }
@@ -153,7 +151,7 @@ test("steady motions, sweeps and CSV headers take a declared memory along", func
         return { x = last_of(spring:simulate { M = p.gain * M, t_end = 5, dt = 1 }) }
     end }
     for i = 1, 6 do equal(found.x[i], last_of(spring:simulate { M = i * M, t_end = 5, dt = 1 })) end
-    support.has(M, "start = function() return { sum = 0, last = {} } end")
+    has(M, "start = function() return { sum = 0, last = {} } end")
 end)
 
 test("start, the memory and what else is wrong are told", function()
@@ -177,4 +175,4 @@ test("start, the memory and what else is wrong are told", function()
     raises(function() spring:simulate(task) end, another)
 end)
 
-support.finish()
+finish()

@@ -1,6 +1,5 @@
 -- What people ask help(), and a piece of the page that answers first.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
+dofile "tests/lua/support.lua"
 
 local questions = {
   { "fourier", "run:spectrum()" },
@@ -69,19 +68,19 @@ local questions = {
   { "jupyter", "--jupyter-install" },
 }
 
-local name = support.temporary ".lua"
+local name = temporary ".lua"
 local code = {}
 for _, case in ipairs(questions) do code[#code + 1] = ("print('\\0') help %q"):format(case[1]) end
-support.write(name, table.concat(code, "\n"))
-local pipe <close> = io.popen(('"%s" %s 2>&1'):format(support.program(), name))
+write(name, table.concat(code, "\n"))
+local pipe <close> = io.popen(('"%s" %s 2>&1'):format(program(), name))
 local pages, i = pipe:read "a", 0
 assert(#questions >= 50)
 for page in pages:gmatch "%z\n([^\0]*)" do
   i = i + 1
   local question, piece = table.unpack(questions[i])
-  support.test(("help %q"):format(question), function()
+  test(("help %q"):format(question), function()
     local head = page:match("^" .. ("[^\n]*\n?"):rep(6))
     assert(head:find(piece, 1, true), "does not begin with " .. piece .. " but:\n" .. head)
   end)
 end
-support.finish()
+finish()

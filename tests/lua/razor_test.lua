@@ -1,7 +1,5 @@
 -- What rounding decides is the same whether or not a run has something idle in it: an event that never comes.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, same_events = support.test, support.near, support.equal, support.same_events
+dofile "tests/lua/support.lua"
 
 local never = { { when = function(_, theta) return theta - 1e6 end } }
 
@@ -56,10 +54,10 @@ test("a jump of M at the very end is not asked for, and is when the run goes on"
 end)
 
 test("of a feedback that chatters the first events are told", function()
-    local M = support.unread(function(t, _, velocity) return 0.2 * math.sin(t) - 0.5 * (velocity > 0 and 1 or velocity < 0 and -1 or 0) end)
+    local M = unread(function(t, _, velocity) return 0.2 * math.sin(t) - 0.5 * (velocity > 0 and 1 or velocity < 0 and -1 or 0) end)
     local run = nondimensional { zeta = 0.05 }:simulate { M = M, theta0 = 1, t_end = 20, events = never }
-    support.has(run.outcome, "switched endlessly")
+    has(run.outcome, "switched endlessly")
     assert(#run.events <= 4, #run.events)
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- A function that is a formula is read: the same bits as Lua, and its conditions of t are breaks.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 local times = {}
 for i = 1, 400 do times[i] = (i - 150) * 0.0371 end
@@ -32,7 +30,7 @@ local function same_values(f, what)
     return #good
 end
 
-local function unread(f, why)
+local function not_read(f, why)
     local found = excitation.scripted(f):obstacle() or "nothing"
     assert(found:find(why, 1, true), found)
     local line = debug.getinfo(f, "S").linedefined
@@ -81,23 +79,23 @@ end)
 
 test("what no formula is, is not read, and the line is told", function()
     local n, view = 0, setmetatable({}, { __index = function() return 2 end })
-    unread(function(t) n = n + 1 return t end, "assigns to a variable outside")
-    unread(function(t) UNUSED_GLOBAL = 1 return t end, "assigns to a global")
-    unread(function(t) list[1] = 3 return t end, "writes into a table")
-    unread(function(t) local v = { t } return v[1] end, "makes a table")
-    unread(function(t) return ("x"):len() * t end, "method")
-    unread(function(t) return #tostring(t) end, "not written in Lua (tostring)")
-    unread(function(t) return t + math.random() end, "not written in Lua (random)")
-    unread(function(t) return view.a * t end, "metatable")
-    unread(function(t) return deep.b * t end, "not a number")
-    unread(function(t) return list[math.floor(t)] or 0 end, "not known beforehand")
-    unread(function(t) local s = 0 for i = 1, t do s = s + i end return s end, "constant bounds")
-    unread(function(t) while t > 1 do t = t / 2 end return t end, "too")
-    unread(function(t) local s = t for i = 1, 1000000 do s = s + i end return s end, "too long")
-    unread(function(t) local f = function() return t end return f() end, "makes a function")
-    unread(function(t) for _, x in ipairs(list) do t = t + x end return t end, "ipairs")
-    unread(function(t, ...) return t end, "any number of arguments")
-    support.has(excitation.scripted(math.sin):obstacle(), "not a Lua function")
+    not_read(function(t) n = n + 1 return t end, "assigns to a variable outside")
+    not_read(function(t) UNUSED_GLOBAL = 1 return t end, "assigns to a global")
+    not_read(function(t) list[1] = 3 return t end, "writes into a table")
+    not_read(function(t) local v = { t } return v[1] end, "makes a table")
+    not_read(function(t) return ("x"):len() * t end, "method")
+    not_read(function(t) return #tostring(t) end, "not written in Lua (tostring)")
+    not_read(function(t) return t + math.random() end, "not written in Lua (random)")
+    not_read(function(t) return view.a * t end, "metatable")
+    not_read(function(t) return deep.b * t end, "not a number")
+    not_read(function(t) return list[math.floor(t)] or 0 end, "not known beforehand")
+    not_read(function(t) local s = 0 for i = 1, t do s = s + i end return s end, "constant bounds")
+    not_read(function(t) while t > 1 do t = t / 2 end return t end, "too")
+    not_read(function(t) local s = t for i = 1, 1000000 do s = s + i end return s end, "too long")
+    not_read(function(t) local f = function() return t end return f() end, "makes a function")
+    not_read(function(t) for _, x in ipairs(list) do t = t + x end return t end, "ipairs")
+    not_read(function(t, ...) return t end, "any number of arguments")
+    has(excitation.scripted(math.sin):obstacle(), "not a Lua function")
 end)
 
 test("what a formula holds for constant is looked at again when anything may have changed it", function()
@@ -128,7 +126,7 @@ test("what a formula holds for constant is looked at again when anything may hav
     equal(last(), 200.0)
     getmetatable(own).__index = function() return 1 end
     equal(last(), 201.0)
-    support.has(e:obstacle(), "metatable")
+    has(e:obstacle(), "metatable")
 end)
 
 test("sums of native terms, and pieces that are such sums, run by exact, and what repeats knows its period", function()
@@ -151,19 +149,19 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
         local function run(M, integrator, t_end)
             return sys:simulate { M = M, t_start = -1, t_end = t_end or 20, dt = 0.1, theta0 = 0.5, integrator = integrator }
         end
-        local found, sampled = run(f), run(support.unread(f))
+        local found, sampled = run(f), run(unread(f))
         equal(tostring(found.integrator), "integrator.exact{}")
         equal(tostring(sampled.integrator), "integrator.spectral{}")
         equal(#found.events, #sampled.events, "function " .. i)
         near(found.theta, sampled.theta, within)
         assert(found.gap == nil)
-        support.says(found, "sum of native terms")
+        says(found, "sum of native terms")
         equal(run(f, integrator.exact {}).theta, found.theta)
         near((run(f, nil, 8):continue { t_end = 20 }:at(20)), (found:at(20)), 1e-13)
         if period then
             local s = sys:steady { M = f }
             near(s.period / period - math.floor(s.period / period + 0.5), 0, 1e-12)
-            near(s.amplitude, sys:steady { M = support.unread(f), period = period }.amplitude, 1e-8)
+            near(s.amplitude, sys:steady { M = unread(f), period = period }.amplitude, 1e-8)
         end
     end
     for _, f in ipairs { function(t) return t * math.sin(t) end, function(t) return math.sin(t * t) end,
@@ -173,7 +171,7 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
     -- what else runs in Lua may change what M depends on
     local run = sys:simulate { M = cases[1][1], t_end = 1, dt = 1, events = { { when = function(t) return t - 0.5 end } } }
     equal(tostring(run.integrator), "integrator.spectral{}")
-    support.raises_here(function() sys:simulate { M = math.sin, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
+    raises_here(function() sys:simulate { M = math.sin, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
         "integrator.exact{} supports only native terms")
 end)
 
@@ -187,7 +185,7 @@ test("a variable that an event changes in the middle of a run is seen at once", 
         return run.outcome, run.velocity[#run]
     end
     local read = { final(function(f) return f end) }
-    local asked = { final(support.unread) }
+    local asked = { final(unread) }
     equal(read[1], asked[1])
     equal(read[2], asked[2])
 end)
@@ -201,7 +199,7 @@ test("theta, velocity and states come in, and a run is the same to the last bit"
     end
     local f = function(t, theta, velocity, z) return 2 * math.sin(3 * t) - 0.3 * velocity + 0.1 * theta - 0.2 * z.z end
     for _, i in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
-        local a, b = rows(f, i), rows(support.unread(f), i)
+        local a, b = rows(f, i), rows(unread(f), i)
         equal(a.theta, b.theta)
         equal(a.velocity, b.velocity)
         equal(#a.events, #b.events)
@@ -223,7 +221,7 @@ test("functions of several bodies, of the speed, and rates of states are read, w
         return run, one
     end
     local x, one = rig(function(f) return f end)
-    local y, other = rig(support.unread)
+    local y, other = rig(unread)
     near(x.a.theta, y.a.theta, 1e-11)
     near(x.b.velocity, y.b.velocity, 1e-11)
     near(one.theta, other.theta, 1e-12)
@@ -232,7 +230,7 @@ test("functions of several bodies, of the speed, and rates of states are read, w
 end)
 
 test("an error keeps its line", function()
-    support.raises_here(function()
+    raises_here(function()
         local f = function(t)
             if t > 3 then error("too late") end
             return t
@@ -375,4 +373,4 @@ test("random functions give the same bits read as asked", function()
     assert(read > 0.8 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
 end)
 
-support.finish()
+finish()

@@ -1,12 +1,9 @@
 -- report{}: what goes in comes out in HTML and in Markdown, nothing in it is taken for markup, and what is wrong is told.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
-local read = support.read
 
 local function saved(r, ending)
-    local name = support.temporary(ending)
+    local name = temporary(ending)
     r:save(name)
     return read(name), name
 end
@@ -128,7 +125,7 @@ test("the end of CDATA in a label leaves the picture well formed", function()
 end)
 
 test("what cannot be reported is told in a sentence", function()
-    support.refuses(report, {
+    refuses(report, {
         { {}, "report needs title" },
         { { title = 3 }, "title must be" },
         { { title = " " }, "report: the title is empty" },
@@ -144,4 +141,4 @@ test("what cannot be reported is told in a sentence", function()
     equal(tostring(r), 'report "x" with 0 parts')
 end)
 
-support.finish()
+finish()

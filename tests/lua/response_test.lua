@@ -1,7 +1,5 @@
 -- sys:response, run:spectrum and run:poincare against closed forms. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises_here, has = support.test, support.equal, support.near, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 test("the response is Den Hartog's where it does not stop, and goes on where it does", function()
     local c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = vector.linspace(0.3, 2.1, 46) }, between = true }
@@ -58,7 +56,7 @@ test("what is wrong with a response is told", function()
     local sys = system{ I = 2, k = 50, C = 1.5 }
     local one = { amplitude = { 1, 2 } }
     local function empty() return {} end
-    support.refuses(function(o) sys:response(o) end, {
+    refuses(function(o) sys:response(o) end, {
         { { over = { 1, 2 } }, "over[1] must be a name and its values" },
         { { over = {} }, "over must be a name and its values" },
         { { over = { frequency = { "a" } } }, "over.frequency must be a list of numbers" },
@@ -353,4 +351,4 @@ test("a period is given as period, frequency or omega wherever one is asked", fu
     equal(#run:poincare{ omega = 0.8 * math.pi, from = 50 }, 5)
 end)
 
-support.finish()
+finish()

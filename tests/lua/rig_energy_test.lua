@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here, says = support.test, support.near, support.equal, support.raises_here, support.says
+dofile "tests/lua/support.lua"
 
 local function closes(run, what, within)
     local total = run:energy().total
@@ -93,7 +91,7 @@ test("energy over time: of all, and of one body or link as of a system of one bo
     near(dry, a.total.dry, 1e-11)
     near(others, a.total.others, 1e-11)
     assert(#a.half_cycles > 5)
-    support.has(a, "work of its links on it")
+    has(a, "work of its links on it")
 end)
 
 test("a run is told in sentences", function()
@@ -106,7 +104,7 @@ end)
 test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.2 }, b = { I = 1 } }, links = { pad = { "a", "b", Rd = 0.1 } } }
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file)
     local back = load(file)
     equal(back["pad.torque"][3], run.pad.torque[3])
@@ -114,7 +112,7 @@ test("what a run of several bodies can do besides: save, load, status, plot, go 
     equal(run.status, "end")
     equal(run.a.status, "end")
     local picture = tostring(run:plot { width = 60, height = 30, ascii = true, show = false })
-    support.has(picture, "a theta", "b theta", "pad theta")
+    has(picture, "a theta", "b theta", "pad theta")
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- Random rigs with everything that may act in them, and what single decisions of them once got wrong.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 local function uniform(a, b) return a + (b - a) * math.random() end
 local function chance(p) return math.random() < p end
@@ -65,7 +63,7 @@ local function with(drive, more)
 end
 
 test("of random rigs the energy closes, and a run in two parts ends as in one", function()
-    for seed = 1, support.lots(40) do
+    for seed = 1, lots(40) do
         local rig, drive = random_rig(seed)
         local run = rig:simulate(with(drive, { t_end = 12, dt = 12 }))
         assert(run.status ~= "failed", ("rig %d: %s"):format(seed, run.outcome))
@@ -135,7 +133,7 @@ test("a function that fails for a motion that is only tried is no error", functi
     local sys = system { I = 0.02, k = 0, C = 0.1, Rd = 0.1, spring = function(q) return 900 * q + 1e4 * q ^ 3 end }
     local run = sys:simulate { M = function(t) return 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }
     equal(run.status, "end")
-    support.raises(function()
+    raises(function()
         sys:simulate { M = function(t, theta) return theta > 0.001 and 0 / 0 or 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }
     end, "M returned")
 end)
@@ -151,4 +149,4 @@ test("a mass rides on a belt that swings as well long after the start as soon af
     near(run.theta[141], run.theta[61], 1e-10)
 end)
 
-support.finish()
+finish()

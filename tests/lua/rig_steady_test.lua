@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local function sine(omega, amplitude)
     return excitation.harmonic { amplitude = amplitude or 1, omega = omega }
@@ -40,7 +38,7 @@ test("a chain without friction under a sine: its closed form", function()
     local product = 1
     for _, m in ipairs(s.multipliers) do product = product * m.abs end
     near(product, math.exp(-0.1 * s.period), 1e-8)
-    support.says(s, "b swings between")
+    says(s, "b swings between")
     raises_here(function() return s.amplitude end, "choose one of them, such as s.a.amplitude")
     raises_here(function() return s.c end, "this steady motion has no 'c'; its bodies and links are a, b, rod")
 end)
@@ -71,7 +69,7 @@ test("a drill string sticks and slips while it goes round", function()
     equal(s.bit.mean, nil)
     equal(s.bit.stops, 1)
     assert(s.pipe.amplitude > 0.5)
-    support.says(s, "bit turns by")
+    says(s, "bit turns by")
     local even = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1, C = 0.5 } } }
         :steady { M = { a = 1 } }
     equal(even.status, "steady")
@@ -113,7 +111,7 @@ test("a damper that is only rubbed along: its period is that of M, glued it does
     near(glued.machine.amplitude, 0.07 / math.sqrt((1 - 1.28 * 0.81) ^ 2 + (0.02 * 0.9) ^ 2), 1e-10)
     equal(loose.periods, 1)
     assert(loose.joint.amplitude > 0 and loose.joint.stuck < 1)
-    support.has_not(loose:explain(), "goes round")
+    has_not(loose:explain(), "goes round")
 end)
 
 test("rest, and what is refused", function()
@@ -126,7 +124,7 @@ test("rest, and what is refused", function()
     equal(s.period, nil)
     equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
     local function scripted(t) return math.sin(t) end
-    support.refuses(function(o) rig:steady(o) end, {
+    refuses(function(o) rig:steady(o) end, {
         { { M = { a = scripted } }, "the period of the excitation is not known; give it with period = ..." },
         { { M = { a = scripted }, period = 3 }, "does not repeat itself" },
         { { M = { a = excitation.sampled(function() return 0 end, { every = 0.1 }), b = sine(1) } }, "no common period", "run it for long" },
@@ -170,8 +168,8 @@ test("the response of a chain has the columns of its bodies, and follows at", fu
     local map = chain():response { over = { M0 = { 1, 2, 3 }, omega = { 0.5, 1.5 } }, at = function(p) return { M = { a = p.M0 * sine(p.omega) } } end }
     equal(tostring(map.M0), "vector{ 1, 1, 2, 2, 3, 3 }")
     for i = 1, #map do near(map["b.amplitude"][i], map.M0[i] * select(2, amplitudes(map.omega[i])), 1e-9) end
-    support.has(map:plot { z = "b.amplitude", show = false }, "M0")
-    support.refuses(function(o) chain():response(o) end, {
+    has(map:plot { z = "b.amplitude", show = false }, "M0")
+    refuses(function(o) chain():response(o) end, {
         { { over = { x = { 1 }, y = { 1 }, z = { 1 } }, at = function() return {} end }, "varies one or two" },
         { { over = { x = { 1 } } }, "needs at" },
         { { over = { x = { 1 } }, at = function(p) return p.x end }, "at returned 1" },
@@ -190,4 +188,4 @@ test("bifurcation looks at one of the bodies", function()
     end, "of = \"load\"")
 end)
 
-support.finish()
+finish()

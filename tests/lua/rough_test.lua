@@ -1,7 +1,5 @@
 -- Functions with noise in them, in runs with more in them: what ends such a run says what is rough, and what goes on.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
+dofile "tests/lua/support.lua"
 
 -- A number within 1 that depends on t alone, and not smoothly anywhere.
 local function noise(t)
@@ -72,4 +70,4 @@ test("noise in M is followed as exactly as it can be, also with two bodies", fun
     end
 end)
 
-support.finish()
+finish()

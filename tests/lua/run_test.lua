@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
@@ -48,14 +46,14 @@ test("a run is data with more, and events always have a velocity", function()
 end)
 
 test("load reads what the program wrote and any table of numbers", function()
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     run:save(name)
     equal(load(name).theta, run.theta)
-    support.write(name, "t;theta;M\ns;m;N\n0;1,5;2\n1;2,5;3\n") -- times and angles: a run
+    write(name, "t;theta;M\ns;m;N\n0;1,5;2\n1;2,5;3\n") -- times and angles: a run
     local record = load(name)
     equal(record.units.theta .. record.units.t .. record.units.M, "msN")
     equal(record.theta[2], 2.5)
-    support.write(name, "# by hand\nt\ttheta\n0\t1\n1\t\n") -- with a gap: data
+    write(name, "# by hand\nt\ttheta\n0\t1\n1\t\n") -- with a gap: data
     equal(load(name):select("t").t, vector{ 0, 1 })
 end)
 
@@ -78,7 +76,7 @@ test("run:at gives theta and velocity at rows and between them", function()
     near(velocity, run.velocity[200], 1e-11)
     local fine = nd:simulate { M = run.excitation, theta0 = 1, t_end = 5, dt = 0.0025 }
     near((run:at(3.2125)), fine.theta[1286], 1e-10) -- both integrate with h = 0.001, whose error is below 1e-10
-    support.refuses(function(t) run:at(t) end, {
+    refuses(function(t) run:at(t) end, {
         { 5.00000001, "t = 5.00000001 is outside the run from 0 to 5" },
         { -1, "outside" },
         { "1", "finite number" },
@@ -96,7 +94,7 @@ test("a run shows where it came from and cannot be changed", function()
 end)
 
 test("a run saved as CSV reads back to the last bit", function()
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     run:save(name)
     local old = load(name)
     equal(#old, 501)
@@ -108,28 +106,28 @@ test("a run saved as CSV reads back to the last bit", function()
     equal(old.system, nil)
     equal(#old.events, 0)
     near((old:at(0.005)), (run:at(0.005)), 1e-5) -- cubic between rows 0.01 apart: h^4/384 theta''''
-    local again = support.temporary ".csv"
+    local again = temporary ".csv"
     old:save(again)
-    equal(support.read(again), support.read(name), "saving what was loaded")
+    equal(read(again), read(name), "saving what was loaded")
 end)
 
 test("a run saved as the record of 1989 reads back to the last bit", function()
-    local name = support.temporary ".dat"
+    local name = temporary ".dat"
     run:save(name)
     local old = load(name)
     equal(table.concat(old.names, " "), "t theta velocity_over_omega0 M_over_k friction_over_k damping_over_k")
     assert(old.t == run.t and old.theta == run.theta and old.M_over_k == run.M)
     assert(old.velocity_over_omega0 == run.velocity / nd.omega0)
-    equal(support.read(name):match("^%s*(%d+)"), "501")
-    local again = support.temporary ".dat"
+    equal(read(name):match("^%s*(%d+)"), "501")
+    local again = temporary ".dat"
     old:save(again)
-    equal(support.read(again), support.read(name))
+    equal(read(again), read(name))
     raises_here(function() return old.velocity end, "no field 'velocity'", "velocity_over_omega0")
 end)
 
 test("columns of a file that have other names are fields, too", function()
-    local name = support.temporary ".csv"
-    support.write(name, "time,acceleration\n0,1\n1,2.5\n")
+    local name = temporary ".csv"
+    write(name, "time,acceleration\n0,1\n1,2.5\n")
     local record = load(name)
     equal(record.acceleration[2], 2.5)
     raises_here(function() return record.acelleration end, "did you mean 'acceleration'?")
@@ -137,19 +135,19 @@ test("columns of a file that have other names are fields, too", function()
 end)
 
 test("a choice of columns can be saved", function()
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     run:save(name, { columns = { "theta", 3 } })
     equal(table.concat(load(name).names, " "), "theta velocity")
-    support.refuses(function(o) run:save(name, o) end, {
+    refuses(function(o) run:save(name, o) end, {
         { { columns = { "thta" } }, "thta", "did you mean" },
         { { columns = {} }, "columns must be a list" },
         { { column = { "t" } }, "did you mean 'columns'?" },
     })
-    raises_here(function() run:save(support.temporary ".dat", { columns = { "t" } }) end, "six columns")
+    raises_here(function() run:save(temporary ".dat", { columns = { "t" } }) end, "six columns")
 end)
 
 test("a name that says no kind of file, or a place that cannot be written, is an error", function()
-    support.refuses(function(name) run:save(name) end, {
+    refuses(function(name) run:save(name) end, {
         { "run.txt", "run.txt", ".csv", ".dat" },
         { "run", ".csv", ".dat" },
         { nil, "must be a string" },
@@ -167,14 +165,14 @@ end)
 
 --- The comment block, stripped of "# ", must make a run with the same file.
 local function check_repeats(first, what)
-    local name, again = support.temporary ".csv", support.temporary ".csv"
+    local name, again = temporary ".csv", temporary ".csv"
     first:save(name)
-    support.repeated(name):save(again)
+    repeated(name):save(again)
     local function rows(file)
-        return (support.read(file):gsub("#[^\n]*\n", ""))
+        return (read(file):gsub("#[^\n]*\n", ""))
     end
     equal(rows(again), rows(name), what)
-    support.has_not(support.read(name), "could not be written down")
+    has_not(read(name), "could not be written down")
 end
 
 test("the comment block of a CSV repeats a run with a native excitation", function()
@@ -210,12 +208,12 @@ end)
 
 test("what cannot be written down is said in the comment block", function()
     local thread = coroutine.create(print)
-    local name = support.temporary ".csv"
+    local name = temporary ".csv"
     nd:simulate { M = function(t) return thread and 1 or 0 end, t_end = 1, dt = 1 }:save(name)
-    support.has(support.read(name), "# -- a thread could not be written down")
+    has(read(name), "# -- a thread could not be written down")
     local late = setmetatable({ 3 }, { __index = function() return 2 end })
     nd:simulate { M = function(t) return late[2] * t end, t_end = 1, dt = 1 }:save(name)
-    support.has(support.read(name), "# -- the metatable of a table could not be written down")
+    has(read(name), "# -- the metatable of a table could not be written down")
 end)
 
 test("the status of a run is one word for each way to end", function()
@@ -226,7 +224,7 @@ test("the status of a run is one word for each way to end", function()
     equal(sys:simulate{ theta0 = 2, t_end = 5, events = { { when = function(_, theta) return theta end, stop = true } } }.status, "event")
     pcall(sys.simulate, sys, { M = function(t) return t < 1 and 2 or error("mine") end, t_end = 5 })
     equal(dinal.partial.status, "failed")
-    local name = support.temporary(".csv")
+    local name = temporary(".csv")
     sys:simulate{ theta0 = 2, t_end = 5 }:save(name)
     equal(load(name).status, nil)
 end)
@@ -264,4 +262,4 @@ test("a run tells its cycle as data", function()
     equal(sys:simulate{ theta0 = 2, t_end = 20 }:cycle(), nil)
 end)
 
-support.finish()
+finish()

@@ -1,6 +1,6 @@
 -- No script takes more memory than it may: not in Lua, not in vectors, runs and excitations, which C++ holds.
-package.path = "tests/lua/?.lua;" .. package.path
-local strangers = require "strangers"
+dofile "tests/lua/support.lua"
+local strangers = dofile "tests/lua/strangers.lua"
 
 -- --max-time is a clock, and not what is tested here: strangers.lua limits the processor time.
 local options = "--safe --max-time 3600 --max-memory 32M"
@@ -60,4 +60,4 @@ strangers.check({
     ["--max-memory without safe mode"] = "local t = {} while true do pcall(function() t[#t + 1] = vector.linspace(0, 1, 1e4) end) end",
 }, "--max-memory 32M", 1, "dinal: stopped[^\n]*: " .. limit)
 
-require("support").finish()
+finish()

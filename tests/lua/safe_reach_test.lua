@@ -1,7 +1,6 @@
 -- What a script of a stranger can reach: the listed functions, and files in its folder through run:save and its like.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local strangers = require "strangers"
+dofile "tests/lua/support.lua"
+local strangers = dofile "tests/lua/strangers.lua"
 
 -- A folder of its own below an outer one that must stay as it is.
 local outer = os.tmpname()
@@ -103,14 +102,14 @@ for _, name in ipairs { "../new.svg", folder .. "/../new.gp", "up/new.png", "/tm
 end
 local results = strangers.run(refused, options, folder)
 for name, code in pairs(refused) do
-    support.test(name .. " is refused", function()
+    test(name .. " is refused", function()
         local result = results[name]
-        support.equal(result.exit, 0, result.text)
+        equal(result.exit, 0, result.text)
         local file = name:match "%S+$"
         local ends = file:match "%.csv$" or file:match "%.dat$" or name:find "^drawing"
         assert(not ends or result.text:find(only, 1, true) or result.text:find("there is no folder", 1, true), result.text)
         assert(not result.text:find "read\n", result.text)
-        support.has_not(result.text, "saved")
+        has_not(result.text, "saved")
         assert(not result.text:find "excitation.samples *{" and not result.text:find "root:", result.text)
     end)
 end
@@ -134,10 +133,9 @@ local words = run .. [[
     print "drawn"]]
 strangers.check({ ["words are no commands of gnuplot"] = words }, options, 0, "drawn\n", folder)
 
-local test = support.test
 test("what stands outside of the folder is as it was", function()
     local listing = io.popen(("cd '%s' && ls && cat secret.csv"):format(outer)):read "a"
-    support.equal(listing, "lab\nsecret.csv\nt,M\n0,1\n1,2\n")
+    equal(listing, "lab\nsecret.csv\nt,M\n0,1\n1,2\n")
 end)
 
 -- The source of a function comes from a file: which one is up to the chunk's name, and that is up to the script.
@@ -148,4 +146,4 @@ strangers.check({
         run:save "source.csv" print(load "source.csv".names[1])]],
 }, options, 0, "t\n", folder)
 
-support.finish()
+finish()

@@ -1,6 +1,6 @@
 -- No script runs longer than it may, whatever it tries.
-package.path = "tests/lua/?.lua;" .. package.path
-local strangers = require "strangers"
+dofile "tests/lua/support.lua"
+local strangers = dofile "tests/lua/strangers.lua"
 
 local options = "--safe --max-time 0.2 --max-memory 64M"
 
@@ -60,8 +60,8 @@ local removed <close> = setmetatable({}, { __close = function() os.execute("rm -
 strangers.check({
     ["a file that grows"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 100, dt = 1e-2 } local c = {} for i = 1, 1e4 do c[i] = 'theta' end while true do pcall(run.save, run, 'big.csv', { columns = c }) end",
 }, options, 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n", folder)
-require("support").test("what was not written to its end is gone", function()
-    require("support").equal(io.popen(("ls -A '%s'"):format(folder)):read "a", "")
+test("what was not written to its end is gone", function()
+    equal(io.popen(("ls -A '%s'"):format(folder)):read "a", "")
 end)
 
 -- C code that looks at nothing: the program ends a second later.
@@ -87,4 +87,4 @@ strangers.check({
     ["a run of dinal1989 with more breaks than steps"] = "nondimensional{}:simulate{ M = excitation.square{ frequency = 2e5 }, t_end = 1e9, dt = 1e9, integrator = integrator.dinal1989{ h = 0.1 } }",
 }, "--max-time 0.2", 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n")
 
-require("support").finish()
+finish()

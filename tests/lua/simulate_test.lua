@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
 
@@ -85,7 +83,7 @@ test("t_start shifts the window, and nothing is recorded as an event there", fun
 end)
 
 test("missing, superfluous and misspelt options are errors that show the way", function()
-    support.refuses(function(o) nd:simulate(o) end, {
+    refuses(function(o) nd:simulate(o) end, {
         { { dt = 0.1 }, "sys:simulate needs t_end, for example" },
         { { times = {} }, "needs t_end" },
         { { t_end = 1, dt = 0.1, times = { 1 } }, "exclude each other" },
@@ -98,7 +96,7 @@ test("missing, superfluous and misspelt options are errors that show the way", f
 end)
 
 test("values of a wrong kind are errors that name the option and the value", function() -- option_rows_test.lua has all of them
-    support.refuses(function(o) nd:simulate(o) end, {
+    refuses(function(o) nd:simulate(o) end, {
         { { t_end = "1", dt = 0.1 }, "t_end must be a finite number", 'the string "1"' },
         { { t_end = 1, dt = 0.1, velocity0 = 0 / 0 }, "velocity0 must be a finite number", "nan" },
         { { t_end = 1, dt = 0.1, M = "sin" }, "M must be a function, a number or an excitation", '"sin"' },
@@ -108,7 +106,7 @@ test("values of a wrong kind are errors that name the option and the value", fun
 end)
 
 test("windows and grids that cannot be are errors with their values", function()
-    support.refuses(function(o) nd:simulate(o) end, {
+    refuses(function(o) nd:simulate(o) end, {
         { { t_end = 0, dt = 0.1 }, "t_end = 0 must be after t_start = 0" },
         { { times = { 0, 1, 1 } }, "times[3] = 1", "must increase" },
         { { times = { -1, 1 } }, "times[1] = -1", "outside" },
@@ -138,4 +136,4 @@ test("without dt and times a run has 1001 rows, and goes on with the same distan
     equal(nd:simulate { theta0 = 1, t_end = 1 }.theta[501], nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta[501])
 end)
 
-support.finish()
+finish()

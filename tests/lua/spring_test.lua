@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local duffing = spring.polynomial { [3] = 0.5 }
 
@@ -28,7 +26,7 @@ test("a spring written as a Lua function moves the mass as the native one", func
     near(a.theta, b.theta, 1e-11)
     near(b:energy().total.error, 0, 1e-12)
     near(a:energy().spring, b:energy().spring, 1e-11)
-    support.says(b, "a second spring besides k theta")
+    says(b, "a second spring besides k theta")
     task.integrator = integrator.rk4 { h = 0.005 }
     near(native:simulate(task).theta, a.theta, 1e-7)
 end)
@@ -70,7 +68,7 @@ end)
 test("a spring that fails is told with the angle and its line, and what ran is kept", function()
     local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
-        support.raises(function() soft:simulate { velocity0 = 4, t_end = 20, dt = 0.01, integrator = method } end,
+        raises(function() soft:simulate { velocity0 = 4, t_end = 20, dt = 0.01, integrator = method } end,
             "spring_test.lua:", ": spring returned nil at theta = 1.", "; it must return a finite number")
         assert(#dinal.partial > 10)
     end
@@ -80,13 +78,13 @@ test("a spring that fails is told with the angle and its line, and what ran is k
         ["no spring"] = function() error("no spring") end,
         ["system: spring must be a function of theta, or a spring such as"] = 3,
     } do
-        support.raises(function() system { I = 1, k = 1, spring = own } end, message)
+        raises(function() system { I = 1, k = 1, spring = own } end, message)
     end
 end)
 
 test("what is wrong with a spring is one sentence with the name of the option", function()
     raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
-    support.refuses(spring.polynomial, {
+    refuses(spring.polynomial, {
         { { [0.5] = 1 }, "the power 0.5 must be a whole number from 1 to 31" },
         { { [32] = 1 }, "the power 32 must be" },
         { { [0] = 1 }, "the power 0 is a constant torque, not a spring" },
@@ -123,8 +121,8 @@ test("a motion that a softening spring lets go ends with a sentence about itself
     for _, M in ipairs { 40 * excitation.harmonic { frequency = 0.5 }, excitation.constant { amplitude = 200 } } do
         for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 1e-3 } } do
             local run = sys:simulate { M = M, t_end = 20, dt = 0.1, integrator = with }
-            support.has(run.outcome, "the state became infinite")
-            support.says(run, "stopped early, at t = ", ": the state became infinite")
+            has(run.outcome, "the state became infinite")
+            says(run, "stopped early, at t = ", ": the state became infinite")
         end
     end
 end)
@@ -134,7 +132,7 @@ test("a spring that fails where the mass stands between walls ends the run, and 
         if theta > 0.5 then error("too far") end
         return theta
     end
-    support.raises(function() system { I = 1, k = 1, Rd = 0.1, spring = brittle, walls = { upper = 1.5 } }:simulate { theta0 = 1, t_end = 2, dt = 0.1 } end, "too far")
+    raises(function() system { I = 1, k = 1, Rd = 0.1, spring = brittle, walls = { upper = 1.5 } }:simulate { theta0 = 1, t_end = 2, dt = 0.1 } end, "too far")
 end)
 
-support.finish()
+finish()

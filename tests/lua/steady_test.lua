@@ -1,7 +1,5 @@
 -- sys:steady and run:steady as a user sees them: what is found, what is told, what is refused. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near, raises, raises_here = support.test, support.equal, support.near, support.raises, support.raises_here
+dofile "tests/lua/support.lua"
 
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
 local sliding = nondimensional{ friction_ratio = 0.5 }
@@ -51,7 +49,7 @@ test("where there is no motion, or too much of it, the answer says so", function
     near(s.rest[1], -0.1, 1e-12)
     near(s.rest.upper, 0.1, 1e-12)
     assert(s.unique == false and s.stuck == 1.0 and s.stops == nil)
-    support.says(s, "adheres")
+    says(s, "adheres")
     assert(nondimensional{ friction_ratio = 0.1 }:steady{ M = harmonic(0.5) }:explain():find("one%s+of%s+a%s+family"))
 end)
 
@@ -62,7 +60,7 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     near(sliding:steady{ M = f }.period, 1 / 1.35, 1e-15) -- read as a sine
     near(sliding:steady{ M = f }.amplitude, 0.860792180, 1e-9)
     near(sliding:steady{ M = function(t) return math.abs(f(t)) end }.period, 1 / 1.35, 1e-15)
-    support.refuses(function(o) sliding:steady(o) end, {
+    refuses(function(o) sliding:steady(o) end, {
         { { M = function(t) return math.abs(f(t * t)) end }, "the period of M is not known" },
         { { M = harmonic(1) + harmonic(2^0.5) }, "the terms of M have no common period" },
         { { M = f, period = 0.7 }, "M does not repeat itself after period = 0.7" },
@@ -101,7 +99,7 @@ test("beside resonance a slow beat is no growth, whatever holds the mass that ne
     local lightly = theory.den_hartog{ r = 1.000095, friction_ratio = 0.05, zeta = 8e-5 }
     near(damped:steady{ M = harmonic(1.000095) }.amplitude, lightly, 1e-9 * lightly)
     local far = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5, Re = 0.6 }:steady{ M = harmonic(1.003) }
-    support.has_not(far:explain(), "grows")
+    has_not(far:explain(), "grows")
 end)
 
 test("a load that begins late is taken when it is periodic", function()
@@ -145,7 +143,7 @@ test("run:steady goes on from where the run has got to", function()
     local M = harmonic(1)
     local run = nondimensional{ friction_ratio = 0.836 }:simulate{ M = M, theta0 = 1, t_end = 7.3, dt = 0.1 }
     near(run:steady().amplitude, 0.1291703518, 1e-10)
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file)
     raises_here(function() load(file):steady() end, "has no system")
 end)
@@ -172,7 +170,7 @@ test("with a dead time in the loop the run itself goes on until it repeats itsel
         equal(s.periods, 1)
         assert(s.symmetric and s.stable and s.unique == "not seen" and s.multipliers == nil)
         near(s.mean, 0, 1e-9)
-        support.says(s, "no multipliers")
+        says(s, "no multipliers")
         local run = s.run
         near(run.t_end - run.t_start, s.period, 1e-9)
         local on = run:continue{ times = { run.t_end + 7 * s.period } } -- with the past that it has
@@ -276,4 +274,4 @@ test("what a load comes to just before it jumps back, at the end of its period, 
     end
 end)
 
-support.finish()
+finish()

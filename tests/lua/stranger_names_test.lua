@@ -1,12 +1,10 @@
 -- What a stranger's file says does not steer the terminal of who prints it.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal = support.test, support.equal
+dofile "tests/lua/support.lua"
 
 local evil = "\27]0;owned\7\27[2J\27[8m"
-local file, words = support.temporary ".csv", support.temporary ".csv"
-support.write(file, '# -- units: theta in \27[2J\nt,"' .. evil .. '"\n0,1\n1,2\n')
-support.write(words, 'a,"b' .. evil .. '"\n1,"' .. evil .. '"\n2,x\n')
+local file, words = temporary ".csv", temporary ".csv"
+write(file, '# -- units: theta in \27[2J\nt,"' .. evil .. '"\n0,1\n1,2\n')
+write(words, 'a,"b' .. evil .. '"\n1,"' .. evil .. '"\n2,x\n')
 
 local function harmless(text, what)
     for _, sequence in ipairs { "\27]", "\7", "\27[2J", "\27[8m" } do
@@ -15,7 +13,7 @@ local function harmless(text, what)
 end
 
 test("a run that was read, its card, its story and the errors about it", function()
-    support.write(file, "# -- dinal 1\n" .. support.read(file))
+    write(file, "# -- dinal 1\n" .. read(file))
     local run = load(file)
     equal(#run.names, 2)
     harmless(tostring(run), "tostring")
@@ -49,4 +47,4 @@ test("events that a user has named so, and who takes the name itself gets it as 
     equal(run.events[1].name, "limit" .. evil)
 end)
 
-support.finish()
+finish()

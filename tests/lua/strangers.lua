@@ -1,16 +1,15 @@
 -- Runs scripts of strangers in a dinal of their own, many at once, for the tests of safe mode and of limits.
-local support = require "support"
 
 local strangers = {}
 
 local at_once = 8 -- most of them only wait for the end of their time
 
 local function start(code, options, folder)
-    local script, output = support.temporary ".lua", support.temporary()
-    support.write(script, code)
+    local script, output = temporary ".lua", temporary()
+    write(script, code)
     -- The limit is one of processor time: a machine that does other work must not decide.
     local run = ('cd "%s" && (ulimit -t 20; exec "%s" %s "%s") </dev/null >"%s" 2>&1; echo "exit $?" >>"%s"'):format(
-        folder, support.program(), options, script, output, output)
+        folder, program(), options, script, output, output)
     return { command = "( " .. run .. " ) &", output = output, script = script }
 end
 
@@ -24,7 +23,7 @@ function strangers.run(scripts, options, folder)
         end
         os.execute(table.concat(commands, "\n") .. "\nwait")
         for name, process in pairs(waiting) do
-            local text, exit = support.read(process.output):match "^(.*)exit (%d+)\n$"
+            local text, exit = read(process.output):match "^(.*)exit (%d+)\n$"
             found[name] = { exit = tonumber(exit), text = text:gsub(process.script:gsub("%p", "%%%0"), "script") }
         end
         waiting = {}
@@ -44,7 +43,7 @@ end
 --- One test for each script: it must end with the exit code and print what the pattern matches, all of it.
 function strangers.check(scripts, options, exit, pattern, folder)
     for name, result in pairs(strangers.run(scripts, options, folder)) do
-        support.test(name, function()
+        test(name, function()
             if result.exit ~= exit or not result.text:find("^" .. pattern .. "$") then
                 error(("it ended with %s and printed: %s"):format(result.exit, result.text:sub(1, 1000)), 0)
             end

@@ -1,4 +1,5 @@
--- What the Lua tests share: a test is a sentence and a function, failures are collected, the exit code tells.
+-- The words of the Lua tests, which are globals: a test is a sentence and a function, failures are collected, the exit code
+-- tells.
 local support = {}
 
 local failed, passed = 0, 0
@@ -182,4 +183,5 @@ function support.judge()
     end
 end
 
+for name, word in pairs(support) do _G[name] = word end
 return support

@@ -1,7 +1,5 @@
 -- sweep{ ... }: the grid, what is carried to the workers, errors of points.
-package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises, raises_here = support.test, support.equal, support.raises, support.raises_here
+dofile "tests/lua/support.lua"
 
 --- All columns as one text, every bit of every number.
 local function bits(d)
@@ -211,7 +209,7 @@ test("what is nested without end is refused in a short sentence", function()
 end)
 
 test("results may be strings, in files too", function()
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     local words = { "rest", "", "1", "a, \"b\"", "rest", "#" }
     local function swept(workers, name)
         return sweep { over = { i = vector.range(1, 6) }, workers = workers, file = name, run = function(p)
@@ -243,7 +241,7 @@ test("a point that fails keeps its message, the others go on, and the map says s
     equal(d.error[4], "run returned y = a table, which is neither a number nor a string")
     equal(d.error[5], "(error object is a table value)")
     assert(d.y[1] == 1 and d.y[2] ~= d.y[2])
-    support.has(d, "5 points, 4 of them failed; the first one, x = 2: two is bad")
+    has(d, "5 points, 4 of them failed; the first one, x = 2: two is bad")
 end)
 
 test("when all points fail that is an error, with the message of the first", function()
@@ -284,7 +282,7 @@ end)
 
 test("what is wrong with the call is told at the user's line", function()
     local function run() return {} end
-    support.refuses(sweep, {
+    refuses(sweep, {
         { { over = { x = {} }, run = run }, "sweep: x has no values" },
         { { over = { x = { 0 / 0 } }, run = run }, "sweep: x[1] = nan must be finite" },
         { { over = { x = { 1, y = 2 } }, run = run }, "sweep: x must be a list", "it has y" },
@@ -297,7 +295,7 @@ test("what is wrong with the call is told at the user's line", function()
         { { x = { 1 }, run = run }, "parameters and their values stand in over = { x = values }" },
     })
     equal(#sweep { over = { seed = { 1, 2 }, file = { "a", "b" } }, run = function(p) return { y = p.seed } end }, 4) -- any name
-    support.refuses(sweep, {
+    refuses(sweep, {
         { { over = { x = { 1 } }, run = run, worker = 2 }, "sweep has no option 'worker' among over, run, workers, seed,", "did you mean 'workers'?" },
         { { over = { 1 }, run = run }, "over[1] must be a name and its values" },
         { { over = { { "x", { 1 } }, x = { 2 } }, run = run }, "two parameters 'x'" },
@@ -320,4 +318,4 @@ test("a point that takes longer than max_time is given up, in Lua or in a run, a
     end
 end)
 
-support.finish()
+finish()

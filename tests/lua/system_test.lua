@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 test("a system shows what it was given; C and Rd are zero and Re is Rd unless given", function()
     local function shown(sys) return table.concat({ sys.I, sys.k, sys.C, sys.Rd, sys.Re }, " ") end
@@ -98,4 +96,4 @@ test("a spring of -0 is none, friction beyond all numbers is told", function()
     assert(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs() < 1e-12)
 end)
 
-support.finish()
+finish()

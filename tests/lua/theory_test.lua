@@ -1,7 +1,5 @@
 -- theory.*: numbers and vectors in, the same shape out; the numbers themselves are tested in tests/core.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.119, friction_ratio = 0.06 }
 
@@ -92,7 +90,7 @@ test("extremes stop at rest, at count, or ask for it", function()
     local sys = nondimensional { friction_ratio = 0.1 }
     equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
     equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)
-    support.refuses(theory.extremes, {
+    refuses(theory.extremes, {
         { { system = nondimensional {}, theta0 = 1 }, "theory.extremes: count is needed, because this motion never comes to rest" },
         { { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 }, "count is needed, because there are 5e+11 extremes until rest" },
         { { theta0 = 1 }, "theory.extremes needs system, for example" },
@@ -104,7 +102,7 @@ test("half_cycle takes a system, too, and stops in the dead zone", function()
     equal(theory.half_cycle { X = 1, system = sys },
         theory.half_cycle { X = 1, zeta = sys.zeta, x_f = sys.Rd / sys.k, dead_zone = sys.dead_zone })
     equal(theory.half_cycle { X = 0.08, system = sys }, 0.08)
-    support.refuses(theory.half_cycle, {
+    refuses(theory.half_cycle, {
         { { X = 1, system = sys, zeta = 0.1 }, "system excludes zeta" },
         { { X = 1, system = nondimensional { zeta = 1 } }, "the system has zeta = 1: without a swing there is no next extreme" },
         { { X = 1, zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
@@ -114,21 +112,21 @@ end)
 
 test("step limits of another rule need a start", function()
     local sys = system { I = 1, k = 39.48, Rd = 6.59316 }
-    support.refuses(theory.step_limit, {
+    refuses(theory.step_limit, {
         { { system = sys, rule = "reprot" }, "did you mean 'report'?" },
         { { system = sys, rule = "report" }, "theta0 or velocity0 is needed" },
     })
 end)
 
 test("wrong values are refused with the option, the element and the limit", function()
-    support.refuses(theory.magnification, {
+    refuses(theory.magnification, {
         { { r = { 1, 2, -3 } }, "theory.magnification: r[3] = -3 must not be" },
         { { r = vector { 1, 2 }, zeta = { 1, 2, 3 } }, "r and zeta have 2 and 3 numbers; they must be equally long" },
         { { r = "1" }, 'r must be a finite number or a vector, got the string "1"' },
         { { r = { 1, "2" } }, 'r[2] must be a finite number, got the string "2"' },
         { {}, "theory.magnification needs r, for example" },
     })
-    support.refuses(theory.free_response, {
+    refuses(theory.free_response, {
         { { t = 1, theta0 = 1 }, "theory.free_response needs system, or omega0" },
         { { t = 1, system = nd, omega0 = 1 }, "system excludes omega0 and zeta" },
         { { t = { 1, -1 }, system = nd, theta0 = 1 }, "t[2] = -1 must not be negative" },
@@ -139,4 +137,4 @@ test("wrong values are refused with the option, the element and the limit", func
     raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")
 end)
 
-support.finish()
+finish()

@@ -1,7 +1,5 @@
 -- Whether a steady motion is the only one: what is proven, what was not seen, what there is beside it. Run by dinal.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, near = support.test, support.equal, support.near
+dofile "tests/lua/support.lua"
 
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
 
@@ -50,7 +48,7 @@ test("unique is true only where it is proven", function()
         for name, value in pairs(linear) do more[name] = value end
         local s = system(more):steady{ M = 2 * load }
         equal(s.unique, "not seen", i)
-        support.says(s, "which is no proof.")
+        says(s, "which is no proof.")
     end
     local fed = system(linear):steady{ M = function(t, theta) return math.sin(t) - 0.1 * theta end, period = 2 * math.pi }
     equal(fed.unique, "not seen")
@@ -79,7 +77,7 @@ test("other starts reach motions far larger than the one found, and the adhesion
     local s = held:steady{ M = excitation.harmonic{ omega = 1 }, theta0 = 5 }
     equal(s.status, "steady")
     equal(s.unique, false)
-    support.says(s, "From another start the mass comes to rest.")
+    says(s, "From another start the mass comes to rest.")
 end)
 
-support.finish()
+finish()

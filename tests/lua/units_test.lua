@@ -1,7 +1,5 @@
 -- The units of a system or a run: words in cards, columns and axes, on which no number depends.
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, equal, raises_here, has, has_not = support.test, support.equal, support.raises_here, support.has, support.has_not
+dofile "tests/lua/support.lua"
 
 local metres = { theta = "m", t = "s", M = "N" }
 local plain = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }
@@ -76,7 +74,7 @@ test("energies and steady motions have those that follow from them", function()
 end)
 
 test("the story says them once, and the time in them", function()
-    support.says(run, "Units: theta in m, t in s, M in N.")
+    says(run, "Units: theta in m, t in s, M in N.")
     has(block:simulate{ theta0 = 0.04, t_end = 4, dt = 1 }:explain(), "Units:")
     local stops = block:with{ Re = 1.5, Rd = 1 }:simulate(asked{ theta0 = 0 })
     has(stops:explain(), " of 5 s")
@@ -94,7 +92,7 @@ test("columns of tables have them, and keep them when rows are picked; their nam
     has_not(tostring(plain:simulate(asked()).events), ", rad")
     has(tostring(run:spectrum "velocity"), "frequency, 1/s", "amplitude, m/s")
     has(tostring(run:poincare{ period = 1 }), "velocity, m/s")
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     events:save(file)
     equal(load(file).names[3], "theta")
 end)
@@ -120,32 +118,32 @@ test("a fit has those of its record, and none of a torque that the record does n
 end)
 
 test("a report has them in its tables", function()
-    local file = support.temporary ".html"
+    local file = temporary ".html"
     local page = report{ title = "units" }
     page:table(run.events)
     page:save(file)
-    has(support.read(file), "<th>t, s</th>", "<th>theta, m</th>", "<th>kind</th>")
+    has(read(file), "<th>t, s</th>", "<th>theta, m</th>", "<th>kind</th>")
 end)
 
 test("a file keeps them, for who reads it and for the run that is read from it", function()
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     run:save(file)
-    has(support.read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
+    has(read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
         "\nt,theta,velocity,M,")
     local old = load(file)
     equal(old.units.M, "N")
     has(picture(old, "plot", { y = "velocity" }), "theta', m/s")
     has(old:explain(), "It has theta in m, t in s, M in N.")
-    local copy = support.temporary ".csv"
+    local copy = temporary ".csv"
     old:save(copy)
     equal(load(copy).units.theta, "m")
 end)
 
 test("what a stranger's file says of units is taken when it is a word", function()
-    local file = support.temporary ".csv"
+    local file = temporary ".csv"
     for said, theta in pairs{ ["theta in m\27[31m"] = "rad", ["theta in in"] = "in", ["theta in " .. ("m"):rep(99)] = "rad",
         ["nonsense"] = "", ["t in s"] = "" } do
-        support.write(file, "# -- units: " .. said .. "\nt,theta\n0,1\n1,2\n")
+        write(file, "# -- units: " .. said .. "\nt,theta\n0,1\n1,2\n")
         equal(load(file).units.theta or "", theta)
     end
 end)
@@ -157,23 +155,23 @@ test("a nondimensional system has the units of its numbers, unless others are gi
 end)
 
 test("wrong units are said", function()
-    support.refuses(system, {
+    refuses(system, {
         { { I = 1, k = 4, units = "m" }, 'units must be a table such as { theta = "m"' },
         { { I = 1, k = 4, units = { theta = 1 } }, "theta must be a string" },
         { { I = 1, k = 4, units = { time = "s" } }, "'time'" },
         { { I = 1, k = 4, units = { "m", "s" } }, "units" },
     })
-    support.refuses(function(o) plain:with(o) end, {
+    refuses(function(o) plain:with(o) end, {
         { { units = { t = "s\27[2J" } }, "the unit of t must be a short word" },
         { { units = { t = "a, b" } }, "without quotes and commas" },
         { { unit = metres }, "did you mean 'units'?" },
     })
     raises_here(function() plain:simulate(asked{ units = { M = ("N"):rep(25) } }) end, "the unit of M must be a short word")
-    support.refuses(function(units) run:plot{ units = units, show = false } end, {
+    refuses(function(units) run:plot{ units = units, show = false } end, {
         { { theta = 'm"' }, "the unit of theta must be a short word" },
         { "m", "units must be a table such as" },
         { { time = "s" }, "'time'" },
     })
 end)
 
-support.finish()
+finish()

@@ -1,8 +1,7 @@
 -- Vectors at their edges: empty, wrong, large. The examples of the manual, which help_test.lua runs, have the plain values.
 
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local fails, near = support.raises, support.near
+dofile "tests/lua/support.lua"
+local fails = raises
 
 -- The line of the caller.
 local function line() return debug.getinfo(2, "l").currentline end
@@ -27,7 +26,7 @@ t[1] = 0
 assert(w[1] == 5)
 assert(vector(w) == w and #vector{} == 0)
 
-support.refuses(vector, {
+refuses(vector, {
     { { 1, "2" }, 'vector[2] must be a finite number, got the string "2"' },
     { { 1, 2, -(0/0) }, "vector[3] = nan must be finite" },  -- whatever its sign
     { 3, "vector{ 1, 2, 3 }" },
@@ -64,7 +63,7 @@ assert((0.1 + 0 * vector.range(1, 100000)):sum() == 10000, "a plain loop is off 
 -- Pieces.
 assert(v:slice(2) == vector{ 2, 4 })
 assert(#v:slice(3, 2) == 0 and v:slice(1, 3, math.maxinteger) == vector{ 1 } and #vector{}:slice() == 0)
-support.refuses(function(first) v:slice(first, 4) end, { { 1, "elements 1 to 3" }, { 0, "elements 1 to 3" }, { 1.5, "first must be a whole number, got 1.5" } })
+refuses(function(first) v:slice(first, 4) end, { { 1, "elements 1 to 3" }, { 0, "elements 1 to 3" }, { 1.5, "first must be a whole number, got 1.5" } })
 
 -- Even spacing, with exact ends.
 local line = vector.linspace(-0.1, 0.7, 81)
@@ -73,7 +72,7 @@ assert(#line == 81 and line[1] == -0.1 and line[81] == 0.7 and math.abs(line[41]
 assert(vector.linspace(1, 1000, 1000) == vector.range(1, 1000) and vector.linspace(-1, 1, 21) == vector.range(-10, 10) / 10)
 assert(vector.linspace(0.1, 0.1, 8) == 0.1 + 0 * vector.range(1, 8))
 assert(vector.linspace(-1e308, 1e308, 5)[3] == 0)
-support.refuses(function(n) vector.linspace(0, 1, n) end, { { 1, "n = 1 must be a whole number" }, { 2.5, "n = 2.5 must be a whole number" } })
+refuses(function(n) vector.linspace(0, 1, n) end, { { 1, "n = 1 must be a whole number" }, { 2.5, "n = 2.5 must be a whole number" } })
 fails(function() return vector.linspace(0, 1 / 0, 5) end, "to must be a finite number, got inf")
 
 -- As text.
@@ -141,17 +140,16 @@ do
     local v = vector{ 5, 1, 4, 2, 3 }
     for p, wanted in pairs{ [0] = 1, [0.9] = 4.6 } do near(v:quantile(p), wanted, 1e-14) end
     near(vector{ 7 }:quantile(0.3), 7, 0)
-    support.refuses(function(p) v:quantile(p) end, { { 1.5, "p = 1.5 must lie between 0 and 1" }, { "x", "v:quantile(p): p" } })
+    refuses(function(p) v:quantile(p) end, { { 1.5, "p = 1.5 must lie between 0 and 1" }, { "x", "v:quantile(p): p" } })
     fails(function() vector{}:quantile(0.5) end, "the vector is empty")
     for i, x in ipairs(vector.range(1, 1000):table()) do assert(x == i) end
     assert(#vector.range(0, 0.3, 0.1) == 4)
     assert(vector.range(3, 1, -1) == vector{ 3, 2, 1 } and #vector.range(2, 2) == 1)
-    support.refuses(function(step) vector.range(1, 2, step) end, { { -1, "step = -1 does not lead from 1 to 2" }, { 0, "step = 0 does not lead" } })
+    refuses(function(step) vector.range(1, 2, step) end, { { -1, "step = -1 does not lead from 1 to 2" }, { 0, "step = 0 does not lead" } })
     fails(function() vector.range(0, 1e12) end, "numbers are more than")
 end
 
-local equal = support.equal
-support.test("v[v > 0] picks the elements for which a comparison holds", function()
+test("v[v > 0] picks the elements for which a comparison holds", function()
   local v, w = vector{ -1, 2, 3, -7 }, vector{ 4, 5, 6, 7 }
   local function same(picked, ...) equal(tostring(picked), tostring(vector{ ... })) end
   same(v[v > 0], 2, 3)
@@ -164,7 +162,7 @@ support.test("v[v > 0] picks the elements for which a comparison holds", functio
   equal(#w[w > 9], 0)
   for i = 4, 7 do equal(#w[w > i], 7 - i) end
   local function refused(code, piece)
-    support.raises(function() load("local v, w = ... return " .. code)(v, w) end, piece)
+    raises(function() load("local v, w = ... return " .. code)(v, w) end, piece)
   end
   local message = "takes one comparison (< <= > >=) with as many elements as v, written in the brackets"
   refused("w[v > 0 and v < 3]", "and or or is not possible there")
@@ -172,13 +170,13 @@ support.test("v[v > 0] picks the elements for which a comparison holds", functio
   refused("w[v == 2]", message)
   refused("w[true]", message)
   refused("w[vector{ 1 } > 0]", message)
-  support.raises(function()
+  raises(function()
     local positive = v > 0
     return w[positive]
   end, message)
   -- Lua 5.4.4 would index another value than w here
-  support.raises(function() return w[v > 0] end, "w belongs to an outer function: write local own = w before")
+  raises(function() return w[v > 0] end, "w belongs to an outer function: write local own = w before")
   same(load "local w = ... return w[w > 5]" (w), 6, 7)
 end)
 
-support.finish()
+finish()

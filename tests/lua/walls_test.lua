@@ -1,6 +1,4 @@
-package.path = "tests/lua/?.lua;" .. package.path
-local support = require "support"
-local test, near, equal, raises_here, has = support.test, support.near, support.equal, support.raises_here, support.has
+dofile "tests/lua/support.lua"
 
 local walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }
 
@@ -45,10 +43,10 @@ test("a ball comes to rest in finite time; its energy adds up; the file repeats 
     near(energy.impacts[#run], 2, 1e-11)
     assert(energy.total.closure < 1e-12)
     has(energy, "lost at the walls")
-    support.says(run, "It came to rest at the wall, theta = 0")
-    local name = support.temporary ".csv"
+    says(run, "It came to rest at the wall, theta = 0")
+    local name = temporary ".csv"
     run:save(name)
-    local again = support.repeated(name)
+    local again = repeated(name)
     equal(#again.events, #run.events)
     equal(again.theta[5], run.theta[5])
     local on = ball:simulate { M = -2, theta0 = 1, t_end = 3, dt = 0.5 }:continue { t_end = 10 }
@@ -69,7 +67,7 @@ end)
 
 test("between walls nothing grows, and a mass that rests against one is stable", function()
     local at_wall = 0
-    for seed = 1, support.lots(15) do
+    for seed = 1, lots(15) do
         math.randomseed(seed, 7)
         local function pick(a, b) return a + (b - a) * math.random() end
         local Rd = pick(0.02, 0.4)
@@ -94,12 +92,12 @@ test("between walls nothing grows, and a mass that rests against one is stable",
             end
         end
     end
-    assert(at_wall > 0 or support.lots(15) < 15)
+    assert(at_wall > 0 or lots(15) < 15)
     raises_here(function() system { I = 1, k = 1, walls = { upper = 1 } }:steady { theta0 = 2 } end, "theta0 = 2 is beyond the wall at upper = 1")
 end)
 
 test("what is wrong with walls is one sentence with the name of the option", function()
-    support.refuses(function(walls) system { I = 1, k = 1, walls = walls } end, {
+    refuses(function(walls) system { I = 1, k = 1, walls = walls } end, {
         { 3, "system: walls must be a table such as { lower = -0.8", "got 3" },
         { { lower = 1, upper = 0 }, "walls: lower = 1 must be less than upper = 0" },
         { { restitution = 0.5 }, "walls needs lower, upper or both" },
@@ -130,4 +128,4 @@ test("a mass that comes to a wall at velocity 0 does not hit it, whatever roundi
     end
 end)
 
-support.finish()
+finish()
