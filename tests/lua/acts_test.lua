@@ -68,6 +68,25 @@ test("bounces by act that die out end the run with what to do, and never fall th
     end
 end)
 
+test("an act that keeps little of the speed, or none, does not let the mass through either", function()
+    for _, method in ipairs(methods) do
+        for _, place in ipairs { 0, 1e4 } do
+            for _, kept in ipairs { 0, 1e-5, 0.1 } do
+                local run = system { I = 1, k = 0.1, Rd = 0.05 }:simulate {
+                    M = 0.1 * place + 1, theta0 = place - 0.1, t_end = 30, dt = 1, integrator = method,
+                    events = { { when = function(_, theta) return theta - place end, act = function(_, theta, v) return theta, -kept * v end } },
+                }
+                has(run.outcome, "endlessly", "walls")
+                local first, last = run.events[1], run.events[#run.events]
+                near(last.theta, place, 1e-13 + 4e-15 * place) -- theta is located to roundings of what it is made of
+                -- about 1 pulls on; Rd changes a bounce by some percent, and the least that can be seen, of the height of
+                -- a rounding, lasts as long as its root
+                near(last.t - first.t, 2 * first.velocity * kept / (1 - kept), 0.2 * first.velocity * kept + 1e-7 + math.sqrt(4e-15 * place))
+            end
+        end
+    end
+end)
+
 test("what an act stops may stick there, go back, or be carried on by time", function()
     for _, method in ipairs(methods) do
         local function stopped(sys, task)

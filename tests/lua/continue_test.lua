@@ -83,22 +83,6 @@ test("a run without dense output goes on without", function()
     same_rows(longer, nd:simulate { M = M, theta0 = 2, t_end = 6, dt = 0.1 })
 end)
 
-test("a run that others went on from stays what it was, and so do its columns", function()
-    local first = nd:simulate { M = M, theta0 = 2, t_end = 0.35, dt = 0.1 }
-    local runs, columns = { first }, { first.theta }
-    for i = 2, 60 do
-        runs[i] = runs[i - 1]:continue { t_end = 0.35 * i }
-        if i % 3 == 0 then columns[i] = runs[i].theta end
-    end
-    for i, run in ipairs(runs) do
-        same_rows(run, nd:simulate { M = M, theta0 = 2, t_end = 0.35 * i, dt = 0.1 })
-        if columns[i] then assert(columns[i] == run.theta, "a column has changed") end
-    end
-    local other = runs[7]:continue { t_end = 9 }
-    same_rows(other, nd:simulate { M = M, theta0 = 2, t_end = 9, dt = 0.1 })
-    equal(runs[8].t_end, 0.35 * 8)
-end)
-
 test("a run that ends at a wall, or as near to it as numbers come, goes on", function()
     for i = 1, 30 do
         local walled = system { I = 1, k = 1, walls = { lower = -0.1 - 0.00137 * i, restitution = 0.5 } }

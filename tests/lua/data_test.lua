@@ -51,7 +51,6 @@ test("files of others: separators, decimal commas, no names, comments, empty fie
     equal(load("t,x\n0,1\n1,\n2,nan\n").t, vector{ 0, 1, 2 })
     local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
     equal(d["Time (s)"], vector{ 0.5, 1 })
-    equal(d.Angle, vector{ 1.25, 2 })
     equal(load("1 2\n3 4\n")["2"], vector{ 2, 4 })
     equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
     equal(#load("only,names\n"), 0)

@@ -110,6 +110,14 @@ test("a function with an environment of its own keeps it", function()
     equal(at_one_point(f), 7.0)
 end)
 
+test("a function with more constants than instructions can name finds its globals", function()
+    far_away = 42
+    local text = { "local t = {" }
+    for i = 1, 300 do text[#text + 1] = ("%q,"):format("text " .. i) end
+    equal(at_one_point(load(table.concat(text) .. "} return { y = far_away + #t }")), 342.0)
+    far_away = nil
+end)
+
 test("standard functions and tables are found again by their names", function()
     local sin, library, write, print_it = math.sin, string, io.write, print
     equal(at_one_point(function()
