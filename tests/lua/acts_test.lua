@@ -5,17 +5,6 @@ dofile "tests/lua/support.lua"
 local block = system { I = 1, k = 0 }
 local methods = { integrator.spectral {}, integrator.rk4 { h = 0.01 } }
 
--- The times of the events of these kinds; of all, without any.
-local function times(run, ...)
-    local wanted, list = { ... }, {}
-    for _, e in ipairs(run.events) do
-        local take = #wanted == 0
-        for _, kind in ipairs(wanted) do take = take or e.kind == kind end
-        if take then list[#list + 1] = e.t end
-    end
-    return list
-end
-
 local function above(t, theta) return theta - 0.1 end
 
 -- A fall from 1.5 above: it comes down after sqrt(3), with velocity sqrt(3), in a field where the rest is closed form, too.
@@ -30,7 +19,7 @@ test("a bounce by act, told both ways, is told once, and the mass stays above", 
     for _, method in ipairs(methods) do
         for _, act in ipairs { function(_, theta, v) return theta, -v end, function(_, theta, v) return theta, math.abs(v) end } do
             local run = fall(act, 100, method)
-            local bounces = times(run, "user")
+            local bounces = of_kind(run, "user").t
             equal(#bounces, 29) -- sqrt(3) (2 n - 1) <= 100
             -- rk4 is exact under a constant torque, too; the clock loses some ulps of 100
             for n, t in ipairs(bounces) do near(t, math.sqrt(3) * (2 * n - 1), 1e-10) end
@@ -47,7 +36,7 @@ test("what stands at zero may be sent back by a state, too", function()
             states = { way = { start = 1, rate = function() return 0 end }, x = { rate = function(_, _, _, z) return z.way end } },
             events = { { when = function(_, _, _, z) return math.abs(z.x - 0.25) - 1 end, act = function(_, _, _, z) z.way = -z.way end } },
         }
-        local at = times(run)
+        local at = run.events.t
         equal(#at, 5) -- to 1.25, and then to and fro over a length of 2
         for n, t in ipairs(at) do near(t, 1.25 + 2 * (n - 1), 1e-10) end
     end
@@ -127,9 +116,9 @@ test("a user's event where the velocity is zero comes after the turn, and makes 
     local peaks = system { I = 1, k = 1, Rd = 0.3, Re = 0.5 }:simulate {
         theta0 = 3, t_end = 20, dt = 1, events = { { when = function(_, _, v) return v end } },
     }
-    equal(#times(peaks, "turn"), 4)
-    equal(#times(peaks, "user"), 4)
-    equal(#times(peaks, "slip"), 0)
+    equal(#of_kind(peaks, "turn"), 4)
+    equal(#of_kind(peaks, "user"), 4)
+    equal(#of_kind(peaks, "slip"), 0)
     equal(peaks.events[#peaks.events].kind, "rest")
 end)
 
@@ -179,7 +168,7 @@ test("an event is told at the passages of its direction only, however much faste
                 M = excitation.harmonic { omega = 1.25 }, theta0 = 1, t_end = 20, dt = 20,
                 events = { { when = function(t) return math.sin(omega * t + 0.1) end, direction = direction } },
             }
-            local told = times(run, "user")
+            local told = of_kind(run, "user").t
             local passages = (20 * omega + 0.1) / math.pi
             equal(#told, math.max(0, (passages - first) // 2 + 1 | 0), direction .. " " .. omega)
             -- the sine itself is rounded to 1e-16, its time to an ulp of 20

@@ -10,8 +10,7 @@ function asked.runs(make, more)
     for _, method in ipairs(asked.methods) do
         for _, states in ipairs { false, { way = { rate = function(_, _, velocity) return math.abs(velocity) end } } } do
             local options = { M = make(), theta0 = 1, t_end = 10, dt = 0.1, integrator = method, states = states or nil }
-            for name, value in pairs(more or {}) do options[name] = value end
-            list[#list + 1] = asked.sys:simulate(options)
+            list[#list + 1] = asked.sys:simulate(merged(options, more))
         end
     end
     return ipairs(list)

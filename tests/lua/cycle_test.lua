@@ -58,11 +58,11 @@ test("a relay drives the cycle of a long run", function()
     local sys, M = system{ I = 1, k = 1, C = 0.2 }, excitation.relay{ on = -0.1, off = 0.1, amplitude = { 0.4, -0.4 } }
     local s = sys:steady{ M = M }
     local run = sys:simulate{ M = M, t_end = 500, times = vector.linspace(500 - s.period, 500, 2001) }
-    local switches = run.events:filter(function(e) return e.kind == "switch" end).t
+    local switches = of_kind(run, "switch").t
     near(s.period, switches[#switches] - switches[#switches - 2], 1e-9)
     near(s.amplitude, extent(run.theta), 1e-5) -- rows miss the peaks
     assert(s.stable and s.stops == 0)
-    equal(#s.run.events:filter(function(e) return e.kind == "switch" end), 2)
+    equal(#of_kind(s.run, "switch"), 2)
 end)
 
 test("the hunting of a controller with an integral is the one that long runs come to", function()
@@ -71,7 +71,7 @@ test("the hunting of a controller with an integral is the one that long runs com
     local states = { e = { start = 0, rate = function(_, theta) return 1 - theta end } }
     local s = block:steady{ M = M, states = states }
     local run = block:simulate{ M = M, states = states, t_end = 4000, times = { 4000 } }
-    local sticks = run.events:filter(function(e) return e.kind == "stick" end)
+    local sticks = of_kind(run, "stick")
     local n = #sticks
     near(s.period, sticks[n].t - sticks[n - 2].t, 1e-8)
     near(s.amplitude, math.abs(sticks[n].theta - sticks[n - 1].theta) / 2, 1e-10)
@@ -144,10 +144,8 @@ test("belt, base, states and acts stand beside a periodic M", function()
     } do
         s = sys:steady(more)
         equal(s.status, "steady")
-        local options = { t_end = 400 * s.period, times = vector.linspace(399 * s.period, 400 * s.period, 4001) }
-        for name, value in pairs(more) do options[name] = value end
-        options.period = nil
-        local run = sys:simulate(options)
+        more.period = nil
+        local run = sys:simulate(merged(more, { t_end = 400 * s.period, times = vector.linspace(399 * s.period, 400 * s.period, 4001) }))
         near(s.amplitude, extent(run.theta), 2e-6 * s.amplitude)
         near(s.run:at(s.run.t_end), s.run:at(s.run.t_start), 1e-9)
     end

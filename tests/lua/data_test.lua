@@ -87,7 +87,7 @@ test("events are data: columns, rows, save and load", function()
     near(events.theta[1], 0.846848608, 1e-9) -- docs/report.md, figure 22
     equal(events.kind[#events], "rest")
     equal(events[1].kind, "turn")
-    equal(events:filter(function(e) return e.kind == "turn" end).t[1], events[1].t)
+    equal(of_kind(run, "turn").t[1], events[1].t)
     assert(tostring(events):find("^4 events: 3 turns, 1 rest\n"), tostring(events))
     raises(function() return events.tetha end, "did you mean 'theta'?")
 end)

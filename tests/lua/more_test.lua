@@ -3,14 +3,12 @@ dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }
 local function pid(more)
-    local task = {
+    return merged({
         M = function(t, theta, velocity, z) return 8 * (1 - theta) - 2 * velocity + 3 * z.e end,
         states = { e = { start = 0, rate = function(t, theta) return 1 - theta end } },
         t_end = 10,
         dt = 0.5,
-    }
-    for name, value in pairs(more or {}) do task[name] = value end
-    return task
+    }, more)
 end
 
 test("states are columns: of the run, of its file, of run:at, and of plots", function()

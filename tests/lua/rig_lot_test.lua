@@ -55,21 +55,14 @@ local function random_rig(seed)
     return system { bodies = bodies, links = links }, drive
 end
 
-local function with(drive, more)
-    local all = {}
-    for key, value in pairs(drive) do all[key] = value end
-    for key, value in pairs(more) do all[key] = value end
-    return all
-end
-
 test("of random rigs the energy closes, and a run in two parts ends as in one", function()
     for seed = 1, lots(40) do
         local rig, drive = random_rig(seed)
-        local run = rig:simulate(with(drive, { t_end = 12, dt = 12 }))
+        local run = rig:simulate(merged(drive, { t_end = 12, dt = 12 }))
         assert(run.status ~= "failed", ("rig %d: %s"):format(seed, run.outcome))
         local closure = run:energy().total.closure
         assert(closure < 1e-11, ("rig %d: energy closes to %.3g"):format(seed, closure))
-        local parts = rig:simulate(with(drive, { t_end = 5.1852, dt = 5.1852 })):continue { t_end = 12 }
+        local parts = rig:simulate(merged(drive, { t_end = 5.1852, dt = 5.1852 })):continue { t_end = 12 }
         for name in pairs(drive.M) do
             local theta, velocity = run[name]:at(12)
             local as_well, fast = parts[name]:at(12)

@@ -12,7 +12,7 @@ end
 
 --- The time from the event of this kind that was `back` of them ago to the last one.
 local function since(run, kind, back)
-    local times = run.events:filter(function(e) return e.kind == kind end).t
+    local times = of_kind(run, kind).t
     return times[#times] - times[#times - back]
 end
 

@@ -108,6 +108,20 @@ function support.refuses(call, rows)
     end
 end
 
+--- The events of that kind, as data.
+function support.of_kind(run, kind)
+    return run.events:filter(function(event) return event.kind == kind end)
+end
+
+--- A new table with what is in both; where both have a name, the second one counts.
+function support.merged(a, b)
+    local all = {}
+    for _, part in ipairs { a, b or {} } do
+        for name, value in pairs(part) do all[name] = value end
+    end
+    return all
+end
+
 --- The same function, which is sampled: it calls what cannot be read.
 function support.unread(f)
     return function(...) return ({ f(...) })[1] end

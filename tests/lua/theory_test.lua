@@ -44,10 +44,7 @@ test("numbers give numbers, and a vector or a table in any option gives vectors 
         for option, value in pairs(arguments) do
             -- the same value three times, so that it is good for every function
             for _, many in ipairs(type(value) == "number" and { vector { value, value, value }, { value, value, value } } or {}) do
-                local copy = {}
-                for k, v in pairs(arguments) do copy[k] = v end
-                copy[option] = many
-                local found = table.pack(theory[name](copy))
+                local found = table.pack(theory[name](merged(arguments, { [option] = many })))
                 equal(found.n, wanted.n, name)
                 for i = 1, wanted.n do
                     equal(found[i], vector { wanted[i], wanted[i], wanted[i] }, name .. " with many " .. option)

@@ -45,8 +45,7 @@ test("unique is true only where it is proven", function()
     local unproven = { { walls = { upper = 50 } }, { spring = spring.polynomial{ [3] = 1e-3 } },
         { friction = friction.stribeck{ Rd = 0.1, Re = 0.2, speed = 0.1 } }, { Rd = 0.1, Re = 0.12 } }
     for i, more in ipairs(unproven) do
-        for name, value in pairs(linear) do more[name] = value end
-        local s = system(more):steady{ M = 2 * load }
+        local s = system(merged(linear, more)):steady{ M = 2 * load }
         equal(s.unique, "not seen", i)
         says(s, "which is no proof.")
     end

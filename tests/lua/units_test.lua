@@ -5,9 +5,7 @@ local metres = { theta = "m", t = "s", M = "N" }
 local plain = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }
 local block = plain:with{ units = metres }
 local function asked(more)
-    local all = { M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
-    for name, value in pairs(more or {}) do all[name] = value end
-    return all
+    return merged({ M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }, more)
 end
 local run = block:simulate(asked())
 

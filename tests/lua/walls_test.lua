@@ -120,7 +120,7 @@ test("a mass that comes to a wall at velocity 0 does not hit it, whatever roundi
         local bounds = side == 1 and { lower = at, upper = at + 50, restitution = 0 } or { lower = at - 50, upper = at, restitution = 0 }
         local run = system { I = 1.3, k = k, walls = bounds }:simulate {
             M = k*at + side*p/2, base = -side*p/2/1.3, theta0 = at + side*(2*p/k + 1), t_end = 30, dt = 0.25 }
-        local impacts = run.events:filter(function(event) return event.kind == "impact" end)
+        local impacts = of_kind(run, "impact")
         equal(#impacts, 1)
         local later = run:filter(function(row) return row.t > impacts.t[1] end)
         -- some roundings of theta a swing, over tens of them; an impact that is none costs 1e-8
