@@ -83,17 +83,15 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
 end)
 
 test("a chain without friction swings in its modes", function()
-    local run = system {
-        bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 4 } },
-    }:simulate { theta0 = { a = 1 }, t_end = 30, dt = 1 }
+    local run = pair({ I = 1, k = 1 }, { I = 1, k = 1 }, { k = 4 }):simulate { theta0 = { a = 1 }, t_end = 30, dt = 1 }
     near(run.a.theta, (run.t:cos() + (3 * run.t):cos()) / 2, 1e-11)
     near(run.b.theta, (run.t:cos() - (3 * run.t):cos()) / 2, 1e-11)
-    near(run.rod.torque, -4 * run.rod.theta, 1e-12)
+    near(run.link.torque, -4 * run.link.theta, 1e-12)
 end)
 
 test("two bodies that stick to each other are one of both inertias", function()
     local M = function(t) return 3 * math.sin(t) end
-    local pair = system { bodies = { a = { I = 1, k = 4, Rd = 0.3 }, b = { I = 2 } }, links = { glue = { "a", "b", Rd = 100 } } }
+    local pair = pair({ I = 1, k = 4, Rd = 0.3 }, { I = 2 }, { Rd = 100 })
         :simulate { M = { a = M }, t_end = 20, dt = 0.5 }
     local one = system { I = 3, k = 4, Rd = 0.3 }:simulate { M = M, t_end = 20, dt = 0.5 }
     near(pair.b.theta, one.theta, 1e-11)
@@ -101,12 +99,12 @@ test("two bodies that stick to each other are one of both inertias", function()
 end)
 
 test("accelerations are those of the equation of motion, and 0 where a body is held", function()
-    local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1 }, b = { I = 1, Rd = 5 } }, links = { rod = { "a", "b", k = 4 } } }
+    local rig = pair({ I = 2, k = 3, C = 0.1 }, { I = 1, Rd = 5 }, { k = 4 })
     local run = rig:simulate { M = { a = math.sin }, theta0 = { a = 0.5 }, velocity0 = { b = 0.2 }, t_end = 4, dt = 0.5 }
     near(run.a.acceleration, (run.t:sin() - 7 * run.a.theta + 4 * run.b.theta + run.a.damping) / 2, 1e-13)
     equal(run.b.velocity[9], 0.0)
     equal(run.b.acceleration[9], 0.0)
-    equal(run.rod.acceleration, nil)
+    equal(run.link.acceleration, nil)
     -- of one body whose friction varies
     local one = system { I = 2, k = 3, Rd = function() return 0.3 end }:simulate { theta0 = 1, t_end = 1,
         states = { e = { rate = function() return 1 end } } }
@@ -115,20 +113,19 @@ test("accelerations are those of the equation of motion, and 0 where a body is h
 end)
 
 test("a gap between two bodies: momentum is conserved and the difference of speeds is turned back", function()
-    local run = system { bodies = { a = { I = 1 }, b = { I = 2 } },
-        links = { gap = { "a", "b", walls = { lower = -1, upper = 1, restitution = 0.5 } } } }
+    local run = pair({ I = 1 }, { I = 2 }, { walls = { lower = -1, upper = 1, restitution = 0.5 } })
         :simulate { velocity0 = { a = 3 }, t_end = 1, dt = 0.5 }
-    local hit = first(run, "impact", "gap")
+    local hit = first(run, "impact", "link")
     near(hit.t, 1 / 3, 1e-14)
     equal(hit.velocity, 3.0)
     local _, velocity = run:at(0.9)
     near(velocity.a + 2 * velocity.b, 3, 1e-14)
     near(velocity.a - velocity.b, -1.5, 1e-14)
     -- restitution 0: they go on together
-    run = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { gap = { "a", "b", walls = { upper = 1, restitution = 0 } } } }
+    run = pair({ I = 1 }, { I = 2 }, { walls = { upper = 1, restitution = 0 } })
         :simulate { M = { a = 1 }, velocity0 = { a = 3 }, t_end = 2 }
     equal(run.events.kind[1] .. " " .. run.events.kind[2], "impact stick")
-    near(run.gap.theta[1001], 1, 1e-15)
+    near(run.link.theta[1001], 1, 1e-15)
 end)
 
 test("one body under a name moves as a system of one does, with all that a run may have", function()
@@ -184,7 +181,7 @@ end)
 
 test("closed loops of contacts hold what they can hold together", function()
     -- two masses on the ground, with a damper of dry friction between them: a load on the first is held by three contacts
-    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { damper = { "a", "b", Rd = 0.5 } } }
+    local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.5 })
     local run = rig:simulate { M = { a = function(t) return t end }, t_end = 2 }
     near(first(run, "slip", "a").t, 1.5, 1e-9)
 end)
@@ -220,7 +217,7 @@ test("a sweep takes a rig along, its functions too", function()
 end)
 
 test("an M with a delay is the same without the motion between the rows", function()
-    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 1 } } }
+    local rig = pair({ I = 1, k = 4, C = 0.1 }, { I = 1, k = 1 }, { k = 1 })
     local function last(dense)
         local M = { a = excitation.delayed(function(t, theta, velocity) return 1 - 0.3 * velocity.b end, { by = 0.2 }) }
         return rig:simulate { M = M, t_end = 10, dense = dense }.a.theta[1001]
@@ -287,8 +284,7 @@ test("a constant normal load is in Rd, and units that are powers of two change n
     local function chain(scale, time)
         scale, time = scale or 1, time or 1
         local function torque(x) return x * scale end
-        return system { bodies = { a = { I = torque(1) * time ^ 2, k = torque(4), Rd = torque(0.3), Re = torque(0.4) }, b = { I = torque(0.5) * time ^ 2 } },
-            links = { rod = { "a", "b", k = torque(2), C = torque(0.125) * time } } }
+        return pair({ I = torque(1) * time ^ 2, k = torque(4), Rd = torque(0.3), Re = torque(0.4) }, { I = torque(0.5) * time ^ 2 }, { k = torque(2), C = torque(0.125) * time })
     end
     local single = chain():simulate { M = { a = M }, t_end = 20, dt = 0.25 }
     local scaled = chain(2 ^ 20, 2 ^ -3):simulate { M = { a = function(t) return 2 ^ 20 * M(8 * t) end }, t_end = 2.5, dt = 0.25 / 8 }
@@ -313,14 +309,14 @@ test("a clutch whose capacity ramps locks at its closed form: time, speed and he
 end)
 
 test("a contact between a body that a belt carries and one that stands slips, though both are held", function()
-    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { pad = { "a", "b", Rd = 0.2 } } }
+    local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.2 })
     local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }
     near(first(run, "stick", "a").t, 0.3 / 0.8, 1e-13)
     equal(#run.events, 1)
-    near(run.pad.torque[3], -0.2, 1e-15)
+    near(run.link.torque[3], -0.2, 1e-15)
     near(run.a.friction[3], 0.2, 1e-15)
     local e = run:energy()
-    near(e.pad.dry, 0.2 * run.a.theta[6], 1e-12)
+    near(e.link.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
 test("what sticks is let go where a capacity that has a corner later on is passed, however long the run", function()

@@ -214,8 +214,7 @@ test("functions of several bodies, of the speed, and rates of states are read, w
     local friction = function(speed, t, theta, velocity) return 0.3 + 0.1 * speed + 0.05 * theta.a * velocity.b end
     local alone = function(speed, t, theta) return 0.3 + 0.1 * speed + 0.05 * math.sin(theta) end
     local function rig(of)
-        local run = system { bodies = { a = { I = 1, k = 4 }, b = { I = 2, k = 3, friction = of(friction), Re = 0.5 } },
-            links = { l = { "a", "b", k = 2 } } }:simulate { M = { a = of(M) }, theta0 = { b = 0.8 }, t_end = 10, dt = 0.1,
+        local run = pair({ I = 1, k = 4 }, { I = 2, k = 3, friction = of(friction), Re = 0.5 }, { k = 2 }):simulate { M = { a = of(M) }, theta0 = { b = 0.8 }, t_end = 10, dt = 0.1,
             states = { e = { start = 0.1, rate = of(function(_, theta, _, z) return (theta.a > 0.1 and 1 or -1) - z.e end) } } }
         local one = system { I = 1, k = 4, friction = of(alone), Re = 0.5 }:simulate { theta0 = 2, t_end = 10, dt = 0.1 }
         return run, one

@@ -54,7 +54,7 @@ test("energy of one body whose friction varies, with bristles, and of a locked p
     says(run, "The body swung between")
     closes(system { I = 1, k = 2, friction = friction.lugre { Rd = 1, Re = 1.5, speed = 0.1, stiffness = 100, damping = 1 } }
         :simulate { M = function(t) return 3 * math.sin(t) end, t_end = 5 }, "bristles", 1e-10)
-    local pair = system { bodies = { a = { I = 1, k = 1, Rd = 5 }, b = { I = 1 } }, links = { glue = { "a", "b", Rd = 5 } } }
+    local pair = pair({ I = 1, k = 1, Rd = 5 }, { I = 1 }, { Rd = 5 })
         :simulate { belt = { a = 0.3 }, velocity0 = { a = 0.3, b = 0.3 }, t_end = 3 }
     local e = closes(pair, "carried")
     equal(e.total.dry, 0.0)
@@ -62,10 +62,7 @@ test("energy of one body whose friction varies, with bristles, and of a locked p
 end)
 
 test("energy over time: of all, and of one body or link as of a system of one body", function()
-    local rig = system {
-        bodies = { a = { I = 1, k = 4, C = 0.1, Rd = 0.3 }, b = { I = 0.5, k = 1, walls = { upper = 0.4, restitution = 0.5 } } },
-        links = { rod = { "a", "b", k = 2, C = 0.1, Rd = 0.05 } },
-    }
+    local rig = pair({ I = 1, k = 4, C = 0.1, Rd = 0.3 }, { I = 0.5, k = 1, walls = { upper = 0.4, restitution = 0.5 } }, { k = 2, C = 0.1, Rd = 0.05 })
     local run = rig:simulate { M = { a = function(t) return math.sin(1.3 * t) end }, belt = { a = 0.1 }, velocity0 = { b = 1 }, t_end = 20,
         events = { { when = function(t) return t - 11.3 end, act = function(t, theta, velocity) velocity.b = velocity.b + 0.5 end } } }
     local e = run:energy()
@@ -75,7 +72,7 @@ test("energy over time: of all, and of one body or link as of a system of one bo
         near(e[name][last], e.total[name], 1e-11)
         equal(e[name][1], 0.0)
         local sum = 0
-        for _, part in ipairs { "a", "b", "rod" } do
+        for _, part in ipairs { "a", "b", "link" } do
             local own = run[part]:energy()
             if e[part][name] then near(own.total[name], e[part][name], 1e-11) end
             near(own[name][last], own.total[name], 1e-12)
@@ -102,17 +99,17 @@ test("a run is told in sentences", function()
 end)
 
 test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
-    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.2 }, b = { I = 1 } }, links = { pad = { "a", "b", Rd = 0.1 } } }
+    local rig = pair({ I = 1, k = 1, Rd = 0.2 }, { I = 1 }, { Rd = 0.1 })
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
     local file = temporary ".csv"
     run:save(file)
     local back = load(file)
-    equal(back["pad.torque"][3], run.pad.torque[3])
+    equal(back["link.torque"][3], run.link.torque[3])
     equal(#back, 11)
     equal(run.status, "end")
     equal(run.a.status, "end")
     local picture = tostring(run:plot { width = 60, height = 30, ascii = true, show = false })
-    has(picture, "a theta", "b theta", "pad theta")
+    has(picture, "a theta", "b theta", "link theta")
 end)
 
 finish()

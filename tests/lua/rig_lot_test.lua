@@ -73,8 +73,7 @@ test("of random rigs the energy closes, and a run in two parts ends as in one", 
 end)
 
 test("what is struck while it leans at a wall strikes the wall", function()
-    local rig = system { bodies = { a = { I = 1 }, b = { I = 0.5, walls = { upper = 0, restitution = 0.8 } } },
-        links = { gap = { "a", "b", walls = { upper = 0, restitution = 0.5 } } } }
+    local rig = pair({ I = 1 }, { I = 0.5, walls = { upper = 0, restitution = 0.8 } }, { walls = { upper = 0, restitution = 0.5 } })
     local run = rig:simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, t_end = 2 }
     -- 1 and 0 become 0.5 and 1; the wall makes that -0.8, these two -0.15 and 0.5, the wall -0.4, and so they end
     near(run.a.velocity[1001], -0.275, 1e-15)
@@ -82,12 +81,11 @@ test("what is struck while it leans at a wall strikes the wall", function()
     near(run.a.theta[1001], -0.275, 1e-14)
     local told = {}
     for _, event in ipairs(run.events) do told[#told + 1] = event.where end
-    equal(table.concat(told, " "), "gap b gap b gap")
+    equal(table.concat(told, " "), "link b link b link")
     local energy = run:energy()
     near(energy.total.impacts, 0.5 * (1 - 0.275 ^ 2) - 0.25 * 0.15 ^ 2, 1e-15)
     -- away from its wall
-    run = system { bodies = { a = { I = 1 }, b = { I = 0.5, walls = { lower = 0 } } },
-        links = { gap = { "a", "b", walls = { upper = 0, restitution = 0.5 } } } }:simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, M = { b = -0.1 }, t_end = 1.5 }
+    run = pair({ I = 1 }, { I = 0.5, walls = { lower = 0 } }, { walls = { upper = 0, restitution = 0.5 } }):simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, M = { b = -0.1 }, t_end = 1.5 }
     equal(run.events[1].kind, "impact")
     equal(run.events[2].kind, "slip")
     equal(run.events[2].where, "b")
@@ -95,8 +93,7 @@ test("what is struck while it leans at a wall strikes the wall", function()
 end)
 
 test("a loop whose contacts come to their limits one after the other breaks away", function()
-    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 2, Rd = 1, normal = function(t) return 1 - t end } },
-        links = { pad = { "a", "b", Rd = 0.5 } } }
+    local rig = pair({ I = 1, Rd = 1 }, { I = 2, Rd = 1, normal = function(t) return 1 - t end }, { Rd = 0.5 })
     -- b is held by 1 - t and by the pad; from t = 1 by the pad alone
     local run = rig:simulate { M = { b = function(t) return 0.9 end }, t_end = 2 }
     equal(run.events[1].kind, "slip")
@@ -112,7 +109,7 @@ end)
 
 test("what rings about the place at which another sticks comes to rest", function()
     for _, place in ipairs { 0.05, 3, 1000 } do
-        local rig = system { bodies = { a = { I = 0.1 }, b = { I = 3, Rd = 1 } }, links = { shaft = { "a", "b", k = 15, C = 0.36 } } }
+        local rig = pair({ I = 0.1 }, { I = 3, Rd = 1 }, { k = 15, C = 0.36 })
         local run = rig:simulate { theta0 = { a = place, b = place }, velocity0 = { a = 0.3 }, t_end = 40 }
         equal(run.status, "end")
         near(run.a.theta[1001], place, 1e-12 * place)

@@ -70,17 +70,17 @@ test("a drill string sticks and slips while it goes round", function()
     equal(s.bit.stops, 1)
     assert(s.pipe.amplitude > 0.5)
     says(s, "bit turns by")
-    local even = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1, C = 0.5 } } }
+    local even = pair({ I = 1, C = 1 }, { I = 1 }, { k = 1, C = 0.5 })
         :steady { M = { a = 1 } }
     equal(even.status, "steady")
     equal(even.period, nil)
     equal(even.a.amplitude, nil)
-    equal(even.rod.amplitude, 0.0)
-    near(even.rod.mean, 0, 1e-9)
+    equal(even.link.amplitude, 0.0)
+    near(even.link.mean, 0, 1e-9)
 end)
 
 test("a relay that looks at another body hunts", function()
-    local rig = system { bodies = { a = { I = 1, C = 0.3 }, b = { I = 0.5, k = 1, C = 0.1, Rd = 0.05 } }, links = { rod = { "a", "b", k = 4, C = 0.2 } } }
+    local rig = pair({ I = 1, C = 0.3 }, { I = 0.5, k = 1, C = 0.1, Rd = 0.05 }, { k = 4, C = 0.2 })
     local M = { a = excitation.relay { on = -0.2, off = 0.2, amplitude = { 1, -1 }, of = "theta.b" } }
     local s = rig:steady { M = M }
     equal(s.status, "steady")
@@ -115,7 +115,7 @@ test("a damper that is only rubbed along: its period is that of M, glued it does
 end)
 
 test("rest, and what is refused", function()
-    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.1 }, b = { I = 1, k = 2, C = 0.1 } }, links = { rod = { "a", "b", k = 1 } } }
+    local rig = pair({ I = 1, k = 1, Rd = 0.1 }, { I = 1, k = 2, C = 0.1 }, { k = 1 })
     local s = rig:steady { theta0 = { a = 1 } }
     equal(s.status, "rest")
     equal(s.run, nil)

@@ -52,10 +52,7 @@ end
 
 test("noise in M is followed as exactly as it can be, also with two bodies", function()
     local function run(size)
-        local rig = system {
-            bodies = { a = { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, b = { I = 1, k = 2, Rd = 0.1 } },
-            links = { c = { "a", "b", k = 0.5 } },
-        }
+        local rig = pair({ I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, { I = 1, k = 2, Rd = 0.1 }, { k = 0.5 })
         local M = { a = function(t) return math.sin(0.7 * t) + size * noise(t) end }
         return rig:simulate { M = M, velocity0 = { a = 1 }, t_end = 12, dt = 0.5 }
     end

@@ -113,6 +113,12 @@ function support.of_kind(run, kind)
     return run.events:filter(function(event) return event.kind == kind end)
 end
 
+--- Two bodies, a and b, with a link between them.
+function support.pair(a, b, link)
+    link[1], link[2] = "a", "b"
+    return system { bodies = { a = a, b = b }, links = { link = link } }
+end
+
 --- A new table with what is in both; where both have a name, the second one counts.
 function support.merged(a, b)
     local all = {}
