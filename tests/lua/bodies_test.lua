@@ -299,15 +299,6 @@ test("a constant normal load is in Rd, and units that are powers of two change n
     equal(loaded.a.theta, plain.a.theta)
 end)
 
-test("a clutch whose capacity ramps locks at its closed form: time, speed and heat", function()
-    local run = clutch { Rd = 2, normal = function(t) return math.min(t, 1) end }:simulate { velocity0 = { motor = 3 }, t_end = 4 }
-    local lock = 1 + (3 - 4 / 3) / (8 / 3)
-    near(first(run, "stick", "clutch").t, lock, 1e-13)
-    near(run.motor:at(4) - run.load:at(4), run.clutch:at(lock), 1e-12)
-    near(select(2, run.load:at(4)), 0.75, 1e-13)
-    near(run:energy().clutch.dry, 3 / 4 * 3 ^ 2 / 2, 1e-12)
-end)
-
 test("a contact between a body that a belt carries and one that stands slips, though both are held", function()
     local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.2 })
     local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }

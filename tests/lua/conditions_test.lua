@@ -1,34 +1,6 @@
--- Conditions on theta, velocity and states in functions that are read: each change of one is located.
+-- Conditions on theta, velocity and states in functions that are read: each change of one is located. The example
+-- 172-conditions-on-the-motion.lua has a bang-bang motion and a clearance with their known periods.
 dofile "tests/lua/support.lua"
-
-test("feedback of the sign of theta: the period of a bang-bang motion is known", function()
-    local A, a = 0.5, 1.25
-    local run = system { I = 1, k = 0 }:simulate {
-        M = function(_, theta) return theta > 0 and -a or a end, theta0 = A, t_end = 50,
-    }
-    local T = 4 * math.sqrt(2 * A / a)
-    for n = 1, 9 do
-        local theta, velocity = run:at(n * T)
-        near(theta, A, 1e-13)
-        near(velocity, 0, 1e-13)
-        near((run:at((n - 0.5) * T)), -A, 1e-13)
-    end
-    local story = run:explain():gsub("%s+", " ")
-    has(story, "also those on theta, velocity or states, are located")
-    equal(run.gap, nil)
-end)
-
-test("a spring with clearance, by max and min: its period is known", function()
-    local gap, k, v = 0.2, 9, 1
-    local run = system { I = 1, k = 0 }:simulate {
-        M = function(_, theta) return -k * (math.max(theta - gap, 0) + math.min(theta + gap, 0)) end,
-        velocity0 = v, t_end = 60,
-    }
-    local T = 4 * gap / v + 2 * math.pi / math.sqrt(k)
-    local theta, velocity = run:at(20 * T)
-    near(theta, 0, 1e-12)
-    near(velocity, v, 1e-12)
-end)
 
 test("an encoder is a spring in steps, whose energy is kept", function()
     local d, K, theta0 = 0.05, 3, 0.52

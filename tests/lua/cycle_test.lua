@@ -54,38 +54,6 @@ test("van der Pol's cycle has its known period and amplitude, from within and fr
     end
 end)
 
-test("a relay drives the cycle of a long run", function()
-    local sys, M = system{ I = 1, k = 1, C = 0.2 }, excitation.relay{ on = -0.1, off = 0.1, amplitude = { 0.4, -0.4 } }
-    local s = sys:steady{ M = M }
-    local run = sys:simulate{ M = M, t_end = 500, times = vector.linspace(500 - s.period, 500, 2001) }
-    local switches = of_kind(run, "switch").t
-    near(s.period, switches[#switches] - switches[#switches - 2], 1e-9)
-    near(s.amplitude, extent(run.theta), 1e-5) -- rows miss the peaks
-    assert(s.stable and s.stops == 0)
-    equal(#of_kind(s.run, "switch"), 2)
-end)
-
-test("the hunting of a controller with an integral is the one that long runs come to", function()
-    local block = system{ I = 1, k = 0, Rd = 0.3, Re = 0.4 }
-    local function M(_, theta, velocity, z) return 8 * (1 - theta) - 2 * velocity + 3 * z.e end
-    local states = { e = { start = 0, rate = function(_, theta) return 1 - theta end } }
-    local s = block:steady{ M = M, states = states }
-    local run = block:simulate{ M = M, states = states, t_end = 4000, times = { 4000 } }
-    local sticks = of_kind(run, "stick")
-    local n = #sticks
-    near(s.period, sticks[n].t - sticks[n - 2].t, 1e-8)
-    near(s.amplitude, math.abs(sticks[n].theta - sticks[n - 1].theta) / 2, 1e-10)
-    near(s.period, 53.27, 5e-3)
-    equal(s.stops, 2)
-    equal(#s.multipliers, 2)
-    assert(s.multipliers[1].abs < 0.6 and s.multipliers[2].abs < 1e-7)
-    local later = run:steady() -- from where the run has got to
-    near(later.period, s.period, 1e-9)
-    near(later.amplitude, s.amplitude, 1e-10)
-    block = system{ I = 1, k = 0, Rd = 0.3 }
-    equal(block:steady{ M = M, states = states }.status, "rest")
-end)
-
 test("a clock that is kicked at each passage has the amplitude of its balance", function()
     local C, kick = 0.1, 0.05
     local damped = (1 - C ^ 2 / 4) ^ 0.5

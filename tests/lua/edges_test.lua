@@ -43,13 +43,7 @@ test("rk4 takes an instant that rounding puts beside its step for the end of the
     end
 end)
 
-test("bounces that die out slowly end when they end", function()
-    for _, e in ipairs { 0.5, 0.9, 0.99, 0.999 } do
-        local run = system { I = 1, k = 0, walls = { lower = 0, restitution = e } }:simulate { M = -1, theta0 = 1, t_end = 1e4, dt = 1e4 }
-        equal(run.outcome, "at rest")
-        local t = math.sqrt(2) * (1 + 2 * e / (1 - e)) -- a geometric series
-        near(run.events[#run.events].t, t, 1e-12 * t / (1 - e)) -- each bounce is rounded
-    end
+test("bounces to and fro in no room end the run", function()
     local caught = system { I = 1, k = 0, walls = { lower = 0, upper = 1e-15, restitution = 1 } }:simulate { velocity0 = 1, t_end = 1, dt = 1 }
     has(caught.outcome, "endlessly at one time")
 end)

@@ -202,10 +202,6 @@ test("squeal begins at a Hopf point and ends at a fold, where the sliding of the
     local squeal = system{ I = 1, k = 4, C = C, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }
     local c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p) return { belt = p.speed } end }
     equal(table.concat(c.points.kind, " "), "fold hopf")
-    local fold, hopf = c.points[1], c.points[2]
-    -- The damping of the sliding is C and the slope of friction.
-    near(C, (Re - Rd) * 2 * hopf.speed / v0 ^ 2 * math.exp(-(hopf.speed / v0) ^ 2), 1e-9)
-    near(fold.speed, 0.8683428494994, 1e-8) -- shooting by Runge and Kutta's method from the release, 40,000 steps
     local function rows(speed)
         return c:filter(function(row) return math.abs(row.speed - speed) < 1e-9 end):sort("amplitude")
     end
@@ -243,19 +239,6 @@ test("a response over two parameters is a response at each value of the first", 
     has(picture, "amplitude", "points")
     has(c:plot{ x = "omega", y = "amplitude", show = false }, "unstable")
     raises_here(function() c:plot{ overlay = "jumps" } end, "the overlay 'jumps' has no M0")
-end)
-
-test("Hopf points form a curve over two parameters, on which the damping of the sliding is zero", function()
-    local Rd, Re, v0 = 0.3, 0.6, 0.3
-    local squeal = system{ I = 1, k = 4, C = 0.1, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }
-    local c = squeal:response{ over = { C = { 0.4, 0.5, 0.6, 0.7 }, speed = { 0.1, 0.5 } },
-        at = function(p) return { belt = p.speed, system = squeal:with{ C = p.C } } end }
-    local hopf = c.points:filter(function(p) return p.kind == "hopf" end)
-    equal(#hopf, 6)
-    for _, p in ipairs(hopf) do near(p.C, (Re - Rd) * 2 * p.speed / v0 ^ 2 * math.exp(-(p.speed / v0) ^ 2), 1e-8) end
-    -- The faster ones form one curve, the slower ones, in the range from C = 0.6 on, another one.
-    for _, p in ipairs(hopf) do equal(p.curve, p.speed > v0 / math.sqrt(2) and hopf.curve[1] or hopf.curve[6]) end
-    assert(hopf.curve[1] ~= hopf.curve[6])
 end)
 
 test("limit cycles begin at a Hopf point: those of van der Pol", function()

@@ -42,13 +42,6 @@ test("a function of t is called with t alone, one of more parameters with theta 
     equal(nd:simulate { M = callable, t_end = 1, dt = 1 }.M[2], 2.0)
 end)
 
-test("feedback acts as the damping that it imitates", function()
-    local c = 0.05
-    local imitated = nondimensional {}:simulate { M = function(t, theta, velocity) return -c * velocity end, theta0 = 1, t_end = 3, dt = 0.01 }
-    local real = nondimensional {}:with { C = c }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
-    near(imitated.theta, real.theta, 1e-9)
-end)
-
 test("the default integrator is exact where that takes M, else spectral", function()
     equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
     equal(tostring(nd:simulate { M = function(t) return 0 * t end, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
