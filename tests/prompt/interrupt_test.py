@@ -59,6 +59,19 @@ LONG = {
     "a sweep within a sweep": "sweep{ over = { x = { 1, 2 } }, workers = 2, run = function() return { n = #sweep{ over = { y = { 1, 2 } }, run = "
                               "function() while true do end end } } end }",
     "plots": "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } go() while true do run:plot{ show = false } end",
+    "a loop of pcalls of error": "while true do pcall(error) end",
+    "coroutines that yield for ever":
+        "local inner = coroutine.wrap(function() while true do coroutine.yield(1) end end) "
+        "local outer = coroutine.wrap(function() while true do inner() coroutine.yield(2) end end) while true do outer() end",
+    # At rest under loads that never reach the limit together, which nobody knows before.
+    "a run that computes long between two events":
+        "nondimensional{ friction_ratio = 0.5, breakaway_ratio = 0.9 }:simulate{ M = 0.5*excitation.harmonic{ frequency = 1 } + "
+        "0.3*excitation.harmonic{ frequency = 1.1 } + 0.2*excitation.pulse{ width = 1, at = -3 }, t_end = 1e12, times = {} }",
+    "a load that turns a million times a period":
+        "nondimensional{}:simulate{ M = 0.1*excitation.harmonic{ frequency = 1e6 }, theta0 = 1, t_end = 1e9, times = {} }",
+    "many rows between two events": "nondimensional{}:simulate{ theta0 = 1, t_end = 10, dt = 1e-7 }",
+    "a search for a steady motion":
+        "nondimensional{ friction_ratio = 0.01 }:steady{ M = excitation.harmonic{ frequency = 1e-9 } }",
     "__close": "local x <close> = setmetatable({}, { __close = function() while true do end end })",
 }
 
