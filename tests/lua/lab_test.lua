@@ -1,13 +1,6 @@
 -- lab and check: whose lab it is, what is refused, and that no answer is to be had but by working.
 dofile "tests/lua/support.lua"
 
-local function output(code, options)
-  local name = temporary ".lua"
-  write(name, code)
-  local pipe <close> = io.popen(('"%s" %s %s 2>&1'):format(program(), options or "", name))
-  return (pipe:read "a")
-end
-
 test("before a number is said, nothing is given and nothing judged", function()
   equal(lab.number(), nil)
   raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")

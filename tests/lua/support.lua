@@ -183,6 +183,14 @@ function support.program()
     return arg[first]
 end
 
+--- What the program prints when it runs this code.
+function support.output(code, options)
+    local name = support.temporary ".lua"
+    support.write(name, code)
+    local pipe <close> = io.popen(('"%s" %s %s 2>&1'):format(support.program(), options or "", name))
+    return pipe:read "a"
+end
+
 --- Each of these numbers of the fit is within so many of its errors (4) of the truth.
 function support.fits(fit, truth, errors)
     for name, value in pairs(truth) do support.near(fit[name], value, (errors or 4) * fit.std_error[name]) end
