@@ -205,17 +205,6 @@ test("a mass that leans on a wall where a run ends is told to leave it by the ru
     near(first(run, "slip", "a").t, 2, 1e-12)
 end)
 
-test("a sweep takes a rig along, its functions too", function()
-    local limit = 0.3
-    local rig = system { bodies = { a = { I = 1, k = 1, Rd = function(t) return limit end } } }
-    local found = sweep { over = { x = { 1, 2, 3 } }, workers = 2, run = function(p)
-        return { rest = (rig:simulate { theta0 = { a = p.x }, t_end = 30 }.a:at(30)) }
-    end }
-    for i, x in ipairs { 1, 2, 3 } do
-        near(found.rest[i], (rig:simulate { theta0 = { a = x }, t_end = 30 }.a:at(30)), 0)
-    end
-end)
-
 test("an M with a delay is the same without the motion between the rows", function()
     local rig = pair({ I = 1, k = 4, C = 0.1 }, { I = 1, k = 1 }, { k = 1 })
     local function last(dense)

@@ -134,12 +134,4 @@ test("errors of M do not leak: hundreds of them leave the stack and the registry
     assert(collectgarbage "count" < before + 12, collectgarbage "count" - before)
 end)
 
-test("feedback that pushes at rest and holds in motion ends the run with an outcome that says so", function()
-    local relay = function(t, theta, velocity) return velocity > 0 and -10 or 10 end
-    local run = nondimensional { friction_ratio = 0.1 }:simulate { M = relay, theta0 = 1, t_end = 50, dt = 0.1 }
-    has(run.outcome, "chatters")
-    -- It is found out at once, and what was computed until then is there.
-    assert(#run > 0 and #run.events < 1000 and run.t[#run] < 5, tostring(run))
-end)
-
 finish()

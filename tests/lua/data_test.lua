@@ -121,18 +121,6 @@ test("what is no data is told in a sentence", function()
     raises_here(function() data{ a = { 1 } }:save("/no/such/folder/x.csv") end, "/no/such/folder")
 end)
 
-test("numbers may be among the names of a file", function()
-    local d = load("t,100,200\n0,1,2\n0.5,3,4\n")
-    equal(table.concat(d.names, " "), "t 100 200")
-    equal(d.t, vector{ 0, 0.5 })
-    equal(d["200"], vector{ 2, 4 })
-    equal(table.concat(load("f;1,5;note\n1;2,5;a\n2;3,5;b\n").names, " "), "f 1,5 note")
-    -- An overload in the first row, a first column of words, a single line: these are rows.
-    equal(table.concat(load("0,OL,1\n1,2,3\n").names, " "), "1 2 3")
-    equal(table.concat(load("a,1\nb,2\n").names, " "), "1 2")
-    equal(#load("a,1\n"), 1)
-end)
-
 test("a long or wide table is cut, and says so", function()
     local columns = {}
     for i = 1, 40 do columns[i] = { "column" .. i, vector.linspace(0, 1, 20) } end

@@ -105,19 +105,6 @@ test("a state that does not exist is neither read nor written", function()
     end, "there is no state 'nn'; there is n; did you mean 'n'?")
 end)
 
-test("a feedback in single precision is noise, not a stair of ten million steps", function()
-    local calls = 0
-    local function M(t, theta)
-        calls = calls + 1
-        return (string.unpack("f", string.pack("f", math.sin(3 * t) - 0.5 * theta)))
-    end
-    local run = dry:simulate { M = M, theta0 = 1, t_end = 1, dt = 1 }
-    has(run.outcome, "within the noise of M")
-    assert(calls < 2000, calls)
-    local smooth = dry:simulate { M = function(t, theta) return math.sin(3 * t) - 0.5 * theta end, theta0 = 1, t_end = 1, dt = 1 }
-    near(run.theta[2], smooth.theta[2], 6e-8 / 40 * 2) -- the rounding of M over k, and its resonance
-end)
-
 test("an exponential that outgrows the motion is followed at once", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.3 }
     local M = excitation.exponential { tau = -0.02, amplitude = 1e-3 }

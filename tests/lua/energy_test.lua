@@ -53,13 +53,6 @@ test("columns stand beside the rows and end at the total", function()
     assert(energy.dry:diff() >= -1e-14, "dry friction gives nothing back")
 end)
 
-test("the rows asked for do not change the energy", function()
-    local bare = sys:simulate { M = M, theta0 = 1, t_end = 40, times = {} }:energy()
-    equal(bare.total.dry, energy.total.dry)
-    equal(bare.total.input, energy.total.input)
-    equal(#bare.input, 0)
-end)
-
 test("it shows itself as a small table", function()
     local text = tostring(energy)
     has(text, "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles")

@@ -21,22 +21,6 @@ test("lines fit a terminal and there are not too many, however long the run", fu
     says(run, "... 1995 more ...")
 end)
 
-test("a user's function is not called again", function()
-    local calls = 0
-    local function M(t)
-        calls = calls + 1
-        return math.sin(2 * math.pi * t)
-    end
-    for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.001 } } do
-        local run = nondimensional { zeta = 0.119, friction_ratio = 0.418 }:simulate {
-            M = M, theta0 = 1, t_end = 20, dt = 0.005, integrator = with }
-        local before = calls
-        says(run, "lags behind that of M by 1.607 rad")
-        says(run, "It does not stop.")
-        equal(calls, before)
-    end
-end)
-
 test("a run read from a file, one of 1989 and a broken one have a story, too", function()
     local name = temporary ".csv"
     free:save(name)

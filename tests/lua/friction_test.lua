@@ -47,10 +47,13 @@ test("what is wrong with a law is one sentence with the name of the option", fun
     raises_here(function() stribeck.Re = 2 end, "a friction cannot be changed")
 end)
 
-test("the museum piece and the closed forms include only Coulomb friction", function()
-    local sys = system { I = 1, k = 1, friction = stribeck }
-    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "supports only Coulomb friction")
-    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms include only Coulomb friction")
+test("the museum piece and the closed forms include only Coulomb friction and the spring k theta, and no walls", function()
+    for option, only in pairs { friction = "only Coulomb friction", spring = "only the spring k theta", walls = "walls" } do
+        local parts = { friction = stribeck, spring = spring.polynomial { [3] = 0.5 }, walls = { upper = 1 } }
+        local sys = system { I = 1, k = 1, [option] = parts[option] }
+        raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "support", only)
+        raises_here(function() theory.time_to_rest { system = sys, theta0 = 0.5 } end, "the closed forms ", "include ", only)
+    end
 end)
 
 test("with makes the same system but for what is given", function()

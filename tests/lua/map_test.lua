@@ -129,24 +129,15 @@ test("its plot shows points", function()
     has_not(commands, "with lines lw")
 end)
 
-test("the same for any number of workers, and points that fail have a row", function()
-    local function run(workers)
-        return bifurcation { over = { a = { 1, 2, 3, 4 } }, period = 1, skip = 3, keep = 2, workers = workers, at = function(p)
-            if p.a == 2 then error("not this one", 0) end
-            if p.a == 3 then return { system = nondimensional {}, M = "x" } end
-            return { system = nondimensional { friction_ratio = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1.3 } }
-        end }
-    end
-    local one, two = run(1), run(2)
-    equal(#one, 6)
-    equal(one.error[3], "not this one")
-    has(one.error[4], "M must be a function, a number or an excitation")
-    for i = 1, #one do
-        for _, name in ipairs { "a", "theta", "velocity" } do
-            local x, y = one[i][name], two[i][name]
-            assert(x == y or (x ~= x and y ~= y))
-        end
-    end
+test("points of a bifurcation that fail have a row", function()
+    local b = bifurcation { over = { a = { 1, 2, 3, 4 } }, period = 1, skip = 3, keep = 2, workers = 2, at = function(p)
+        if p.a == 2 then error("not this one", 0) end
+        if p.a == 3 then return { system = nondimensional {}, M = "x" } end
+        return { system = nondimensional { friction_ratio = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1.3 } }
+    end }
+    equal(#b, 6)
+    equal(b.error[3], "not this one")
+    has(b.error[4], "M must be a function, a number or an excitation")
 end)
 
 test("a bifurcation in a file is the same rows, and the same call reads them", function()

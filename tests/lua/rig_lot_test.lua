@@ -128,15 +128,4 @@ test("a function that fails for a motion that is only tried is no error", functi
     end, "M returned")
 end)
 
-test("a mass rides on a belt that swings as well long after the start as soon after it", function()
-    local T = 4.248316373675391
-    local sys = system { I = 0.7745738827853084, k = 1.7840466612882422, C = 0.6225326403637852,
-        friction = friction.stribeck { Rd = 0.3027921213272897, Re = 0.5594931536726869, speed = 0.20824854165711995 } }
-    local run = sys:simulate { belt = excitation.harmonic { amplitude = 0.7608014890708968, omega = 1.478982437869557 },
-        M = excitation.square { amplitude = 0.7379585800118253, period = T }, t_end = 141 * T, dt = T }
-    equal(run.status, "end")
-    -- the motion has come to repeat itself
-    near(run.theta[141], run.theta[61], 1e-10)
-end)
-
 finish()

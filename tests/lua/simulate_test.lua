@@ -15,18 +15,6 @@ test("times = {} keeps no rows, but the events and the motion", function()
     near((run:at(1)), 1, 1e-9) -- h = T0/1000: the error of RK4 is about 2 pi (2 pi h)^4/120 = 8e-11
 end)
 
-test("M may be a number, a function, an excitation or nothing", function()
-    local options = { t_end = 2, dt = 0.5 }
-    local function last(M)
-        options.M = M
-        return nondimensional {}:simulate(options).theta[4]
-    end
-    equal(last(nil), 0.0)
-    near(last(3), 6, 1e-8) -- t = 1.5: 3 (1 - cos 3 pi)
-    near(last(function() return 3 end), 6, 1e-8)
-    near(last(excitation.constant { amplitude = 3 }), 6, 1e-8)
-end)
-
 test("a function of t is called with t alone, one of more parameters with theta and velocity", function()
     local count, theta, velocity
     nd:simulate { M = function(...) count, _, theta, velocity = select("#", ...), ... return 0 end, theta0 = 1, t_end = 0.1, dt = 0.1 }

@@ -52,19 +52,6 @@ test("a run with a spring of its own goes on, with states, to a steady motion", 
     near(sys:response { over = { frequency = vector.linspace(0.1, 0.2, 2) }, between = true }.amplitude[1], s.amplitude, 1e-7)
 end)
 
-test("a spring goes into the workers of a sweep", function()
-    local c = 0.5
-    local sys = system { I = 1, k = 1, Rd = 0.1, spring = function(theta) return c * theta ^ 3 end }
-    local native = sys:with { spring = duffing }
-    local map = sweep { over = { theta0 = { 1, 2 } }, workers = 2, run = function(p)
-        return { own = sys:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5),
-            native = native:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5) }
-    end }
-    for i = 1, 2 do
-        near(map.own[i], map.native[i], 1e-11)
-    end
-end)
-
 test("a spring that fails is told with the angle and its line, and what ran is kept", function()
     local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
@@ -93,12 +80,6 @@ test("what is wrong with a spring is one sentence with the name of the option", 
         { { [3] = 1 / 0 }, "[3] must be a finite number, got inf" },
     })
     raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
-end)
-
-test("the museum piece and the closed forms know k theta only", function()
-    local sys = system { I = 1, k = 1, spring = duffing }
-    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "supports only the spring k theta")
-    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms include only the spring k theta")
 end)
 
 test("a stiff contact that is touched for a short while is felt", function()

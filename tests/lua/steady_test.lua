@@ -100,13 +100,6 @@ test("beside resonance a slow beat is no growth, whatever holds the mass that ne
     has_not(far:explain(), "grows")
 end)
 
-test("a load that begins late is taken when it is periodic", function()
-    local M = harmonic(0.4) + excitation.step{ amplitude = 0.3, at = 5.2 }
-    local s = sliding:steady{ M = M }
-    equal(s.run.t_start, 5.2)
-    near(s.mean, 0.3, 1e-10)
-end)
-
 test("feedback: a motor as a dashpot gives what the dashpot gives", function()
     local damped = system{ I = 1, k = 40, C = 2, Rd = 0.4 }:steady{ M = excitation.harmonic{ amplitude = 3, frequency = 0.8 } }
     local fed = system{ I = 1, k = 40, Rd = 0.4 }:steady{

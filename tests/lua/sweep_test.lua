@@ -147,17 +147,18 @@ test("a list of ten thousand links is carried", function()
     end), 4000 * 4001 / 2)
 end)
 
-test("vectors, data, systems, laws, excitations and integrators are carried, with the functions in them", function()
+test("vectors, data, systems, laws, springs, rigs, excitations and integrators are carried, with the functions in them", function()
     local a = 2
     local v, d = vector { 1, 2, 3 }, data { u = { 4, 5 } }
     local law = friction.law(function(speed) return 0.1 * a + 0.01 * speed end)
-    local sys = system { I = 1, k = 4, friction = law }
+    local sys = system { I = 1, k = 4, friction = law, spring = function(theta) return 0.1 * a * theta ^ 3 end }
+    local rig = system { bodies = { b = { I = 1, k = 1, Rd = function() return 0.1 * a end } } }
     local M = (3 * excitation.scripted(function(t) return math.sin(a * t) end, { breaks = { 0.5 } })):window(0, 2)
         + excitation.harmonic { frequency = 1 } + excitation.samples { t = { 0, 1 }, M = { 0, 1 } }
     local method = integrator.rk4 { h = 0.001 }
     local function run()
         local r = sys:simulate { M = M, t_end = 3, dt = 0.1, integrator = method }
-        return v:sum() + d.u:sum() + law:torque(0.5) + r.theta:sum()
+        return v:sum() + d.u:sum() + law:torque(0.5) + r.theta:sum() + rig:simulate { theta0 = { b = 1 }, t_end = 3 }.b.theta:sum()
     end
     equal(at_one_point(function() return { y = run() } end), run())
 end)
