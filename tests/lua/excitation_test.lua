@@ -2,33 +2,31 @@
 -- help_test.lua runs, have the plain values.
 
 dofile "tests/lua/support.lua"
-local fails = raises
 
 -- The line of the caller.
 local function line() return debug.getinfo(2, "l").currentline end
-local function near(a, b) assert(math.abs(a - b) <= 1e-14 * math.max(1, math.abs(b)), a .. " is not " .. b) end
 local e = excitation
 
-near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8))
+near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8), 1e-14)
 -- A periodic term takes frequency, omega or period, one of them.
 for name, wave in pairs{ harmonic = e.harmonic, square = e.square, triangle = e.triangle, sawtooth = e.sawtooth } do
-    near(wave{ period = 2.5 }(0.7), wave{ frequency = 0.4 }(0.7))
-    near(wave{ omega = 0.8 * math.pi }(0.7), wave{ frequency = 0.4 }(0.7))
-    fails(function() wave{ period = 1, omega = 2 } end, "excitation." .. name .. ": ", " exclude each other; give one of them")
-    fails(function() wave{} end, "period", "omega", " is needed")
+    near(wave{ period = 2.5 }(0.7), wave{ frequency = 0.4 }(0.7), 1e-14)
+    near(wave{ omega = 0.8 * math.pi }(0.7), wave{ frequency = 0.4 }(0.7), 1e-14)
+    raises(function() wave{ period = 1, omega = 2 } end, "excitation." .. name .. ": ", " exclude each other; give one of them")
+    raises(function() wave{} end, "period", "omega", " is needed")
 end
 -- The values at many times, and a number alone where one option is meant.
 assert(e.ramp{}(vector{ 1, 2 }) == vector{ 1, 2 } and tostring(e.constant(3)) == "excitation.constant{ amplitude = 3 }")
 -- The names of before lead to the new ones.
 for wanted, call in pairs{ amplitude = function() e.step{ level = 1 } end, sigma = function() e.gaussian{ at = 1, width = 1 } end,
     duration = function() e.ramp{ width = 1 } end } do
-    fails(call, "did you mean '" .. wanted .. "'?")
+    raises(call, "did you mean '" .. wanted .. "'?")
 end
 has(e.relay{ on = 1, off = 2, amplitude = 3 }, "amplitude = { 3, -3 }")
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
 assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2 and e.ramp{}(7) == 7)
-near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi))
-near(e.exponential{ amplitude = 2, tau = 0.5, at = 1 }(2), 2 * math.exp(-2))
+near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi), 1e-14)
+near(e.exponential{ amplitude = 2, tau = 0.5, at = 1 }(2), 2 * math.exp(-2), 1e-14)
 assert(e.polynomial{ coefficients = vector{ 1, 2, 3 }, at = 1 }(3) == 17)
 assert(e.samples{ t = vector{ 0, 2 }, M = vector{ 1, 5 } }(3) == 5)
 
@@ -43,22 +41,22 @@ local double = function(t) return 2 * t end
 assert((2 + step)(1) == 3 and (double + step)(3) == 7 and (step - 2)(1) == -1 and (double - step)(3) == 5 and (step * 3)(1) == 3)
 assert((2 * (step + double - 1) / 4)(3) == 3)
 assert(step(1) == 1, "the operands stay as they are")
-fails(function() return step * step end, "excitation_test.lua:" .. line() .. ": ", "multiplied by a number only, got an excitation")
-fails(function() return step * double end, "got a function")
-fails(function() return 1 / step end, "divided by a number only, got 1 / an excitation")
-fails(function() return step / 0 end, "divided by zero")
-fails(function() return step + "3" end, "must be a function, a number or an excitation", 'got the string "3"')
-fails(function() return step + math.huge end, "must be finite, got inf")
+raises(function() return step * step end, "excitation_test.lua:" .. line() .. ": ", "multiplied by a number only, got an excitation")
+raises(function() return step * double end, "got a function")
+raises(function() return 1 / step end, "divided by a number only, got 1 / an excitation")
+raises(function() return step / 0 end, "divided by zero")
+raises(function() return step + "3" end, "must be a function, a number or an excitation", 'got the string "3"')
+raises(function() return step + math.huge end, "must be finite, got inf")
 
 -- Delay and window, in either order.
 assert((step + double):delay(1)(3) == 5)
 assert(e.ramp{}:window(0, 3):delay(2)(4) == 2 and e.ramp{}:delay(2):window(0, 3)(4) == 0)
 assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
-fails(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
-fails(function() return step:window(3) end, "to must be a number, got nil")
-fails(function() return step.delay(1) end, "use a colon: e:delay(1.5)")
+raises(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
+raises(function() return step:window(3) end, "to must be a number, got nil")
+raises(function() return step.delay(1) end, "use a colon: e:delay(1.5)")
 
--- Mistakes in options are named, with what to do.
+-- Samples may be splines, and periodic.
 do
     local t, M = { 0, 1, 2, 3 }, { 0, 1, 0, -1 }
     local s = e.samples{ t = t, M = M, interpolation = "cubic", period = 4 }
@@ -73,8 +71,8 @@ do
     local sys = nondimensional{ zeta = 0.1 }
     assert(sys:steady{ M = s }.period == 4)
     has(sys:simulate{ M = s, t_end = 3, dt = 1 }.integrator, "exact")
-    fails(function() return e.samples{ t = t, M = M, period = 2 } end, "period = 2 is shorter than the points")
-    fails(function() return e.samples{ t = t, M = M, period = 3 } end, "M = 0 at t = 0, but -1 one period later")
+    raises(function() return e.samples{ t = t, M = M, period = 2 } end, "period = 2 is shorter than the points")
+    raises(function() return e.samples{ t = t, M = M, period = 3 } end, "M = 0 at t = 0, but -1 one period later")
 end
 for message, points in pairs{
     ["samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase"] = { t = { 0, 0.4, 0.3 }, M = { 0, 0, 0 } },
@@ -82,12 +80,12 @@ for message, points in pairs{
     ["there are no points"] = { t = {}, M = {} },
     ["the name of a file or a table of points, got 3"] = 3,
 } do
-    fails(function() e.samples(points) end, message)
+    raises(function() e.samples(points) end, message)
 end
-fails(function() return e.puls end, "there is no excitation.puls", "did you mean 'pulse'?")
-fails(function() return step.valeu end, "an excitation has no field 'valeu'", "'value'")
-fails(function() step.at = 3 end, "cannot be changed")
-fails(function() return step("1") end, 'e:value(t): t must be a finite number, got the string "1"')
+raises(function() return e.puls end, "there is no excitation.puls", "did you mean 'pulse'?")
+raises(function() return step.valeu end, "an excitation has no field 'valeu'", "'value'")
+raises(function() step.at = 3 end, "cannot be changed")
+raises(function() return step("1") end, 'e:value(t): t must be a finite number, got the string "1"')
 
 -- A function is called as its parameter list says.
 local function arguments(...) return select("#", ...) end
@@ -104,14 +102,14 @@ local generator = coroutine.wrap(function(t)
     while true do t = coroutine.yield(2 * t) end
 end)
 assert((step + generator)(4) == 9)
-fails(function() return (step + function(t, theta, v) return v end):values{ 0, 1 } end, "needs theta and velocity")
+raises(function() return (step + function(t, theta, v) return v end):values{ 0, 1 } end, "needs theta and velocity")
 
 -- Hints.
 local hinted = e.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 })
 assert(hinted:next_break(0) == 2 and hinted:next_break(2) == 3 and hinted:delay(0.5):next_break(2.5) == 3.5)
-fails(function() return e.scripted(double, { breaks = { 2, 1 } }) end, "breaks[2] = 1 is not after breaks[1] = 2")
-fails(function() return e.scripted(double, { breaks = { 0, 4 }, period = 3 }) end, "span more than the period 3")
-fails(function() return e.scripted(3) end, "excitation.scripted needs a function, got 3")
+raises(function() return e.scripted(double, { breaks = { 2, 1 } }) end, "breaks[2] = 1 is not after breaks[1] = 2")
+raises(function() return e.scripted(double, { breaks = { 0, 4 }, period = 3 }) end, "span more than the period 3")
+raises(function() return e.scripted(3) end, "excitation.scripted needs a function, got 3")
 
 -- The first failure counts, and no function is called after it.
 local calls = 0
@@ -119,7 +117,7 @@ local both = e.scripted(function(t) return t < 3 and 1 or nil end) + function(t)
     calls = calls + 1
     return t < 2 and 1 or error("late")
 end
-fails(function() return both:values{ 0, 1, 2, 3, 4 } end, "late")
+raises(function() return both:values{ 0, 1, 2, 3, 4 } end, "late")
 assert(calls == 3)
 assert(both(1) == 2, "and the next call starts afresh")
 
@@ -133,7 +131,7 @@ assert(outer:values{ 4, 6, 5 } == vector{ 4, -1, 5 })
 local depth
 depth = e.scripted(function(t) return t <= 0 and 0 or 1 + depth(t - 1) end)
 assert(depth(20) == 20)
-fails(function() return depth(1e6) end, "50 levels deep")
+raises(function() return depth(1e6) end, "50 levels deep")
 function Replaced(t) Replaced = nil return 3 end
 local replacing = e.scripted(Replaced)
 assert(replacing(1) == 3 and replacing(2) == 3 and Replaced == nil)
@@ -152,6 +150,7 @@ end
 collectgarbage()
 collectgarbage()
 assert(next(weak) == nil)
+
 -- As text, which makes the same again.
 local function rebuilt(M) return assert(load("return " .. tostring(M)))() end
 local all = e.constant{ amplitude = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
@@ -189,7 +188,7 @@ assert(tostring(e.scripted(callable)) == "excitation.scripted(--[[ a table with 
 local path = temporary()
 write(path, "# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
 assert(e.samples(path)(1) == 2, "columns t and M are found by name")
-assert(math.abs(e.samples(path, { interpolation = "cubic" })(1) - 5/3) < 1e-14, "three points are a parabola")
+near(e.samples(path, { interpolation = "cubic" })(1), 5/3, 1e-14) -- three points are a parabola
 assert(tostring(e.samples(path, { interpolation = "cubic", period = 100 })) ==
        ('excitation.samples("%s", { time = "t", value = "M", interpolation = "cubic", period = 100 })'):format(path))
 do
@@ -203,9 +202,9 @@ assert(e.samples(path, { time = "moment" }):next_break(0) == 1)
 assert(tostring(2 * e.samples(path):delay(3)) ==
        ('2 * excitation.samples("%s", { time = "t", value = "M" }):delay(3)'):format(path))
 assert(rebuilt(e.samples(path):delay(3))(4) == 2)
-fails(function() return e.samples(path, { value = "mo" }) end, path, "no column 'mo'", "moment")
-fails(function() return e.samples(path, { value = 7 }) end, path, "column 7")
-fails(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
+raises(function() return e.samples(path, { value = "mo" }) end, path, "no column 'mo'", "moment")
+raises(function() return e.samples(path, { value = 7 }) end, path, "column 7")
+raises(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
 write(path, "0 1\n1 3\n2 5\n")
 assert(e.samples(path)(0.5) == 2, "without names, the first two columns")
 for text, pieces in pairs{
@@ -216,7 +215,7 @@ for text, pieces in pairs{
     [""] = { "empty" },
 } do
     write(path, text)
-    fails(function() e.samples(path) end, path, table.unpack(pieces))
+    raises(function() e.samples(path) end, path, table.unpack(pieces))
 end
 os.remove(path)
-fails(function() return e.samples(path) end, path)
+raises(function() return e.samples(path) end, path)
