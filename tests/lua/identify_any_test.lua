@@ -47,25 +47,25 @@ end)
 test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding", function()
     local function law(Rd, Re, speed) return system { I = 1, k = 4, C = 0.05, friction = friction.stribeck { Rd = Rd, Re = Re, speed = speed } } end
     local b = law(0.3, 0.6, 0.2):simulate { belt = 0.15, t_end = 30, dt = 0.05 }
-    local record = { t = b.t, theta = b.theta + noise(#b, 0.003, 5) }
-    local fit = identify { data = record, belt = 0.15, system = law(0.2, 0.5, 0.3), free = { "friction.Rd", "friction.Re", "friction.speed" },
+    local belt_record = record(b, 5, 0.003)
+    local fit = identify { data = belt_record, belt = 0.15, system = law(0.2, 0.5, 0.3), free = { "friction.Rd", "friction.Re", "friction.speed" },
         theta0 = 0, velocity0 = 0 }
     found(fit, { ["friction.Rd"] = 0.3, ["friction.Re"] = 0.6, ["friction.speed"] = 0.2 })
     has_not(fit, "correlated")
     -- with another law the residual is no noise, and the errors know that
-    fit = identify { data = record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
+    fit = identify { data = belt_record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
     has(fit, "correlated from sample to sample")
     fits(fit, { k = 4 })
 
     local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
-    fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 6) }, M = M, system = uneven(0.1, 0.1),
+    fit = identify { data = record(r, 6, 0.003), M = M, system = uneven(0.1, 0.1),
         free = { "friction.forward.Rd", "friction.backward.Rd", "k" } }
     found(fit, { ["friction.forward.Rd"] = 0.05, ["friction.backward.Rd"] = 0.15, k = 4 })
 
     local function bristles(Rd) return system { I = 1, k = 4, friction = friction.lugre { Rd = Rd, Re = 1.5 * Rd, speed = 0.1, stiffness = 50, damping = 1 } } end
     r = bristles(0.2):simulate { theta0 = 1, t_end = 10, dt = 0.05 }
-    fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 7) }, system = bristles(0.3), free = { "friction.Rd" } }
+    fit = identify { data = record(r, 7, 0.003), system = bristles(0.3), free = { "friction.Rd" } }
     found(fit, { ["friction.Rd"] = 0.2 })
     has(fit.system, "lugre")
 end)
@@ -77,14 +77,14 @@ test("numbers of a table that M uses, which stays as it was; a spring and a shak
     local r = plant:simulate { M = F, t_end = 15, dt = 0.05 }
     p.Kp, p.Kd = 1, 0.2
     for _, M in ipairs { F, excitation.scripted(F) } do
-        local fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 8) }, M = M, system = plant, free = { "p.Kp", "p.Kd", "Rd" } }
+        local fit = identify { data = record(r, 8, 0.003), M = M, system = plant, free = { "p.Kp", "p.Kd", "Rd" } }
         found(fit, { ["p.Kp"] = 2, ["p.Kd"] = 0.5, Rd = 0.05 })
         assert(p.Kp == 1 and p.Kd == 0.2)
     end
     local base = excitation.harmonic { amplitude = 2, omega = 1.7 }
     local function duffing(c) return system { I = 1, k = 2, C = 0.2, spring = spring.polynomial { [3] = c } } end
     r = duffing(0.8):simulate { base = base, t_end = 25, dt = 0.05 }
-    local fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.005, 9) }, base = base, system = duffing(0.5), free = { "spring.3", "C" } }
+    local fit = identify { data = record(r, 9, 0.005), base = base, system = duffing(0.5), free = { "spring.3", "C" } }
     found(fit, { ["spring.3"] = 0.8, C = 0.2 })
 end)
 

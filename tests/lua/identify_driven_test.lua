@@ -2,7 +2,6 @@
 dofile "tests/lua/support.lua"
 
 local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
-local function noisy(run, seed, std) return run.theta + vector.normal{ n = #run, seed = seed, std = std } end
 
 local sweeping = excitation.harmonic{ amplitude = 10, omega = 2.3, phase = 3.7 }
 local stops = { I = 0.5, k = 16, C = 0.5, Rd = 1.5, Re = 2.2 }
@@ -11,7 +10,7 @@ test("a first velocity is found although the mass would stand at every small one
     for _, velocity in ipairs{ -3, 0.5, 2.3, 5 } do
         local run = system(stops):simulate{ M = sweeping, theta0 = -0.4, velocity0 = velocity, t_end = 16, dt = 0.03 }
         for seed = 1, 3 do
-            local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.02) }, M = sweeping, I = 0.5, C = 0.5, Rd = 1.5,
+            local fit = identify{ data = record(run, seed, 0.02), M = sweeping, I = 0.5, C = 0.5, Rd = 1.5,
                 Re = 2.2, offset = 0, theta0 = -0.4 }
             equal(#fit.silent, 0)
             fits(fit, { velocity0 = velocity })
@@ -88,7 +87,7 @@ test("a mass that M never moves tells nothing, and no error", function()
     local run = sys:simulate{ M = M, t_end = 8, dt = 0.04 }
     local alone = 0
     for seed = 1, 6 do
-        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.01) }, M = M }
+        local fit = identify{ data = record(run, seed, 0.01), M = M }
         if tostring(fit):find("the record no better than it would fit noise", 1, true) then
             alone = alone + 1
             for _, name in ipairs(fit.names) do equal(fit.std_error[name], 0.0) end
@@ -117,7 +116,7 @@ test("no search flies away: swings that no sample shows are none", function()
     local s = system{ I = 0.4, k = 4.74, C = 0.135, Rd = 0.242, Re = 0.261 }
     local run = s:simulate{ theta0 = 0.709, t_end = 15.4, dt = 0.02 }
     for seed = 1, 8 do  -- every third one ended overdamped, with I of 1e-6
-        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.014) + 0.09 }, k = 4.74, velocity0 = 0 }
+        local fit = identify{ data = record(run, seed, 0.014, 0.09), k = 4.74, velocity0 = 0 }
         fits(fit, { I = 0.4 })
         assert(fit.noise < 0.016, fit.noise)
     end

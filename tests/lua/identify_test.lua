@@ -3,7 +3,6 @@ dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
 local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
-local function noisy(run, seed, std) return run.theta + vector.normal{ n = #run, seed = seed, std = std } end
 
 test("an exact record gives the system back, with nothing said about where to look", function()
     for _, s in ipairs{ sys, system{ I = 1, k = 4, Rd = 0.3 }, system{ I = 1, k = 100, C = 1.5 }, system{ I = 1, k = 9, C = 0.1, Rd = 0.05 } } do
@@ -30,7 +29,7 @@ test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held
         local t_end, std = (2 + 18 * math.random()) * s.T0, 0.001 * 30^math.random()
         local run = s:simulate{ theta0 = 1, velocity0 = s.omega0 * (2 * math.random() - 1), t_end = t_end,
             dt = t_end / math.random(100, 600) }
-        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, std) + 0.3 } }
+        local fit = identify{ data = record(run, seed, std, 0.3) }
         assert(fit.noise < std * (1 + 3 / (2 * #run)^0.5), tostring(s))
         part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
             velocity0 = run.velocity[1] })
@@ -54,7 +53,7 @@ test("a record that is cut off is fitted as one, and said to be", function()
     local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
     local said = tonumber(tostring(fit):match "(%d+) samples have the extreme values of the record, as if it were clipped there")
     assert(said > 20 and said <= #stand, said)  -- two or three by chance are none
-    has_not(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }, "clipped")
+    has_not(identify{ data = record(run, 5, 0.01) }, "clipped")
     has_not(identify{ data = run }, "clipped")
 end)
 
@@ -71,7 +70,7 @@ test("a driven record with a known M tells the parameters that are asked for", f
     local M = function(t) return 0.3*math.sin(4*t) + 0.2*math.sin(9*t) end
     local s = system{ I = 0.02, k = 0.9, C = 0.01, Rd = 0.06 }
     local run = s:simulate{ M = M, t_end = 12, dt = 0.02 }
-    local fit = identify{ data = { t = run.t, theta = noisy(run, 3, 0.002) }, M = M, I = 0.02, free = { "k", "C", "Rd" },
+    local fit = identify{ data = record(run, 3, 0.002), M = M, I = 0.02, free = { "k", "C", "Rd" },
         theta0 = 0, velocity0 = 0 }
     fits(fit, { k = 0.9, C = 0.01, Rd = 0.06 })
     assert(fit.noise < 0.0023, fit.noise)
@@ -116,7 +115,7 @@ test("a decay of one or two swings: the errors are those of the flat valley, and
         local s = system(short[2])
         local run = s:simulate{ theta0 = 1, t_end = 4, dt = short.dt }
         for seed = 1, 12 do
-            local fit = identify{ data = { t = run.t, theta = noisy(run, seed, short.std) + 0.1 } }
+            local fit = identify{ data = record(run, seed, short.std, 0.1) }
             if short.silent then equal(table.concat(fit.silent, " "), short.silent, short[1]) end
             part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = s.Rd / s.k, offset = 0.1, theta0 = 1,
                 velocity0 = 0 })
@@ -135,7 +134,7 @@ test("a driven record without a stop says nothing about Re, and bends nothing to
     local run = s:simulate{ M = swings, theta0 = 0.2, velocity0 = -0.5, t_end = 10, dt = 0.02 }
     for _, event in ipairs(run.events) do assert(event.kind ~= "stick") end
     for seed = 1, 5 do
-        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.01) + 0.1 }, M = swings, I = 0.02, k = 0.8, C = 0.01,
+        local fit = identify{ data = record(run, seed, 0.01, 0.1), M = swings, I = 0.02, k = 0.8, C = 0.01,
             Rd = 0.05, offset = 0.1, free = { "Re" } }
         equal(table.concat(fit.silent), "Re")
         equal(fit.Re, 0.05)
@@ -157,7 +156,7 @@ test("where it stands the whole range of Re is looked at: no slope leads from Rd
         local run = system(truth):simulate(task)
         truth.offset, truth.theta0, truth.velocity0 = 0.1, task.theta0, task.velocity0 or 0
         for seed = 1, case.seeds do
-            local fit = identify{ data = { t = run.t, theta = noisy(run, seed, case.std) + 0.1 }, M = task.M }
+            local fit = identify{ data = record(run, seed, case.std, 0.1), M = task.M }
             equal(table.concat(fit.silent), case.silent)
             assert(fit.noise < case.std * (1 + 3 / (2 * #run)^0.5), fit.noise)
             part, ratio = judged(fit, truth)

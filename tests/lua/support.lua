@@ -191,6 +191,16 @@ function support.output(code, options)
     return pipe:read "a"
 end
 
+--- The angles of a run with noise, which is the same for the same seed.
+function support.noisy(run, seed, std)
+    return run.theta + vector.normal { n = #run, seed = seed, std = std }
+end
+
+--- The record of a run: its angles with noise, about that zero.
+function support.record(run, seed, std, zero)
+    return { t = run.t, theta = support.noisy(run, seed, std) + (zero or 0) }
+end
+
 --- Each of these numbers of the fit is within so many of its errors (4) of the truth.
 function support.fits(fit, truth, errors)
     for name, value in pairs(truth) do support.near(fit[name], value, (errors or 4) * fit.std_error[name]) end
