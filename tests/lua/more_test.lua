@@ -193,6 +193,8 @@ test("a mass that stands is torn off by a base as quick as one likes when I a = 
         equal(#run.events, #loaded.events)
         near(run.theta, loaded.theta, 1e-13)
     end
+    -- one that is shaken too little comes to rest for good
+    equal(sys:simulate { base = 0.02 * excitation.harmonic { omega = 1.3 }, theta0 = 0.9, t_end = 40 }.outcome, "at rest")
     local bump = 3 * excitation.gaussian { at = 2.123, sigma = 0.1 }
     -- The flank where 3 exp(-((t - 2.123)/0.1)^2/2) = Re.
     near(sys:simulate { base = bump, t_end = 5, dt = 5 }.events[1].t, 2.123 - 0.1 * math.sqrt(2 * math.log(30)), 1e-12)

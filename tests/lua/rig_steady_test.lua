@@ -157,7 +157,8 @@ test("controllers that sample or wait: the motion on their grid, as a long run h
 end)
 
 test("the response of a chain has the columns of its bodies, and follows at", function()
-    local c = chain():response { over = { omega = vector { 0.5, 1, 1.5 } }, at = function(p) return { M = { a = sine(p.omega) } } end }
+    local c = chain(0.3):response { over = { omega = vector { 0.5, 1, 1.5 } }, -- at may make another system
+        at = function(p) return { system = chain(), M = { a = sine(p.omega) } } end }
     for i, omega in ipairs(c.omega) do
         local a, b = amplitudes(omega)
         near(c["a.amplitude"][i], a, 1e-10)
