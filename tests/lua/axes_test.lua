@@ -5,25 +5,20 @@ local metres = { theta = "m", t = "s" }
 local sys = system{ I = 1, k = 4, Rd = 0.1 }
 local run = sys:simulate{ M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
 
-local function picture(of, method, options)
-    options = options or {}
-    options.show, options.width, options.ascii = false, 60, true
-    return tostring(of[method](of, options))
-end
 test("what measures something else has an axis of its own, one below the other", function()
-    local text = picture(run, "plot", { y = { "theta", "velocity", "M", "friction" }, units = metres })
+    local text = picture(run, { y = { "theta", "velocity", "M", "friction" }, units = metres })
     has(text, "theta, m", "theta', m/s", "torque", "a M", "b friction")
     local first, second, third = text:find("theta, m", 1, true), text:find("theta', m/s", 1, true), text:find("torque", 1, true)
     assert(first < second and second < third)
-    has(picture(run, "plot", { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
-    has(picture(run, "plot", { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
+    has(picture(run, { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
+    has(picture(run, { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
     raises_here(function() run:plot{ y = { "theta", "velocity" }, ylim = { 0, 1 }, show = false } end, "ylim is for one unit",
         "give ylabel")
     raises_here(function() run:plot{ labels = 3, show = false } end, "labels must be a list of words")
 end)
 
 test("a spectrum is drawn over decades, a response near a pole up to where most of it says something", function()
-    local function drawn(d, options) return picture(d, "plot", options) end
+    local function drawn(d, options) return picture(d, options) end
     local sys = nondimensional { zeta = 0.05 }
     local spectrum = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.05 }:spectrum {}
     local picture = drawn(spectrum)

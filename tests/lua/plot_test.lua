@@ -6,30 +6,23 @@ local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 
 local free = nd:simulate { theta0 = 1, t_end = 5, dt = 0.01 }
 local line = { { 0, 1, 2 }, { 0, 1, 4 } }
 
---- The text of a picture; ASCII and 60 columns unless said otherwise.
-local function text(object, method, options)
-    options = options or {}
-    options.show = false
-    options.ascii, options.width = true, options.width or 60
-    return tostring(object[method](object, options))
-end
 local function vectors(options)
-    options.show, options.ascii, options.width = false, true, options.width or 60
-    return tostring(plot(options))
+    return tostring(plot(merged({ show = false, width = 60, ascii = true }, options)))
 end
+
 test("a driven run shows theta and M/k, a free one only theta, both where they stick", function()
-    has(text(run, "plot"), "a theta", "b M/k", " t")
-    has(text(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }, "plot"),
+    has(picture(run), "a theta", "b M/k", " t")
+    has(picture(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }),
         "b M/k", "stuck")
-    has(text(free, "plot"), "theta, rad", "stuck", "=")
-    has_not(text(free, "plot"), "M/k")
-    has_not(text(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, "plot"), "stuck")
+    has(picture(free), "theta, rad", "stuck", "=")
+    has_not(picture(free), "M/k")
+    has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }), "stuck")
 end)
 
 test("x and y choose columns by name or number, torques over k as in the record of 1989", function()
-    has(text(run, "plot", { x = "theta", y = "friction" }), "friction", "theta, rad")
-    has(text(run, "plot", { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")
-    has(text(run, "plot", { x = 1, y = { 2, 4 } }), "theta, rad", "M")
+    has(picture(run, { x = "theta", y = "friction" }), "friction", "theta, rad")
+    has(picture(run, { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")
+    has(picture(run, { x = 1, y = { 2, 4 } }), "theta, rad", "M")
     refuses(function(o) run:plot(o) end, {
         { { y = "frction" }, "frction", "did you mean 'friction'?" },
         { { y = "M/kk" }, "M/kk" },
@@ -40,21 +33,21 @@ test("x and y choose columns by name or number, torques over k as in the record 
 end)
 
 test("the phase plane has its start, its end and the dead zone", function()
-    has(text(free, "phase_plot", { height = 20 }), "theta'/omega0, rad", "o start", "@ end", "= dead zone")
-    has_not(text(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, "phase_plot"), "dead zone")
+    has(picture(free, { height = 20 }, "phase_plot"), "theta'/omega0, rad", "o start", "@ end", "= dead zone")
+    has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, {}, "phase_plot"), "dead zone")
 end)
 
 test("a run that began stuck, and one that never moved, show it", function()
     local sys = system { I = 1, k = 1, Rd = 1, Re = 2 }
-    has(text(sys:simulate { M = function(t) return t end, t_end = 4, dt = 0.1 }, "plot"), "stuck  =")
-    local still = text(sys:simulate { theta0 = 0.5, t_end = 4, dt = 0.1 }, "plot")
+    has(picture(sys:simulate { M = function(t) return t end, t_end = 4, dt = 0.1 }), "stuck  =")
+    local still = picture(sys:simulate { theta0 = 0.5, t_end = 4, dt = 0.1 })
     local bar = still:match "stuck  (=+)"
     assert(bar and #bar > 45, still) -- all along the axis of about 50 columns
 end)
 
 test("a phase plane without k is that of the velocity, and has corners where a wall or a relay makes them", function()
     local well = system { I = 1, k = 0, Rd = 0.01, spring = spring.polynomial { [1] = -1, [3] = 1 } }
-    has(text(well:simulate { theta0 = 1.2, t_end = 5, dt = 0.1 }, "phase_plot"), "theta', rad/time")
+    has(picture(well:simulate { theta0 = 1.2, t_end = 5, dt = 0.1 }, {}, "phase_plot"), "theta', rad/time")
     -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
     local ball = system { I = 1, k = 1, walls = { upper = 0, restitution = 0.5 } }
     local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1 }
@@ -73,13 +66,13 @@ test("a run from a file is drawn, too", function()
     local csv, dat = temporary ".csv", temporary ".dat"
     run:save(csv)
     run:save(dat)
-    has(text(load(csv), "plot"), "theta, rad")
-    has(text(load(dat), "plot"), "a theta", "b M/k")
-    has(text(load(dat), "phase_plot"), "theta'/omega0, rad")
+    has(picture(load(csv)), "theta, rad")
+    has(picture(load(dat)), "a theta", "b M/k")
+    has(picture(load(dat), {}, "phase_plot"), "theta'/omega0, rad")
     raises_here(function() load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
     local other = temporary ".csv"
     write(other, "time,acceleration\n0,1\n1,2.5\n")
-    has(text(load(other), "plot"), "acceleration", "time")
+    has(picture(load(other)), "acceleration", "time")
 end)
 
 test("a run is a curve among curves: its theta over t", function()
@@ -99,13 +92,13 @@ test("a run without rows says what to do", function()
 end)
 
 test("what DRAAR asked for: window, divisions, axes or none", function()
-    local picture = text(run, "plot", { xlim = { 1, 2 }, ylim = { -2, 2 }, xticks = 0.25, yticks = { -2, 0, 2 }, title = "window" })
-    has(picture, "window", "1.25", "1.75", "-2 +", " 2 +")
-    has_not(picture, "-1 +")
-    local bare = text(run, "plot", { axes = false, y = "theta" })
+    local drawn = picture(run, { xlim = { 1, 2 }, ylim = { -2, 2 }, xticks = 0.25, yticks = { -2, 0, 2 }, title = "window" })
+    has(drawn, "window", "1.25", "1.75", "-2 +", " 2 +")
+    has_not(drawn, "-1 +")
+    local bare = picture(run, { axes = false, y = "theta" })
     has_not(bare, "|")
     has_not(bare, "+")
-    has(text(run, "plot", { xlabel = "time, s", ylabel = "angle" }), "time, s", "angle")
+    has(picture(run, { xlabel = "time, s", ylabel = "angle" }), "time, s", "angle")
 end)
 
 test("curves are vectors or tables of numbers; nan and inf are gaps", function()
@@ -136,7 +129,7 @@ end)
 test("show = false returns a picture, that can be printed and set beside another one", function()
     local left = plot { line, title = "left", show = false, width = 60 }
     local right = run:phase_plot { title = "right", show = false }
-    has(tostring(left), "left")
+    has(left, "left")
     local both = tostring(plot { left, right, width = 100, height = 20, show = false })
     assert(both:match "^[^\n]*left[^\n]*right", both)
     local narrow = tostring(plot { left, right, width = 60, height = 20, show = false })
@@ -205,7 +198,7 @@ test("files begin as files of their kind begin, and an old one is replaced as a 
     end
     local name = temporary ".txt"
     free:plot { file = name, ascii = true, width = 50 }
-    equal(read(name), text(free, "plot", { width = 50 }) .. "\n")
+    equal(read(name), picture(free, { width = 50 }) .. "\n")
     plot { plot { line, show = false }, free:phase_plot { show = false }, file = temporary ".svg", size = { 16, 6 } }
 end)
 

@@ -183,6 +183,11 @@ function support.program()
     return arg[first]
 end
 
+--- What of:plot draws, or another of its methods, as text of 60 columns in ASCII.
+function support.picture(of, options, method)
+    return tostring(of[method or "plot"](of, support.merged({ show = false, width = 60, ascii = true }, options)))
+end
+
 --- What the program prints when it runs this code.
 function support.output(code, options)
     local name = support.temporary ".lua"
