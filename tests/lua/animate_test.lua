@@ -66,9 +66,7 @@ test("the axis ends at the extremes of the run, which lie between two steps of t
     local swing = system{ I = 1, k = 4, Rd = 0.26, Re = 0.5 }:simulate{ theta0 = 1, t_end = 8, dt = 0.001 }
     local least = swing.events[1].theta
     near(least, -0.87, 1e-12)
-    local file = temporary ".csv"
-    swing:save(file)
-    for _, one in ipairs{ swing, load(file) } do
+    for _, one in ipairs{ swing, (reloaded(swing)) } do
         for _, part in ipairs{ { speed = 8/0.32 }, { speed = 8/0.4, from = 0, to = 8 } } do  -- some ten steps
             local svg = animated(one, part)
             has(svg, ">-0.87</text>")
@@ -82,9 +80,7 @@ test("a part of a run, a run from a file, units", function()
     local part = animated(run, { from = 2, to = 4, speed = 1 })
     has(part, "t = 2 to 4")
     equal(#values(part, 'type="translate')[1], 51)
-    local file = temporary ".csv"
-    sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }:save(file)
-    assert(animated(load(file), {}):find "</svg>")
+    has(animated(reloaded(sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }), {}), "</svg>")
     has(animated(run, { units = { theta = "<m>", t = "s" } }), "θ, &lt;m&gt;")
 end)
 

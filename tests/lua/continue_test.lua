@@ -66,9 +66,8 @@ test("what M interrupted goes on to where it should have ended", function()
 end)
 
 test("a run that goes on can be saved, repeated and asked for its energy and story", function()
-    local file = temporary ".csv"
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
-    longer:save(file)
+    local _, file = reloaded(longer)
     has(read(file), "t_end = 8, dt = 0.1")
     local total = longer:energy().total
     local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
@@ -135,9 +134,7 @@ test("wrong uses get a sentence", function()
         { { times = { 5, 7 }, t_end = 6 }, "times[2] = 7 is outside" },
         { { times = {} }, "reached its end" },
     })
-    local file = temporary ".csv"
-    run:save(file)
-    local loaded = load(file)
+    local loaded = reloaded(run)
     equal(loaded.t_end, 3.0)
     raises_here(function() loaded:continue { t_end = 5 } end, "read from a file")
 end)

@@ -22,10 +22,7 @@ test("lines fit a terminal and there are not too many, however long the run", fu
 end)
 
 test("a run read from a file, one of 1989 and a broken one have a story, too", function()
-    local name = temporary ".csv"
-    free:save(name)
-    says(load(name), "read from a file")
-    says(load(name), "The velocity changes sign 3 times")
+    says(reloaded(free), "read from a file", "The velocity changes sign 3 times")
     says(nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01, integrator = integrator.dinal1989 { h = 0.001 } },
         "integrated as in 1989")
     pcall(function()

@@ -22,9 +22,7 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     near(z.e, run.e[7], 1e-13)
     near(theta, run.theta[7], 1e-13)
     near(run.M[7], 8 * (1 - run.theta[7]) - 2 * run.velocity[7] + 3 * run.e[7], 1e-12)
-    local name = temporary ".csv"
-    run:save(name)
-    local again = load(name)
+    local again = reloaded(run)
     equal(again.e[7], run.e[7])
     equal(again.states.e, run.states.e)
     raises_here(function() return again.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
@@ -45,9 +43,7 @@ test("the header of a file repeats a run with more in it", function()
             events = { { when = function(t, theta) return theta - 0.4 end, act = function(t, theta, velocity, z) return theta, -velocity end } } },
     }
     for i, run in ipairs(runs) do
-        local name = temporary ".csv"
-        run:save(name)
-        local again = repeated(name)
+        local again = repeated(run)
         equal(#again.events, #run.events)
         near(again.theta, run.theta, 1e-13)
     end

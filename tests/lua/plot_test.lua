@@ -63,13 +63,11 @@ test("a phase plane without k is that of the velocity, and has corners where a w
 end)
 
 test("a run from a file is drawn, too", function()
-    local csv, dat = temporary ".csv", temporary ".dat"
-    run:save(csv)
-    run:save(dat)
-    has(picture(load(csv)), "theta, rad")
-    has(picture(load(dat)), "a theta", "b M/k")
-    has(picture(load(dat), {}, "phase_plot"), "theta'/omega0, rad")
-    raises_here(function() load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
+    local csv, dat = reloaded(run), reloaded(run, nil, ".dat")
+    has(picture(csv), "theta, rad")
+    has(picture(dat), "a theta", "b M/k")
+    has(picture(dat, {}, "phase_plot"), "theta'/omega0, rad")
+    raises_here(function() csv:phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
     local other = temporary ".csv"
     write(other, "time,acceleration\n0,1\n1,2.5\n")
     has(picture(load(other)), "acceleration", "time")
@@ -81,9 +79,7 @@ test("a run is a curve among curves: its theta over t", function()
     has(vectors { nondimensional {}:with { units = { theta = "m", t = "s" } }:simulate { theta0 = 1, t_end = 1, dt = 0.1 } }, "theta, m", "t, s")
     equal(vectors { run, ylabel = "angle" }, vectors { { run.t, run.theta }, xlabel = "t", ylabel = "angle" })
     raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {} } } end, "plot: curve 1: the run has no rows to draw")
-    local file = temporary ".csv"
-    run:save(file, { columns = { "theta", "velocity" } })
-    raises_here(function() plot { load(file) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
+    raises_here(function() plot { (reloaded(run, { columns = { "theta", "velocity" } })) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
 end)
 
 test("a run without rows says what to do", function()

@@ -95,9 +95,7 @@ end)
 test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
     local rig = pair({ I = 1, k = 1, Rd = 0.2 }, { I = 1 }, { Rd = 0.1 })
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
-    local file = temporary ".csv"
-    run:save(file)
-    local back = load(file)
+    local back = reloaded(run)
     equal(back["link.torque"][3], run.link.torque[3])
     equal(#back, 11)
     equal(run.status, "end")

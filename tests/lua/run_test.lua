@@ -46,9 +46,8 @@ test("a run is data with more, and events always have a velocity", function()
 end)
 
 test("load reads what the program wrote and any table of numbers", function()
-    local name = temporary ".csv"
-    run:save(name)
-    equal(load(name).theta, run.theta)
+    local old, name = reloaded(run)
+    equal(old.theta, run.theta)
     write(name, "t;theta;M\ns;m;N\n0;1,5;2\n1;2,5;3\n") -- times and angles: a run
     local record = load(name)
     equal(record.units.theta .. record.units.t .. record.units.M, "msN")
@@ -93,9 +92,7 @@ test("a run shows where it came from and cannot be changed", function()
 end)
 
 test("a run saved as CSV reads back to the last bit", function()
-    local name = temporary ".csv"
-    run:save(name)
-    local old = load(name)
+    local old, name = reloaded(run)
     equal(#old, 501)
     for _, column in ipairs(run.names) do
         assert(old[column] == run[column], column)
@@ -105,19 +102,15 @@ test("a run saved as CSV reads back to the last bit", function()
     equal(old.system, nil)
     equal(#old.events, 0)
     near((old:at(0.005)), (run:at(0.005)), 1e-5) -- cubic between rows 0.01 apart: h^4/384 theta''''
-    local again = temporary ".csv"
-    old:save(again)
+    local _, again = reloaded(old)
     equal(read(again), read(name), "saving what was loaded")
 end)
 
 test("a run saved as the record of 1989 reads back to the last bit", function()
-    local name = temporary ".dat"
-    run:save(name)
-    local old = load(name)
+    local old, name = reloaded(run, nil, ".dat")
     equal(table.concat(old.names, " "), "t theta velocity_over_omega0 M_over_k friction_over_k damping_over_k")
     assert(old.theta == run.theta and old.velocity_over_omega0 == run.velocity / nd.omega0)
-    local again = temporary ".dat"
-    old:save(again)
+    local _, again = reloaded(old, nil, ".dat")
     equal(read(again), read(name))
     raises_here(function() return old.velocity end, "no field 'velocity'", "velocity_over_omega0")
 end)
@@ -133,8 +126,7 @@ end)
 
 test("a choice of columns can be saved", function()
     local name = temporary ".csv"
-    run:save(name, { columns = { "theta", 3 } })
-    equal(table.concat(load(name).names, " "), "theta velocity")
+    equal(table.concat(reloaded(run, { columns = { "theta", 3 } }).names, " "), "theta velocity")
     refuses(function(o) run:save(name, o) end, {
         { { columns = { "thta" } }, "thta", "did you mean" },
         { { columns = {} }, "columns must be a list" },
@@ -162,9 +154,8 @@ end)
 
 --- The comment block, stripped of "# ", must make a run with the same file.
 local function check_repeats(first, what)
-    local name, again = temporary ".csv", temporary ".csv"
-    first:save(name)
-    repeated(name):save(again)
+    local run, name = repeated(first)
+    local _, again = reloaded(run)
     local function rows(file)
         return (read(file):gsub("#[^\n]*\n", ""))
     end

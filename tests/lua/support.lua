@@ -166,12 +166,20 @@ function support.read(name)
     return file:read("a")
 end
 
---- The run that the header of a file makes again.
-function support.repeated(name)
+--- A run or data as it comes back from a file, and the file.
+function support.reloaded(object, options, ending)
+    local name = support.temporary(ending or ".csv")
+    object:save(name, options)
+    return load(name), name
+end
+
+--- The run that the header of a run's file makes again, and the file.
+function support.repeated(run)
+    local _, name = support.reloaded(run)
     local lines, world = {}, setmetatable({}, { __index = _G })
     for line in io.lines(name) do lines[#lines + 1] = line:match "^# (.*)" end
     assert(load(table.concat(lines, "\n"), "=header", "t", world))()
-    return world.run
+    return world.run, name
 end
 
 --- The path of the dinal that runs the tests.

@@ -85,9 +85,7 @@ test("columns of tables have them, and keep them when rows are picked; their nam
     has_not(plain:simulate(asked()).events, ", rad")
     has(run:spectrum "velocity", "frequency, 1/s", "amplitude, m/s")
     has(run:poincare{ period = 1 }, "velocity, m/s")
-    local file = temporary ".csv"
-    events:save(file)
-    equal(load(file).names[3], "theta")
+    equal(reloaded(events).names[3], "theta")
 end)
 
 test("a response has them at its axes and in its jumps", function()
@@ -119,17 +117,13 @@ test("a report has them in its tables", function()
 end)
 
 test("a file keeps them, for who reads it and for the run that is read from it", function()
-    local file = temporary ".csv"
-    run:save(file)
+    local old, file = reloaded(run)
     has(read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
         "\nt,theta,velocity,M,")
-    local old = load(file)
     equal(old.units.M, "N")
     has(picture(old, { y = "velocity" }), "theta', m/s")
     has(old:explain(), "It has theta in m, t in s, M in N.")
-    local copy = temporary ".csv"
-    old:save(copy)
-    equal(load(copy).units.theta, "m")
+    equal(reloaded(old).units.theta, "m")
 end)
 
 test("what a stranger's file says of units is taken when it is a word", function()

@@ -44,9 +44,7 @@ test("a ball comes to rest in finite time; its energy adds up; the file repeats 
     assert(energy.total.closure < 1e-12)
     has(energy, "lost at the walls")
     says(run, "It came to rest at the wall, theta = 0")
-    local name = temporary ".csv"
-    run:save(name)
-    local again = repeated(name)
+    local again = repeated(run)
     equal(#again.events, #run.events)
     equal(again.theta[5], run.theta[5])
     local on = ball:simulate { M = -2, theta0 = 1, t_end = 3, dt = 0.5 }:continue { t_end = 10 }
