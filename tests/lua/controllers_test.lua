@@ -9,7 +9,7 @@ test("between the instants of a sampled controller arcs say what panels say, at 
         block = { k = 0, every = 0.21 }, glider = { k = 0, C = 0 }, even = { Rd = 0.1, Re = 0.1 }, free = { Rd = 0, Re = 0 },
         slow = { every = 5.3, delay = 1.1 }, beside = { M = excitation.harmonic{ omega = 0.7, amplitude = 0.8 } },
     } do
-        local P, D, calls, last = p.P or 0.5, 0.2, 0, -1
+        local P, D = p.P or 0.5, 0.2
         local sys = system{ I = 1, k = p.k or 1, C = p.C or 0.1, Rd = p.Rd or 0.05, Re = p.Re or 0.08 }
         local function run(states)
             local M = excitation.sampled(function(t, theta, v) return -P*theta - D*v end, { every = p.every or 0.17, delay = p.delay })

@@ -37,7 +37,7 @@ local function not_read(f, why)
     assert(found:match("reading_test.lua:(%d+): ") and tonumber(found:match(":(%d+):")) >= line, found)
 end
 
-local w, none, flag, list, deep = 2, nil, true, { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
+local none, list, deep = nil, { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
 local function both(x) return x, -x end
 local function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end
 
