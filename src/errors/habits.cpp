@@ -241,6 +241,9 @@ std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     if (message.type == "vector" || message.type == "table") {
         return "; its elements are in brackets: v[1]";
     }
+    if (message.kind == "global" && message.type == message.name) {
+        return fmt::format("; it is a module: help({}) lists its functions", message.name);
+    }
     const bool simple = message.type == "number" || message.type == "string" || message.type == "boolean";
     return simple ? "; it is a value and no function: leave out the parentheses" : "";
 }
