@@ -8,15 +8,28 @@ namespace dinal::truth {
 
 namespace {
 
-/// The fastest thing takes some 0.1 of time: (0.01/0.1)^9 in a step, of what little it does in one.
-constexpr real longest_step = 0.01L;
-enum What { nothing, stands, lets_go, hits, switches, user };
+enum What { nothing, stands, lets_go, hits, corner, switches, user };
 
 int sign(real x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
 }  // namespace
+
+std::vector<Sliding> lines_through(const std::vector<double>& speed, const std::vector<double>& torque) {
+    std::vector<Sliding> ranges;
+    for (std::size_t i = 0; i + 1 < speed.size(); ++i) {
+        const real v0 = speed[i], T0 = torque[i], v1 = speed[i + 1], slope = (torque[i + 1] - T0) / (v1 - v0);
+        ranges.push_back({[=](int, real v) { return T0 + slope * (v - v0); }, std::fabs(slope), v1});
+    }
+    ranges.push_back({[last = torque.back()](int, real) -> real { return last; }});
+    return ranges;
+}
+
+/// The fastest thing beside a steep law takes some 0.1 of time: (0.01/0.1)^9 in a step, of what little it does in one.
+real MixedTruth::longest_step() const {
+    return way_ == 0 ? 0.01L : std::min(0.01L, 0.05L * s_.I / s_.sliding[range_].steep);
+}
 
 MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, std::vector<double> times)
     : s_(std::move(system)), y_(start), start_(start) {
@@ -30,11 +43,11 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
         }
     }
     take_samples();
-    way_ = sign(slip(0, y_));
+    slide(sign(slip(0, y_)));
     if (way_ == 0) settle(false);
     for (long steps = 0; t_ < t_end && !doubtful; ++steps) {
         while (!breaks_.empty() && *breaks_.begin() <= t_) breaks_.erase(breaks_.begin());
-        real end = std::min(t_end, t_ + longest_step);
+        real end = std::min(t_end, t_ + longest_step());
         if (!breaks_.empty()) end = std::min(end, *breaks_.begin());
         if (s_.sampled) end = std::min(end, s_.every * static_cast<real>(instant_));
         if (!pending_.empty()) end = std::min(end, pending_.front().first);
@@ -68,7 +81,7 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
         y_ = next;
         fresh_ = false;
         const auto coming = breaks_.upper_bound(t_);
-        middle_ = t_ + longest_step / 2;
+        middle_ = t_ + longest_step() / 2;
         if (coming != breaks_.end()) middle_ = std::min(middle_, (t_ + *coming) / 2);
         if (way_ == 0) y_.velocity = wall_ != 0 ? 0 : belt(t_);
         if (found) {
@@ -83,7 +96,7 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
             if (std::fabs(p) > s_.holding[p > 0 ? 1 : 0] && sign(p) != wall_) happen(lets_go);
         }
         doubtful =
-            doubtful || !(std::fabs(y_.theta) + std::fabs(y_.velocity) < 1e3L) || events.size() > 300 || steps > 100000;
+            doubtful || !(std::fabs(y_.theta) + std::fabs(y_.velocity) < 1e3L) || events.size() > 300 || steps > 300000;
     }
     while (motions.size() < times.size()) motions.push_back(y_);
 }
@@ -126,7 +139,7 @@ MixedPoint MixedTruth::slope(real t, const MixedPoint& y) const {
         return {v, wall_ != 0 || !s_.belt_rate ? 0 : s_.belt_rate(t), s_.rate(t, {y.theta, v, y.z})};
     }
     const real w = static_cast<real>(way_);
-    return {y.velocity, (torque(t, y) - w * s_.sliding(way_, w * slip(t, y)) - s_.C * y.velocity) / s_.I,
+    return {y.velocity, (torque(t, y) - w * s_.sliding[range_].torque(way_, w * slip(t, y)) - s_.C * y.velocity) / s_.I,
             s_.rate(t, y)};
 }
 
@@ -151,6 +164,9 @@ bool MixedTruth::happens(real h, int& what) const {
     what = nothing;
     if (way_ != 0 && static_cast<real>(way_) * slip(t, y) < 0) {
         if (!fresh_ || h > 1e-9L) what = stands;
+    } else if (way_ != 0) {
+        const real speed = static_cast<real>(way_) * slip(t, y);
+        if (speed > s_.sliding[range_].to || (range_ > 0 && speed < s_.sliding[range_ - 1].to)) what = corner;
     }
     if (way_ == 0) {
         const real p = pull(t, y);
@@ -172,7 +188,7 @@ void MixedTruth::happen(int what) {
             settle(true);
             break;
         case lets_go:
-            way_ = sign(pull(t_, y_));
+            slide(sign(pull(t_, y_)));
             fresh_ = true;
             wall_ = 0;
             tell("slip");
@@ -193,10 +209,14 @@ void MixedTruth::happen(int what) {
                     tell("stick");
                 }
             } else {
-                way_ = sign(slip(t_, y_));
+                slide(sign(slip(t_, y_)));
             }
             break;
         }
+        case corner:
+            ++corners_passed;
+            slide(way_);
+            break;
         case switches:
             on_ = !on_;
             tell("switch");
@@ -213,7 +233,7 @@ void MixedTruth::happen(int what) {
                 if (std::fabs(y_.velocity) < 0.1L) doubtful = true;
                 y_.velocity *= s_.kept_velocity;
                 wall_ = 0;
-                way_ = sign(slip(t_, y_));
+                slide(sign(slip(t_, y_)));
                 if (way_ == 0) settle(true);
             }
     }
@@ -225,8 +245,14 @@ void MixedTruth::settle(bool tell_stick) {
     const int towards = std::fabs(p) > s_.holding[p > 0 ? 1 : 0] ? sign(p) : 0;
     if (tell_stick && towards == 0) tell("stick");
     if (tell_stick && towards != 0 && towards != way_) tell("turn");
-    way_ = towards;
+    slide(towards);
     fresh_ = way_ != 0;
+}
+
+void MixedTruth::slide(int way) {
+    way_ = way;
+    range_ = 0;
+    while (std::fabs(slip(t_, y_)) >= s_.sliding[range_].to) ++range_;
 }
 
 void MixedTruth::take_samples() {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <set>
@@ -19,13 +20,22 @@ struct MixedPoint {
     real theta = 0, velocity = 0, z = 0;
 };
 
+/// Friction while it slides, of a way (-1 or 1) and a speed up to the next corner of the law. It is also evaluated a
+/// little outside of its range, where it must go on smoothly.
+struct Sliding {
+    std::function<real(int way, real speed)> torque;
+    real steep = 1;  ///< bounds its slope
+    real to = HUGE_VALL;
+};
+/// Straight lines between torques at speeds; the last torque holds for all greater speeds.
+std::vector<Sliding> lines_through(const std::vector<double>& speed, const std::vector<double>& torque);
+
 struct MixedSystem {
     template <class R>
     using F = std::function<R(real t, const MixedPoint&)>;
     real I = 1, C = 0, k = 1;
     std::function<real(real theta)> spring = [](real) -> real { return 0; };
-    /// Of a way, -1 or 1, and a speed, which may be a little below 0: the smooth continuation.
-    std::function<real(int way, real speed)> sliding;
+    std::vector<Sliding> sliding;
     std::array<real, 2> holding{};  ///< backward, forward
     F<real> M;                      ///< without controllers
     /// What of M jumps or bends at `breaks`: at t, for a step about `inside`. Empty: nothing.
@@ -57,7 +67,8 @@ public:
     MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, std::vector<double> times);
     std::vector<MixedEvent> events;
     std::vector<MixedPoint> motions;
-    bool doubtful = false;  ///< more happens in a step than it can tell, or it grows beyond all bounds
+    int corners_passed = 0;  ///< of the law
+    bool doubtful = false;   ///< more happens in a step than it can tell, or it grows beyond all bounds
 
 private:
     struct Past {
@@ -75,6 +86,8 @@ private:
     [[nodiscard]] bool happens(real h, int& what) const;
     void happen(int what);
     void settle(bool tell_stick);
+    void slide(int way);
+    [[nodiscard]] real longest_step() const;
     void take_samples();
     void tell(const char* kind) {
         if (t_ > 0) events.push_back({t_, kind, y_.theta});
@@ -84,8 +97,9 @@ private:
     real t_ = 0;
     mutable real middle_ = 0;  // of the step that is tried
     MixedPoint y_, start_;
-    int way_ = 0;   // of the sliding; 0: stuck
-    int wall_ = 0;  // that it leans against
+    int way_ = 0;            // of the sliding; 0: stuck
+    std::size_t range_ = 0;  // of the law
+    int wall_ = 0;           // that it leans against
     bool on_ = true, fresh_ = false;
     int half_ = 0;
     real output_ = 0;

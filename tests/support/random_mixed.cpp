@@ -7,10 +7,10 @@
 
 #include "model/laws/asymmetric.hpp"
 #include "model/laws/stribeck.hpp"
+#include "model/laws/tabulated.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "model/springs/user_spring.hpp"
-#include "motion/engine/one_body.hpp"
 #include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/mixed_truth.hpp"
@@ -32,7 +32,7 @@ struct MixedCase {
     MixedSystem truth;
     model::State initial;
     double z0 = 0, t_end = 0;
-    bool untold = false, remembers = false;  ///< jumps of M; a controller
+    bool untold = false, remembers = false, corners = false;  ///< jumps of M; a controller; of the law
     std::vector<double> times;
 
     template <class... T>
@@ -91,22 +91,25 @@ void draw_system(Lot& lot, MixedCase& c) {
     if (lot.once_in(3)) draw_spring(lot, c);
     const double Rd = lot.between(0.05, 0.3), Re = lot.once_in(3) ? Rd : Rd * lot.between(1, 1.6);
     c.truth.holding = {Re, Re};
-    switch (lot.of(5)) {
+    switch (lot.of(6)) {
         case 0: {
             const double other = Rd * lot.between(0.3, 1);
             p.friction = model::laws::AsymmetricCoulomb{.forward = {Rd, Re}, .backward = {other, Re}};
-            c.truth.sliding = [=](int way, real) -> real { return way > 0 ? Rd : other; };
+            c.truth.sliding = {{[=](int way, real) -> real { return way > 0 ? Rd : other; }}};
             c.say("forward Rd {:.17g} Re {:.17g}, backward Rd {:.17g}", Rd, Re, other);
             break;
         }
         case 1: {
-            const double speed = lot.between(0.1, 0.6);
-            p.friction = model::laws::Stribeck{.kinetic = Rd, .breakaway = Re, .speed = speed};
-            c.truth.sliding = [=](int, real v) -> real {
-                const real x = v / static_cast<real>(speed);
-                return Rd + (static_cast<real>(Re) - Rd) * std::exp(-x * x);
+            const double speed = lot.power_of_ten(-1.7, -0.2);
+            const int shape = 1 + lot.of(3);
+            p.friction = model::laws::Stribeck{
+                .kinetic = Rd, .breakaway = Re, .speed = speed, .shape = static_cast<double>(shape)};
+            // Below speed 0 it goes on smoothly: by the same formula.
+            const auto torque = [=](int, real v) -> real {
+                return Rd + (static_cast<real>(Re) - Rd) * std::exp(-std::pow(v / static_cast<real>(speed), shape));
             };
-            c.say("stribeck Rd {:.17g} Re {:.17g} speed {:.17g}", Rd, Re, speed);
+            c.truth.sliding = {{torque, 1 / static_cast<real>(speed)}};
+            c.say("stribeck Rd {:.17g} Re {:.17g} speed {:.17g} shape {}", Rd, Re, speed, shape);
             break;
         }
         case 2: {
@@ -116,13 +119,25 @@ void draw_system(Lot& lot, MixedCase& c) {
                 .at_zero = Rd,
                 .breakaway = Re};
             // Below speed 0 the law goes on with the slope that it has at 0, turned about its value there.
-            c.truth.sliding = [=](int, real v) -> real { return Rd + rise * v / (1 + std::fabs(v)); };
+            c.truth.sliding = {{[=](int, real v) -> real { return Rd + rise * v / (1 + std::fabs(v)); }}};
             c.say("law Rd {:.17g} rise {:.17g} Re {:.17g}", Rd, rise, Re);
+            break;
+        }
+        case 3: {
+            model::laws::Tabulated table{.speed = {0}, .torque = {Rd}, .breakaway = Re};
+            for (int corners = 1 + lot.of(5); corners > 0; --corners) {
+                table.speed.push_back(table.speed.back() + lot.power_of_ten(-3, 0));
+                table.torque.push_back(lot.between(0, 0.6));
+            }
+            c.truth.sliding = lines_through(table.speed, table.torque);
+            c.corners = true;
+            c.say("{}", table.lua_text());
+            p.friction = std::move(table);
             break;
         }
         default:
             p.kinetic_friction = Rd, p.breakaway = Re;
-            c.truth.sliding = [=](int, real) -> real { return Rd; };
+            c.truth.sliding = {{[=](int, real) -> real { return Rd; }}};
             c.say("Rd {:.17g} Re {:.17g}", Rd, Re);
     }
     if (lot.once_in(4)) {
@@ -355,13 +370,6 @@ std::string kinds_of_all(const Events& events) {
     return text;
 }
 
-/// One body in the engine for several, which is to take the place of the other.
-struct OfSeveral : motion::Spectral {
-    [[nodiscard]] motion::Trajectory run_more(const motion::Problem& problem) const {
-        return motion::engine::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
-    }
-};
-
 std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
                      const MixedTruth& truth, const MixedTruth& beside, double accuracy);
 
@@ -379,13 +387,11 @@ std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
     };
     const std::string fault = fault_in(c, run_by(motion::Spectral{}), expected, truth, beside, accuracy);
     if (!fault.empty()) return fault;
-    const std::string other = fault_in(c, run_by(OfSeveral{}), expected, truth, beside, accuracy);
-    if (!other.empty()) return "by the engine for several bodies: " + other;
     if (const auto closed = run_by(motion::Exact{})) {  // which takes few of them
         const std::string wrong = fault_in(c, closed, expected, truth, beside, accuracy);
         if (!wrong.empty()) return "by exact: " + wrong;
     }
-    if (!rk4_too || c.untold || c.remembers) return "";
+    if (!rk4_too || c.untold || c.remembers || c.corners) return "";
     // (w h)^4/120 of some ten radians at w = 4, and the cubics between its steps.
     const std::string late = fault_in(c, run_by(motion::Rk4{0.002}), expected, truth, beside, 100 * accuracy);
     return late.empty() ? "" : "by rk4: " + late;

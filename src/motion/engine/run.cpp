@@ -973,11 +973,16 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
         const Motion way = model::motion_of(s);
         const bool held = how.way == Motion::stuck || how.riding;
         how.leaving = false;
-        if (!held && how.way == way) continue;
-        const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
-        if (held && told) tell(EventKind::slip, static_cast<int>(j));
-        if (!held && why == Because::belt) tell(EventKind::turn, static_cast<int>(j));
-        slide(j, way, false);
+        if (held || how.way != way) {
+            const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
+            if (held && told) tell(EventKind::slip, static_cast<int>(j));
+            if (!held && why == Because::belt) tell(EventKind::turn, static_cast<int>(j));
+            slide(j, way, false);
+        } else if (const model::Friction& law = problem_.system.joints[j].friction.law; law.ranges() > 0) {
+            const model::SpeedRange range = law.range(how.range);  // the speed may have jumped out of it
+            const double speed = std::fabs(s);
+            if (speed < range.from - corner || speed > range.to + corner) slide(j, way, false);
+        }
     }
     return decide(true);
 }
