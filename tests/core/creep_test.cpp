@@ -20,7 +20,7 @@ struct Creeper {
     double zeta, slope, at;
     [[nodiscard]] Oscillator system() const { return nondimensional(zeta, 0.3, 0.5); }
     [[nodiscard]] Excitation M() const { return Excitation::make(Ramp{.slope = slope, .at = at}).value(); }
-    /// `watched`: with an event of a user that never comes, which is another way through the house.
+    /// `watched`: with an event of a user that never comes, so that the engine takes the steps of rk4.
     [[nodiscard]] Trajectory run(double end, const Integrator& method, bool watched = false) const {
         Extras extras;
         if (watched) {
@@ -38,14 +38,14 @@ struct Way {
 };
 /// rk4 comes to a velocity of 1e-14 or so, which it keeps.
 std::vector<Way> ways() {
-    return {{Exact{}}, {Spectral{}}, {Rk4{0.0005}}, {Spectral{}, true}, {Rk4{0.0005}, true}};
+    return {{Exact{}}, {Spectral{}}, {Rk4{0.001}}, {Rk4{0.001}, true}};
 }
 
 }  // namespace
 
 TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
           "[exact][spectral][rk4][creep][long]") {
-    for (const double zeta : {1.0, 1.5, 4.0}) {
+    for (const double zeta : {1.0, 4.0}) {
         const double at = 60 * zeta, slope = -0.04;
         const Creeper creeper{zeta, slope, at};
         // From rest at its place, with the friction of sliding all the time: the answer to a ramp without friction.
@@ -67,7 +67,7 @@ TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd
 
 TEST_CASE("a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
           "[exact][spectral][rk4][creep][long]") {
-    for (const double zeta : {1.0, 2.0}) {
+    for (const double zeta : {1.0, 1.5}) {
         const double at = 60 * zeta, slope = 0.4;
         for (const auto& [method, watched] : ways()) {
             CAPTURE(zeta, method.index(), watched);

@@ -62,7 +62,7 @@ void check_order(std::span<const Event> events) {
 TEST_CASE("a sine of amplitude Re touches the limit at any frequency and phase and releases nothing",
           "[spectral][razor]") {
     Lot lot(17);
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 60; ++i) {
         const double Re = lot.between(0.05, 2), Rd = i % 3 == 0 ? Re : Re * lot.between(0.1, 1);
         const Oscillator system = nondimensional(0, Rd, Re);
         const double omega = 2 * pi * lot.power_of_ten(-1, 1.5), phase = lot.between(0, 6.28);
@@ -245,14 +245,6 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
     CHECK(run.outcome != Outcome::chattering);
     CHECK(run.events.size() > 20000);
     check_order(run.events);
-}
-
-TEST_CASE("a square wave that a function hides costs a hundred calls an edge, from the first one at t_start on",
-          "[spectral]") {
-    const auto M = script([](double t) { return std::sin(6.9 * t) > 0 ? 1.0 : -1.0; });
-    const Trajectory run = by_spectral(nondimensional(0.05, 0.3), M.M, {1, 0}, {0, 20});
-    CHECK(run.outcome == Outcome::reached_end);
-    CHECK(M.probe->calls < 8000);  // 43 edges and 800 for the panels; the one at 0 is looked for down to 1e-308
 }
 
 TEST_CASE("a mass at rest without friction does not turn before a smooth pulse comes", "[spectral]") {
