@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "support/catch.hpp"
-#include "support/heun.hpp"
 #include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
@@ -121,21 +120,6 @@ struct Row<Dinal1989> {
     static constexpr bool tells_events = false;  // its own rule tells them, late
 };
 
-template <>
-struct Row<Heun> {
-    static std::vector<Heun> methods(const ReferenceSystem& s) { return {{step_of(s, 4000)}}; }
-    static double tolerance(const ReferenceSystem& s, const Heun& method) {
-        return runge_kutta_tolerance(s, method.h, 2);
-    }
-    /// The Euler step that comes first goes beyond the zero of the velocity, to the other side of M's jump.
-    static bool follows(const ReferenceSystem& s, const ExactMotion& /*exact*/) { return !s.same_as; }
-    static constexpr bool tells_events = true;
-};
-
-template <class... Own>
-std::tuple<Own..., Heun> with_that_of_the_tests(const std::variant<Own...>&);
-using Methods = decltype(with_that_of_the_tests(Integrator()));
-
 void check_events(const ReferenceSystem& s, const Trajectory& run, const ExactMotion& exact, double tolerance) {
     const auto& expected = exact.events();
     std::string told;
@@ -166,7 +150,7 @@ std::vector<ReferenceSystem> all_systems() {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE("an integrator follows every reference system, with its events in kind and order",
-                        "[conformance]", Methods) {
+                        "[conformance]", Integrator) {
     for (const ReferenceSystem& s : all_systems()) {
         for (const TestType& method : Row<TestType>::methods(s)) {
             DYNAMIC_SECTION(s.name << ", " << MethodView(method).lua_text(text::Defaults::left_out)) {

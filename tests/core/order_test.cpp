@@ -80,15 +80,4 @@ TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1
     }
 }
 
-TEST_CASE("W3 over 1000 periods stays within 1e-9 with h = 0.001, and within 1e-5 with h = 0.01",
-          "[order][rk4][long]") {
-    ReferenceSystem s = reference_system("W3: one stop per half cycle (fig 24)");
-    s.window.end = 1000;
-    const ExactMotion exact = s.exact();
-    CHECK(error_of(must_run(s, Grid::every(0.0713), Rk4{0.001}), exact, s.oscillator) <= 1e-9);
-    CHECK(error_of(must_run(s, Grid::every(0.0713), Rk4{0.01}), exact, s.oscillator) <= 1e-5);
-    // The same in rows at the steps themselves.
-    CHECK(error_of(must_run(s, Grid::every(0.01), Rk4{0.01}), exact, s.oscillator) <= 1e-5);
-}
-
 }  // namespace dinal::order_test

@@ -208,6 +208,21 @@ TEST_CASE("a jump of M on a stuck mass releases it at that very time", "[razor]"
     }
 }
 
+TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth of one", "[razor]") {
+    const Excitation pulse = native(Pulse{.amplitude = 1, .at = 20, .width = 0.05});
+    const std::vector<Integrator> all{Exact{}, Spectral{}, Rk4{0.001}, Rk4{0.01}, Rk4{0.07}, Rk4{0.3}};
+    for (const Integrator& integrator : all) {
+        const Trajectory run = must_run(nondimensional(0, 0.167), pulse, {0, 0}, {0, 25}, Grid::none(), integrator);
+        CAPTURE(integrator.index(), run.events.size());
+        REQUIRE(run.events.size() == 2);
+        CHECK(run.events[0].kind == EventKind::slip);
+        CHECK(run.events[0].t == 20);
+        CHECK(run.events[1].kind == EventKind::rest);
+        CHECK(run.events[1].theta > 0.1);
+        CHECK(run.outcome == Outcome::at_rest);
+    }
+}
+
 TEST_CASE("a break of M at t_start is the load from the beginning", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.1);
     for (const Integrator& integrator :
