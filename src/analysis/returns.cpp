@@ -1,893 +1,756 @@
-// Steady motions that a map of theta and velocity over a period of M does not tell: of runs with states, events, a belt
-// or a base, and limit cycles, whose period nothing prescribes. They are fixed points of a return map of theta,
-// velocity and the states: from one period to the next, or from one passage of theta through a section to the next.
-// docs/theory.md, section 10.
+#include "analysis/returns.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "algebra/decompositions.hpp"
-#include "analysis/branch.hpp"
-#include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
-#include "motion/stillness.hpp"
 
 namespace dinal::analysis {
+
+namespace engine = motion::engine;
+using Eigen::Index;
+using Eigen::VectorXd;
+
 namespace {
 
-using Vector = Eigen::VectorXd;
-using motion::Trajectory;
-
-/// Everything that decides how the motion goes on.
-struct Moment {
-    model::State state;
-    std::vector<double> states = {};
-    std::vector<bool> relays = {};  ///< of each relay: it is switched on
-    bool stuck = false;             ///< its velocity is that of what it stands on, to the last bit
-};
-
-/// What of a moment is no number that may change a little.
-struct Mode {
-    std::vector<bool> relays = {};
-    std::optional<double> held = {};  ///< the velocity of a mass that is stuck
-    friend bool operator==(const Mode&, const Mode&) = default;
-};
-Mode mode_of(const Moment& moment) {
-    return {moment.relays, moment.stuck ? std::optional(moment.state.velocity) : std::nullopt};
+VectorXd vector_of(const std::vector<double>& values) {
+    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-/// A value of theta that a cycle passes, upwards (way = 1) or downwards (-1).
-struct Section {
-    double theta = 0, way = 1;
-};
-
-/// Passes zero upwards where theta passes the section.
-class Passage final : public model::UserFunction {
-public:
-    explicit Passage(const Section& section) : section_(section) {}
-    double value(double /*t*/, const model::State& state) override {
-        return section_.way * (state.theta - section_.theta);
-    }
-
-private:
-    Section section_;
-};
-
-std::vector<bool> relays_of(const model::Excitation& excitation) {
-    std::vector<bool> on;
-    for (const model::Component& c : excitation.components()) {
-        const auto* relay = model::controller_of<model::RelayController>(c);
-        if (relay != nullptr) on.push_back(relay->starts_on);
-    }
-    return on;
-}
-
-/// M with relays that begin so.
-model::Excitation with_relays(const model::Excitation& excitation, const std::vector<bool>& on) {
-    if (on.empty()) return excitation;
-    std::size_t next = 0;
-    return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
-        const auto* relay = dynamic_cast<const model::RelayController*>(function.get());
-        if (relay == nullptr) return function;
-        auto own = model::copied(*relay, relay->function);
-        own->starts_on = on[next++];
-        return std::shared_ptr<model::UserFunction>(std::move(own));
-    });
-}
-
-bool has_acts(const model::Extras& extras) {
-    return std::any_of(extras.events.begin(), extras.events.end(),
+bool has_acts(const engine::Drive& drive) {
+    return std::any_of(drive.events.begin(), drive.events.end(),
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
-/// Runs of the question that begin at any moment.
-class Runs {
+/// Passes zero where a measured number passes a place.
+class Passage final : public model::UserFunction {
 public:
-    Runs(const SteadyQuestion& question, const motion::Monitor& monitor)
-        : question_(question),
-          monitor_(monitor),
-          plain_(!question.extras.any() && !question.system.walls() && !model::has_memory(question.excitation)),
-          integrator_(motion::integrator_for(question.system, question.excitation, question.extras)) {}
-
-    [[nodiscard]] const SteadyQuestion& question() const { return question_; }
-    [[nodiscard]] std::size_t state_count() const { return question_.extras.states.size(); }
-    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
-
-    [[nodiscard]] Moment first() const {
-        Moment moment{.state = question_.initial, .relays = relays_of(question_.excitation)};
-        for (const model::OwnState& state : question_.extras.states) moment.states.push_back(state.start);
-        return moment;
-    }
-
-    /// The question whose run begins at this moment.
-    [[nodiscard]] SteadyQuestion from(const Moment& moment, double start) const {
-        SteadyQuestion asked = question_;
-        asked.excitation = with_relays(question_.excitation, moment.relays);
-        asked.drive.start = start;
-        asked.initial = moment.state;
-        for (std::size_t i = 0; i < moment.states.size(); ++i) asked.extras.states[i].start = moment.states[i];
-        return asked;
-    }
-
-    [[nodiscard]] Trajectory run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
-                                 std::optional<Section> section = {}) {
-        const SteadyQuestion asked = this->from(from, start);
-        motion::Limits limits;
-        limits.dense = dense;
-        const model::Extras extras = section ? section_extras(asked, *section) : asked.extras;
-        auto result = motion::simulate(asked.system, asked.excitation, asked.initial, {start, end}, rows, integrator_,
-                                       monitor_, limits, extras);
-        if (!result) {
-            Trajectory none;
-            none.outcome = model::Outcome::state_not_finite;
-            return none;
-        }
-        if (result->contradiction) contradiction_ = result->contradiction;
-        return std::move(result).value();
-    }
-
-    struct Arrival {
-        Moment at;
-        double t = 0;
-        bool arrived = false;
-        model::Outcome outcome = model::Outcome::reached_end;
-    };
-    /// The first passage of theta through the section within this time.
-    [[nodiscard]] Arrival passage(const Moment& from, double start, double limit, const Section& section) {
-        if (plain_) return passage_between_rows(from, start, limit, section);
-        const Trajectory run = this->run(from, start, start + limit, motion::Grid::none(), false, section);
-        Arrival arrival{.at = {}, .outcome = run.outcome};
-        arrival.arrived = run.outcome == model::Outcome::stopped && !run.events.empty();
-        if (!arrival.arrived) return arrival;
-        arrival.at = at_stop(run, from, run.events.back().M);
-        arrival.t = run.t_stop;
-        return arrival;
-    }
-
-    /// Where a run of a moment ended, at which M was this.
-    [[nodiscard]] Moment at_stop(const Trajectory& run, const Moment& from, double M) {
-        Moment moment{
-            .state = run.state_at_stop, .relays = from.relays, .stuck = run.motion_at_stop == model::Motion::stuck};
-        if (run.carried) moment.states = run.carried->states;
-        find_relays(moment, M);
-        return moment;
+    Passage(const Chart& chart, const Returns::Section& section, bool named)
+        : chart_(chart), section_(section), named_(named) {}
+    double value(double t, const model::State& state) override { return value_with(t, state, {}); }
+    double value_with(double /*t*/, const model::State& state, std::span<const double> states) override {
+        const double own = section_.measured == 0 ? state.theta : state.velocity;
+        return section_.way * ((named_ ? chart_.value(section_.measured, states) : own) - section_.place);
     }
 
 private:
-    static model::Extras section_extras(const SteadyQuestion& question, const Section& section) {
-        model::Extras extras = question.extras;
-        extras.events.push_back(
-            {.name = "", .when = std::make_shared<Passage>(section), .direction = model::Crossing::up, .stop = true});
-        return extras;
-    }
-
-    /// A run without anything else to watch for takes its own integrator.
-    [[nodiscard]] Arrival passage_between_rows(const Moment& from, double start, double limit, const Section& section) {
-        constexpr double looks = 256, longer = 1.05;
-        double length = expected_ > 0 ? std::min(longer * expected_, limit) : std::min(limit, longer * limit / 8);
-        while (true) {
-            const Trajectory run = this->run(from, start, start + length, motion::Grid::every(length / looks), true);
-            Arrival arrival{.at = {}, .outcome = run.outcome};
-            for (Eigen::Index i = 0; i + 1 < run.size(); ++i) {
-                const auto beyond = [&](Eigen::Index row) { return section.way * (run.rows(row, 1) - section.theta); };
-                if (!(beyond(i) < 0 && beyond(i + 1) >= 0)) continue;
-                arrival.t = passed(run, section, run.rows(i, 0), run.rows(i + 1, 0));
-                arrival.at.state = {section.theta, run.at(arrival.t).value().velocity};
-                arrival.arrived = true;
-                expected_ = arrival.t - start;
-                return arrival;
-            }
-            if (!model::is_whole(run.outcome) || length >= limit) return arrival;
-            length = std::min(2 * length, limit);
-        }
-    }
-
-    static double passed(const Trajectory& run, const Section& section, double below, double above) {
-        double t = (below + above) / 2;
-        constexpr int most = 80;
-        for (int i = 0; i < most; ++i) {
-            const model::State there = run.at(t).value();
-            const double off = there.theta - section.theta;
-            (section.way * off < 0 ? below : above) = t;
-            double next = t - off / there.velocity;
-            if (!(next > below && next < above)) next = below + (above - below) / 2;
-            if (std::fabs(next - t) <= 2e-16 * std::fabs(t) || off == 0) return next;
-            t = next;
-        }
-        return t;
-    }
-
-    /// The levels of relays follow from M: those with which a run that begins here has this M.
-    void find_relays(Moment& moment, double M) {
-        const std::size_t relays = moment.relays.size();
-        if (relays == 0) return;
-        const std::vector<bool> guess = moment.relays;
-        std::vector<bool> best = guess;
-        double least = model::never;
-        const double start = question_.drive.start, blink = 1e-9 * std::max(1.0, std::fabs(start));
-        for (std::size_t pattern = 0; pattern < (std::size_t{1} << relays); ++pattern) {
-            for (std::size_t i = 0; i < relays; ++i) moment.relays[i] = guess[i] != (((pattern >> i) & 1U) != 0);
-            const Trajectory look = run(moment, start, start + blink, motion::Grid::at({start}), false);
-            if (look.size() == 0) continue;
-            const double off = std::fabs(look.column(motion::Column::M)[0] - M);
-            if (off < least) least = off, best = moment.relays;
-            if (off <= 1e-9 * std::fabs(M)) break;
-        }
-        moment.relays = best;
-    }
-
-    const SteadyQuestion& question_;
-    const motion::Monitor& monitor_;
-    bool plain_;
-    motion::Integrator integrator_;
-    double expected_ = 0;  // until the next passage
-    std::optional<model::Contradiction> contradiction_;
+    const Chart& chart_;
+    Returns::Section section_;
+    bool named_;
 };
 
-/// From one return of the motion to the next. A place is what a moment has besides what is known of all returns, each
-/// number in units of how much the motion changes it.
-class ReturnMap {
-public:
-    struct Return {
-        Vector to;
-        double time = 0;
-        bool finished = false;
-        model::Outcome outcome = model::Outcome::reached_end;
-        Mode mode = {};
-    };
+}  // namespace
 
-    /// By a period from `start` on.
-    static ReturnMap of_period(Runs& runs, double start, Vector scale) {
-        return {runs, start, runs.question().drive.period, {}, std::move(scale)};
+bool operator==(const HeldMode& a, const HeldMode& b) {
+    for (std::size_t j = 0; j < a.mode.friction.size(); ++j) {
+        const engine::Slipping &x = a.mode.friction[j], &y = b.mode.friction[j];
+        if (x.way != y.way || x.riding != y.riding) return false;
     }
-    /// By the next passage of the section upwards, which must come within `limit`.
-    static ReturnMap of_section(Runs& runs, double section, double limit, Vector scale) {
-        return {runs, runs.question().drive.start, limit, section, std::move(scale)};
-    }
-
-    [[nodiscard]] Vector place(const Moment& moment) const {
-        Vector place(scale_.size());
-        Eigen::Index i = 0;
-        if (!section_) place[i++] = moment.state.theta;
-        place[i++] = moment.state.velocity;
-        for (const double z : moment.states) place[i++] = z;
-        return place.cwiseQuotient(scale_);
-    }
-
-    [[nodiscard]] Moment moment(const Vector& place, const Mode& mode) const {
-        const Vector x = place.cwiseProduct(scale_);
-        Moment moment{.state = {}, .relays = mode.relays, .stuck = mode.held.has_value()};
-        Eigen::Index i = 0;
-        moment.state.theta = section_ ? *section_ : x[i++];
-        moment.state.velocity = mode.held.value_or(x[i]);
-        for (++i; i < x.size(); ++i) moment.states.push_back(x[i]);
-        if (const auto& walls = runs_.question().system.walls()) {
-            moment.state.theta = std::clamp(moment.state.theta, walls->lower, walls->upper);
+    if (a.mode.leans != b.mode.leans) return false;
+    for (std::size_t i = 0; i < a.controllers.size(); ++i) {
+        for (std::size_t c = 0; c < a.controllers[i].size(); ++c) {
+            if (a.controllers[i][c].on != b.controllers[i][c].on) return false;
         }
-        return moment;
     }
+    return true;
+}
 
-    /// Some returns on.
-    [[nodiscard]] Return operator()(const Vector& from, const Mode& mode, int returns = 1) {
-        Return sum{.to = from, .finished = true, .mode = mode};
-        for (int i = 0; i < returns && sum.finished; ++i) once(sum);
-        return sum;
+Moment Runs::first() const {
+    std::vector<double> y = question_.drive.theta0;
+    y.insert(y.end(), question_.drive.velocity0.begin(), question_.drive.velocity0.end());
+    for (const model::OwnState& state : question_.drive.states) y.push_back(state.start);
+    for (const model::Joint& joint : system().joints) {
+        if (joint.friction.bristle() != nullptr) y.push_back(0);
     }
+    return {vector_of(y)};
+}
 
-    /// The first return after a moment that need not be one.
-    [[nodiscard]] Return arrival(const Moment& from) {
-        Return sum{.to = {}, .finished = true, .mode = mode_of(from)};
-        once_from(from, sum);
-        return sum;
+engine::Drive Runs::from(const Moment& moment) const {
+    engine::Drive drive = question_.drive;
+    const Index n = bodies();
+    for (Index i = 0; i < n; ++i) {
+        drive.theta0[static_cast<std::size_t>(i)] = moment.y[i];
+        drive.velocity0[static_cast<std::size_t>(i)] = moment.y[n + i];
     }
+    for (std::size_t k = 0; k < drive.states.size(); ++k) {
+        drive.states[k].start = moment.y[2 * n + static_cast<Index>(k)];
+    }
+    return drive;
+}
 
-    /// D of the map of so many returns, by differences of this order.
-    [[nodiscard]] std::optional<Eigen::MatrixXd> derivative(const Vector& at, const Mode& mode, int returns,
-                                                            int order) {
-        const Eigen::Index n = at.size(), velocity = section_ ? 0 : 1;
-        Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, n);
-        const double h = order == 2 ? 1e-5 : 3e-4;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            if (i == velocity && mode.held) continue;  // what is stuck has no other velocity
-            const auto slope = [&](double step) -> std::optional<Vector> {
-                const Vector up = at + step * Vector::Unit(n, i), down = at - step * Vector::Unit(n, i);
-                const Return ahead = (*this)(up, mode, returns), behind = (*this)(down, mode, returns);
-                if (!ahead.finished || !behind.finished) return {};
-                return (ahead.to - behind.to) / (2 * step);
-            };
-            const auto near = slope(h);
-            const auto far = order == 2 ? near : slope(2 * h);
-            if (!near || !far) return {};
-            D.col(i) = order == 2 ? *near : Vector((4 * *near - *far) / 3);
+Runs::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+                    const std::optional<model::WantedEvent>& section) {
+    engine::Drive drive = this->from(from);
+    if (section) drive.events.push_back(*section);
+    std::shared_ptr<engine::Carry> before;
+    if (from.mode) {
+        before = std::make_shared<engine::Carry>();
+        before->y.assign(from.y.data(), from.y.data() + from.y.size());
+        before->mode = from.mode->mode, before->controllers = from.mode->controllers;
+    }
+    return run(drive, start, end, rows, dense, before);
+}
+
+Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start, double end, const motion::Grid& rows) {
+    return run(question_.drive, start, end, rows, true, std::move(before));
+}
+
+Runs::Run Runs::run(const engine::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
+                    std::shared_ptr<const engine::Carry> before) {
+    motion::Limits limits;
+    limits.dense = dense;
+    const motion::Window window{start, end};
+    const motion::Grid grid = rows.within(window).value();
+    Run result = engine::run({.system = system(),
+                              .drive = drive,
+                              .window = window,
+                              .rows = grid,
+                              .monitor = monitor_,
+                              .limits = limits,
+                              .before = std::move(before),
+                              .longest = question_.longest});
+    if (result.contradiction) contradiction_ = result.contradiction;
+    return result;
+}
+
+Moment Runs::at_stop(const Run& run) {
+    return {vector_of(run.carry->y), HeldMode{run.carry->mode, run.carry->controllers}};
+}
+
+double Runs::natural_period() const {
+    std::vector<double> stiffness(system().bodies.size(), 0);
+    for (const model::Joint& joint : system().joints) {
+        stiffness[static_cast<std::size_t>(joint.first)] += joint.stiffness;
+        if (joint.second >= 0) stiffness[static_cast<std::size_t>(joint.second)] += joint.stiffness;
+    }
+    double longest = 0;
+    for (std::size_t i = 0; i < stiffness.size(); ++i) {
+        if (!(stiffness[i] > 0)) continue;
+        longest = std::max(longest, 2 * std::numbers::pi * std::sqrt(system().bodies[i].inertia / stiffness[i]));
+    }
+    return longest;
+}
+
+Eigen::MatrixXd Runs::allowed(const HeldMode& mode, Index size) const {
+    const Index n = bodies();
+    std::vector<VectorXd> fixed;
+    for (std::size_t j = 0; j < system().joints.size(); ++j) {
+        const model::Joint& joint = system().joints[j];
+        for (const Index from : {Index{0}, n}) {
+            const bool riding = mode.mode.friction[j].riding;
+            const bool holds = from == 0 ? mode.mode.leans[j] != 0 : mode.mode.holds(j) || riding;
+            if (!holds) continue;
+            fixed.emplace_back(VectorXd::Zero(size));
+            fixed.back()[from + joint.first] = 1;
+            if (joint.second >= 0) fixed.back()[from + joint.second] = -1;
         }
-        return D;
     }
+    if (fixed.empty()) return Eigen::MatrixXd::Identity(size, size);
+    Eigen::MatrixXd across(size, static_cast<Index>(fixed.size()));
+    for (std::size_t k = 0; k < fixed.size(); ++k) across.col(static_cast<Index>(k)) = fixed[k];
+    const algebra::Basis basis = algebra::orthonormal_basis(across);
+    return basis.columns.rightCols(size - basis.rank);
+}
 
-    [[nodiscard]] double start() const { return start_; }
-    [[nodiscard]] Runs& runs() const { return runs_; }
+bool Chart::any_goes_round() const {
+    return std::any_of(from_.begin(), from_.end(), [](Index from) { return from >= 0; });
+}
 
-private:
-    ReturnMap(Runs& runs, double start, double length, std::optional<double> section, Vector scale)
-        : runs_(runs), start_(start), length_(length), section_(section), scale_(std::move(scale)) {}
-
-    void once(Return& sum) { once_from(moment(sum.to, sum.mode), sum); }
-
-    void once_from(const Moment& from, Return& sum) {
-        if (section_) {
-            const Runs::Arrival arrival = runs_.passage(from, start_, length_, {*section_});
-            sum.outcome = arrival.outcome;
-            sum.finished = arrival.arrived;
-            sum.time += arrival.t - start_;
-            if (sum.finished) arrive(arrival.at, sum);
-            return;
-        }
-        const Trajectory run = runs_.run(from, start_, start_ + length_, motion::Grid::none(), false);
-        sum.outcome = run.outcome;
-        sum.finished = model::is_whole(run.outcome);
-        sum.time += length_;
-        if (sum.finished) arrive(runs_.at_stop(run, from, 0), sum);
+VectorXd Chart::measured(const VectorXd& y) const {
+    VectorXd x = y;
+    for (std::size_t i = 0; i < from_.size(); ++i) {
+        if (from_[i] >= 0) x[static_cast<Index>(i)] -= y[from_[i]];
     }
+    return x;
+}
 
-    void arrive(const Moment& at, Return& sum) const {
-        sum.mode = mode_of(at);
-        sum.to = place(at);
-        sum.finished = sum.to.allFinite();
+VectorXd Chart::state(const VectorXd& x, const VectorXd& there) const {
+    VectorXd y = x;
+    for (std::size_t i = 0; i < from_.size(); ++i) {
+        if (from_[i] >= 0) y[static_cast<Index>(i)] += there[from_[i]];
     }
+    return y;
+}
 
-    Runs& runs_;
-    double start_, length_;
-    std::optional<double> section_;
-    Vector scale_;
-};
+double Chart::value(Index k, std::span<const double> y) const {
+    const auto i = static_cast<std::size_t>(k);
+    return i < from_.size() && from_[i] >= 0 ? y[i] - y[static_cast<std::size_t>(from_[i])] : y[i];
+}
 
-constexpr double largest_stable = 1 + 1e-5;  // multiplier
+Returns::Returns(Runs& runs, const Chart& chart, double start, double length, const std::optional<Section>& section,
+                 VectorXd units, VectorXd there)
+    : runs_(runs),
+      chart_(chart),
+      start_(start),
+      length_(length),
+      section_(section),
+      units_(std::move(units)),
+      there_(std::move(there)) {
+    for (Index k = 0; k < units_.size(); ++k) {
+        if (chart.measures(k) && !(section && section->measured == k)) own_.push_back(k);
+    }
+    if (!section) return;
+    passage_ = {.name = "",
+                .when = std::make_shared<Passage>(chart, *section, runs.system().named),
+                .direction = model::Crossing::up,
+                .stop = true};
+}
 
-/// The greatest one first.
-std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::MatrixXd& D) {
-    const Eigen::VectorXcd values = algebra::eigenvalues(D);
+VectorXd Returns::place(const VectorXd& y) const {
+    return chart_.measured(y).cwiseQuotient(units_)(own_);
+}
+
+Moment Returns::moment(const VectorXd& place, const std::optional<HeldMode>& mode) const {
+    VectorXd x = chart_.measured(there_);
+    for (std::size_t k = 0; k < own_.size(); ++k) x[own_[k]] = place[static_cast<Index>(k)] * units_[own_[k]];
+    if (section_) x[section_->measured] = section_->place;
+    Moment moment{chart_.state(x, there_), mode};
+    for (const model::Joint& joint : runs_.system().joints) {
+        double& theta = moment.y[joint.first];
+        if (joint.walls && joint.second < 0) theta = std::clamp(theta, joint.walls->lower, joint.walls->upper);
+    }
+    return moment;
+}
+
+Returns::Return Returns::operator()(const VectorXd& from, const std::optional<HeldMode>& mode, int returns) {
+    Return sum{.to = from, .finished = true, .mode = mode};
+    for (int i = 0; i < returns && sum.finished; ++i) once(moment(sum.to, sum.mode), sum);
+    return sum;
+}
+
+Returns::Return Returns::arrival(const Moment& from) {
+    Return sum{.to = {}, .finished = true};
+    once(from, sum);
+    return sum;
+}
+
+std::optional<Eigen::MatrixXd> Returns::derivative(const VectorXd& at, const HeldMode& mode, int returns, int order) {
+    const Index n = at.size();
+    Eigen::MatrixXd to_place = Eigen::MatrixXd::Zero(n, units_.size());
+    for (Index k = 0; k < units_.size(); ++k) to_place.col(k) = place(VectorXd::Unit(units_.size(), k));
+    const Eigen::MatrixXd allowed = runs_.allowed(mode, units_.size());
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, n);
+    if (allowed.cols() == 0) return D;
+    // Orthonormal among places, of those directions that keep the section as well.
+    const algebra::Basis basis = algebra::orthonormal_basis(to_place * allowed);
+    const double h = order == 2 ? 1e-5 : 3e-4;
+    for (Index i = 0; i < basis.rank; ++i) {
+        const VectorXd direction = basis.columns.col(i);
+        const auto slope = [&](double step) -> std::optional<VectorXd> {
+            const Return ahead = (*this)(at + step * direction, mode, returns);
+            const Return behind = (*this)(at - step * direction, mode, returns);
+            if (!ahead.finished || !behind.finished) return {};
+            return (ahead.to - behind.to) / (2 * step);
+        };
+        const auto near = slope(h);
+        const auto far = order == 2 ? near : slope(2 * h);
+        if (!near || !far) return {};
+        D += (order == 2 ? *near : VectorXd((4 * *near - *far) / 3)) * direction.transpose();
+    }
+    return D;
+}
+
+void Returns::once(const Moment& from, Return& sum) {
+    const Runs::Run run = runs_.run(from, start_, start_ + length_, motion::Grid::none(), false, passage_);
+    sum.outcome = run.outcome;
+    sum.finished = section_ ? run.outcome == model::Outcome::stopped : model::is_whole(run.outcome);
+    sum.time += run.t_stop - start_;
+    if (!sum.finished) return;
+    Moment at = Runs::at_stop(run);
+    sum.mode = std::move(at.mode);
+    sum.to = place(at.y);
+    sum.finished = sum.to.allFinite();
+}
+
+Reach reach_of(const Runs::Run& run, const Chart& chart, int looks) {
+    Reach reach;
+    for (int i = 0; i <= looks; ++i) {
+        const double part = static_cast<double>(i) / looks;
+        const VectorXd x = chart.measured(vector_of(run.history->at(run.t_start + part * (run.t_stop - run.t_start))));
+        reach.low = i == 0 ? x : VectorXd(reach.low.cwiseMin(x));
+        reach.high = i == 0 ? x : VectorXd(reach.high.cwiseMax(x));
+    }
+    return reach;
+}
+
+std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {
+    const Eigen::VectorXcd values = algebra::eigenvalues(derivative);
     std::vector<std::complex<double>> sorted(values.data(), values.data() + values.size());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
     return sorted;
 }
 
-/// The facts that a run of the motion's period from this moment tells; false when it fails.
-bool tell_period(Runs& runs, const Moment& moment, double start, SteadyMotion& motion, double rows = 400) {
-    Trajectory run = runs.run(moment, start, start + motion.period, motion::Grid::every(motion.period / rows), true);
-    if (!model::is_whole(run.outcome)) return false;
-    motion.outcome = run.outcome;
-    if (!motion.multipliers.empty() && std::abs(std::abs(motion.multipliers.front()) - 1) < neutral_within) {
-        motion.unique = false;
-    }
-    motion.asked = std::make_shared<const SteadyQuestion>(runs.from(moment, start));
-    tell_of_run(runs.question(), run, motion);
-    motion.settled = std::make_shared<const Trajectory>(std::move(run));
-    return true;
+void note_family(SteadyMotion& motion) {
+    const auto& m = motion.multipliers;
+    if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
 }
 
-class ReturnSearch {
-public:
-    ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
-        : question_(question), runs_(question, monitor) {}
-
-    SteadyMotion found() {
-        answer_.period = question_.drive.period;
-        question_.drive.period > 0 ? forced() : cycle();
-        if (runs_.contradiction()) {
-            answer_.contradiction = runs_.contradiction();
-            answer_.outcome = model::Outcome::not_a_function;
-            answer_.status = SteadyStatus::none;
-        }
-        return answer_;
+double longest_delay(const model::Excitation& excitation) {
+    double most = 0;
+    for (const model::Component& c : excitation.components()) {
+        if (const auto* delayed = model::controller_of<model::DelayedController>(c)) most = std::max(most, delayed->by);
     }
+    return most;
+}
 
-private:
-    /// How far one stretch of the run gets.
-    struct Reach {
-        double low = 0, high = 0, t = 0;
-        Vector scale;  // of theta, velocity and the states: from their least to their greatest
-        [[nodiscard]] double range() const { return high - low; }
-    };
+namespace {
 
-    [[nodiscard]] static Reach reach_of(const Trajectory& run) {
-        const Eigen::Index n = run.size(), states = static_cast<Eigen::Index>(run.state_count());
-        Reach reach{.low = run.initial.theta, .high = run.initial.theta, .t = run.t_stop, .scale = Vector(2 + states)};
-        for (Eigen::Index k = 0; k < 2 + states; ++k) {
-            const Eigen::Index column = k < 2 ? k + 1 : static_cast<Eigen::Index>(motion::column_count) + k - 2;
-            reach.scale[k] = n == 0 ? 0 : run.rows.col(column).maxCoeff() - run.rows.col(column).minCoeff();
-        }
-        if (n > 0) {
-            reach.low = std::min(reach.low, run.rows.col(1).minCoeff());
-            reach.high = std::max(reach.high, run.rows.col(1).maxCoeff());
-        }
-        for (const model::Event& event : run.events) {
-            reach.low = std::min(reach.low, event.theta);
-            reach.high = std::max(reach.high, event.theta);
-        }
-        reach.scale[0] = reach.range();
-        return reach;
-    }
+double size_of_step(const VectorXd& step) {
+    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
+}
 
-    /// Units of places: never zero.
-    [[nodiscard]] static Vector units_of(const Reach& reach, const Moment& moment) {
-        Vector units = reach.scale;
-        const double size = std::max({reach.range(), std::fabs(moment.state.theta), 1e-300});
-        if (!(units[0] > 0)) units[0] = size;
-        if (!(units[1] > 0)) units[1] = std::max(std::fabs(moment.state.velocity), size);
-        for (Eigen::Index k = 2; k < units.size(); ++k) {
-            const double now = std::fabs(moment.states[static_cast<std::size_t>(k) - 2]);
-            if (!(units[k] > 1e-9 * now)) units[k] = now > 0 ? now : 1;
-        }
-        return units;
-    }
-
-    /// A stretch of the run, with rows enough to see how far it gets; none when it failed, and the answer says how.
-    std::optional<Trajectory> stretch(const Moment& from, double start, double length) {
-        constexpr int looks = 256;
-        Trajectory run = runs_.run(from, start, start + length, motion::Grid::every(length / looks), false);
-        answer_.outcome = run.outcome;
-        if (model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped) {
-            constexpr double beyond = 1e100;
-            if (std::fabs(run.state_at_stop.theta) < beyond) return run;
-            answer_.outcome = model::Outcome::state_not_finite;
-        }
-        if (answer_.outcome == model::Outcome::excitation_not_finite && run.size() > 0 &&
-            run.rows.col(1).cwiseAbs().maxCoeff() > 1e50) {
-            answer_.outcome = model::Outcome::state_not_finite;
-        }
-        if (answer_.outcome == model::Outcome::state_not_finite) answer_.status = SteadyStatus::grows;
-        return {};
-    }
-
-    // ---- with a period
-
-    void forced() {
-        const double period = question_.drive.period;
-        // An act at the very beginning of a run would not happen: returns are looked at where nothing does.
-        const bool offset = has_acts(question_.extras);
-        constexpr double nowhere = 0.3819660112501051;
-        Moment now = runs_.first();
-        double start = question_.drive.start;
-        if (offset) {
-            const auto run = stretch(now, start, nowhere * period);
-            if (!run) return;
-            now = runs_.at_stop(*run, now, 0);
-            start += nowhere * period;
-        }
-        const auto first = stretch(now, start, period);
-        if (!first) return;
-        Reach reach = reach_of(*first);
-        std::vector<double> ranges{reach.range()};  // of single periods
-        std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one
-        const double omega = question_.system.stiffness() > 0 ? question_.system.natural_frequency() : 1;
-        const int longest = question_.periods > 0 ? question_.periods : 32;
-        for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
-            ReturnMap map = ReturnMap::of_period(runs_, start, units_of(reach, now));
-            ClosedSearch<ReturnMap> search(map, answer_.maps, longest);
-            const auto found = search.follow({.to = map.place(now), .finished = true, .mode = mode_of(now)}, counts);
-            if (found && tells(map, *found)) return;
-            if (search.failed()) {
-                answer_.outcome = *search.failed();
-                if (answer_.outcome == model::Outcome::state_not_finite) answer_.status = SteadyStatus::grows;
-                return;
-            }
-            const auto& seen = search.seen();
-            const auto largest = [&](std::size_t from, std::size_t until) {
-                double size = 0;
-                for (std::size_t i = from; i < until; ++i) {
-                    const model::State y = map.moment(seen[i].to, seen[i].mode).state;
-                    // A mass that nothing pulls back may drift without an end.
-                    const double theta = question_.system.stiffness() > 0 ? std::fabs(y.theta) : 0;
-                    size = std::max({size, theta, std::fabs(y.velocity) / omega});
-                }
-                return size;
-            };
-            const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
-            sizes.push_back(largest(0, half));
-            if (half < seen.size()) sizes.push_back(largest(half, seen.size()));
-            now = map.moment(seen.back().to, seen.back().mode);
-            const auto last = stretch(now, start, period);
-            if (!last) return;
-            reach = reach_of(*last);
-            ranges.push_back(reach.range());
-        }
-        // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
-        const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
-        if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
-            answer_.status = SteadyStatus::grows;
-            answer_.growth = (sizes[2] - sizes[1]) / 160;
-        }
-    }
-
-    // ---- without
-
-    void cycle() {
-        const model::Oscillator& system = question_.system;
-        const double base = system.stiffness() > 0 ? system.natural_period() : 1, start = question_.drive.start;
-        Moment now = runs_.first();
-        double length = base, time = 0, largest = 0;
-        std::size_t events = 0;
-        std::vector<std::pair<double, double>> ranges;  // time, range
-        constexpr int most_stretches = 40;
-        for (int i = 0; i < most_stretches; ++i) {
-            const auto run = stretch(now, start, length);
-            if (!run) return;
-            const Reach reach = reach_of(*run);
-            time += length;
-            events += run->events.size();
-            largest = std::max({largest, reach.range(), std::fabs(reach.low), std::fabs(reach.high)});
-            ranges.emplace_back(time, reach.range());
-            if (i == 0) most_changed_ = reach.scale;
-            most_changed_ = most_changed_.cwiseMax(reach.scale);
-            const double M = run->size() > 0 ? run->column(motion::Column::M)[run->size() - 1] : 0;
-            const Moment before = now;
-            now = runs_.at_stop(*run, before, M);
-            if (rests(*run, reach, largest)) {
-                answer_.asked = std::make_shared<const SteadyQuestion>(runs_.from(now, start));
-                return;
-            }
-            constexpr double nothing = 1e-9;
-            if (reach.range() > nothing * largest && closes_from(now, reach, length, i)) return;
-            constexpr std::size_t many_events = 6000;
-            const bool cheap = !(system.stiffness() > 0) && events < 200;
-            if (events > many_events || (!cheap && time > 3000 * base)) break;
-            length *= 1.5;
-        }
-        judge_growth(ranges);
-    }
-
-    bool closes_from(const Moment& now, const Reach& reach, double length, int i) {
-        constexpr double place = 0.42;  // off the middle, where many motions have an end of something
-        const double section = reach.low + place * reach.range();
-        Vector units = units_of(reach, now).tail(reach.scale.size() - 1);
-        ReturnMap map = ReturnMap::of_section(runs_, section, 3 * length, std::move(units));
-        const ReturnMap::Return first = map.arrival(now);
-        if (!first.finished) return false;
-        ClosedSearch<ReturnMap> search(map, answer_.maps, 16);
-        const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
-        const auto found = search.follow(first, counts);
-        return found && tells(map, *found);
-    }
-
-    /// Nothing depends on the time: what stands, and leaves everything as it is, stands for ever.
-    bool rests(const Trajectory& run, const Reach& reach, double largest) {
-        const bool stuck = run.motion_at_stop == model::Motion::stuck;
-        const bool same_states = [&] {
-            for (Eigen::Index k = 2; k < reach.scale.size(); ++k) {
-                if (reach.scale[k] > 1e-8 * most_changed_[k]) return false;
-            }
-            return true;
-        }();
-        const bool moves = run.state_at_stop.velocity != 0;
-        const bool stands = stuck && !moves && reach.scale.size() == 2;
-        const bool still = reach.range() <= 1e-11 * largest && same_states;
-        if (stuck && moves && same_states && run.events.empty() && !(question_.system.stiffness() > 0) &&
-            !question_.excitation.has_feedback() && question_.system.spring().none()) {
-            answer_.status = SteadyStatus::adheres;  // to the belt, which takes it along
-        } else if (stands || still) {
-            answer_.status = SteadyStatus::rest;
-        } else {
-            return false;
-        }
-        const double theta = run.state_at_stop.theta;
-        answer_.period = 0;
-        answer_.start = {theta, answer_.status == SteadyStatus::rest ? 0 : run.state_at_stop.velocity};
-        answer_.low = answer_.high = theta;
-        answer_.amplitude = 0;
-        answer_.stuck = stuck ? 1 : 0;
-        answer_.stable = true;
-        answer_.rest = {theta, theta};
-        if (stuck && !moves && answer_.status == SteadyStatus::rest) answer_.rest = rest_of(question_, theta);
-        if (answer_.rest.first < answer_.rest.second) answer_.unique = false;
-        return true;
-    }
-
-    void judge_growth(const std::vector<std::pair<double, double>>& ranges) {
-        const std::size_t n = ranges.size();
-        if (n < 4 || !(ranges[n - 1].second > 1.2 * ranges[n - 2].second) ||
-            !(ranges[n - 2].second > 1.2 * ranges[n - 3].second)) {
-            return;
-        }
-        answer_.status = SteadyStatus::grows;
-        const double base = question_.system.stiffness() > 0 ? question_.system.natural_period() : 1;
-        answer_.growth =
-            (ranges[n - 1].second - ranges[n - 2].second) / 2 / ((ranges[n - 1].first - ranges[n - 2].first) / base);
-    }
-
-    /// The facts about a motion that closes; false when no run stays with it.
-    bool tells(ReturnMap& map, const Closed<Mode>& found) {
-        const auto D = map.derivative(found.x, found.mode, found.returns, 4);
-        answer_.maps += 4 * found.returns * static_cast<int>(found.x.size());
-        std::vector<std::complex<double>> multipliers;
-        if (D) multipliers = sorted_eigenvalues(*D);
-        if (D && !multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
-        const bool forced = question_.drive.period > 0;
-        answer_.periods = forced ? found.returns : 1;
-        answer_.period = forced ? found.returns * question_.drive.period : found.period;
-        answer_.multipliers = std::move(multipliers);
-        answer_.differentiable = D.has_value();
-        answer_.stable = true;
-        answer_.residual = found.residual;
-        return tell_period(runs_, map.moment(found.x, found.mode), map.start(), answer_);
-    }
-
-    const SteadyQuestion& question_;
-    Runs runs_;
-    Vector most_changed_;  // in any stretch: theta, velocity and the states
-    SteadyMotion answer_;
-};
-
-/// The return map of a branch: its places are theta, velocity and the states from period to period, or all but theta
-/// from passage to passage.
-class ReturnCircuit final : public Circuit {
-public:
-    ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
-                  const motion::Monitor& monitor)
-        : family_(family), monitor_(monitor), periods_(periods) {
-        Runs& runs = this->runs(p);
-        const SteadyQuestion& question = runs.question();
-        timeless_ = question.is_timeless();
-        stands_ = timeless_ && motion.status == SteadyStatus::rest;
-        cycles_ = timeless_ && !stands_;
-        offset_ = motion.asked->drive.start - question.drive.start;
-        period_ = motion.period;
-        Moment moment{.state = motion.asked->initial, .relays = relays_of(motion.asked->excitation)};
-        for (const model::OwnState& state : motion.asked->extras.states) moment.states.push_back(state.start);
-        relays_ = moment.relays;
-        if (!cycles_) {
-            first_ = place(moment);
-            return;
-        }
-        section_ = section_of(motion);
-        // A passage against the way of the belt slides.
-        const model::Excitation& belt = question.extras.belt;
-        if (!belt.components().empty() && belt.value(question.drive.start) > 0) section_.way = -1;
-        Runs::Arrival arrival = runs.passage(moment, start(runs), 3 * period_, section_);
-        if (!arrival.arrived) return;
-        first_ = place(arrival.at);
-        // It may pass more than once in its period.
-        int passages = 0;
-        for (double left = (1 - 1e-6) * period_; left > 0 && arrival.arrived; ++passages) {
-            arrival = runs.passage(arrival.at, start(runs), 3 * period_, section_);
-            left -= arrival.t - start(runs);
-        }
-        passages_ = passages * periods;
-    }
-
-    Lap lap(const Eigen::VectorXd& x, double p) override {
-        Runs& runs = this->runs(p);
-        const Moment from = moment(x, runs);
-        Lap lap;
-        model::Outcome outcome = model::Outcome::reached_end;
-        if (cycles_) {
-            Moment now = from;
-            lap.finished = true;
-            for (int i = 0; i < passages_ && lap.finished; ++i) {
-                const Runs::Arrival arrival = runs.passage(now, start(runs), 3 * period_, section_);
-                outcome = arrival.outcome;
-                lap.finished = arrival.arrived;
-                lap.time += arrival.t - start(runs);
-                now = arrival.at;
-            }
-            if (lap.finished) lap.to = place(now);
-        } else {
-            lap.time = length(runs);
-            const Trajectory run = runs.run(from, start(runs), start(runs) + lap.time, motion::Grid::none(), false);
-            outcome = run.outcome;
-            lap.finished = model::is_whole(outcome);
-            if (lap.finished) lap.to = place(runs.at_stop(run, {.state = {}}, 0));
-        }
-        lap.finished = lap.finished && lap.to.allFinite();
-        see(outcome, runs.contradiction());
-        return lap;
-    }
-
-    SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
-                        const Eigen::MatrixXd& derivative) override {
-        Runs& runs = this->runs(p);
-        const Moment moment = this->moment(x, runs);
-        SteadyMotion motion;
-        motion.multipliers = sorted_eigenvalues(derivative);
-        motion.differentiable = true;
-        motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
-        if (stands_) {
-            motion.status = SteadyStatus::rest;
-            motion.start = {moment.state.theta, 0};
-            motion.low = motion.high = moment.state.theta;
-            motion.rest = {moment.state.theta, moment.state.theta};
-            motion.asked = std::make_shared<const SteadyQuestion>(runs.from(moment, start(runs)));
-            return motion;
-        }
-        motion.periods = periods_;
-        motion.period = lap.time;
-        period_ = lap.time;
-        constexpr double rows = 64;  // they tell how far it goes, and turns are looked for between them
-        if (!tell_period(runs, moment, start(runs), motion, rows)) motion.status = SteadyStatus::none;
-        return motion;
-    }
-
-    [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& /*lap*/,
-                                        const SteadyMotion& motion) const override {
-        Eigen::VectorXd units = Eigen::VectorXd::Zero(x.size());
-        if (motion.settled) {
-            const Trajectory& run = *motion.settled;
-            const Eigen::Index first = cycles_ ? 1 : 0;
-            for (Eigen::Index i = 0; i < x.size(); ++i) {
-                const Eigen::Index k = i + first;
-                const Eigen::Index column = k < 2 ? k + 1 : static_cast<Eigen::Index>(motion::column_count) + k - 2;
-                units[i] = run.rows.col(column).maxCoeff() - run.rows.col(column).minCoeff();
-            }
-        }
-        if (stands_) {
-            const model::Oscillator& system = here_->question.system;
-            const double omega = system.stiffness() > 0 ? system.natural_frequency() : 1;
-            const double belt = here_->question.extras.belt.value(start(here_->runs));
-            const model::State& asked = here_->question.initial;
-            units[0] = std::max({std::fabs(belt) / omega, std::fabs(x[0]), std::fabs(asked.theta - x[0]),
-                                 std::fabs(asked.velocity) / omega});
-            units[1] = units[0] * omega;
-        }
-        for (Eigen::Index i = 0; i < x.size(); ++i) {
-            if (!(units[i] > 1e-9 * std::fabs(x[i]))) units[i] = x[i] == 0 ? 1 : std::fabs(x[i]);
-        }
-        return units;
-    }
-
-    std::optional<std::vector<Eigen::VectorXd>> recentred(
-        const SteadyMotion& motion, const std::vector<std::pair<Eigen::VectorXd, double>>& places) override {
-        const double at = (section_.theta - motion.low) / (motion.high - motion.low);
-        if (!cycles_ || (at > 0.3 && at < 0.54)) return {};
-        Section next = section_of(motion);
-        next.way = section_.way;
-        std::vector<Eigen::VectorXd> moved;
-        for (const auto& [x, p] : places) {
-            Runs& runs = this->runs(p);
-            const Runs::Arrival arrival = runs.passage(moment(x, runs), start(runs), 3 * period_, next);
-            if (!arrival.arrived) return {};
-            moved.push_back(place(arrival.at));
-        }
-        section_ = next;
-        return moved;
-    }
-
-private:
-    struct Here {
-        double p;
-        SteadyQuestion question;
-        Runs runs;
-        Here(double at, SteadyQuestion asked, const motion::Monitor& monitor)
-            : p(at), question(std::move(asked)), runs(question, monitor) {}
-    };
-
-    [[nodiscard]] static Section section_of(const SteadyMotion& motion) {
-        constexpr double place = 0.42;  // off the middle, where many motions have an end of something
-        return {motion.low + place * (motion.high - motion.low)};
-    }
-    /// Of the question at this parameter.
-    Runs& runs(double p) {
-        if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), monitor_);
-        return here_->runs;
-    }
-    [[nodiscard]] double start(const Runs& runs) const { return runs.question().drive.start + offset_; }
-    [[nodiscard]] double length(const Runs& runs) const {
-        if (!timeless_) return periods_ * runs.question().drive.period;
-        const model::Oscillator& system = runs.question().system;
-        return system.stiffness() > 0 ? system.natural_period() / 4 : 1;
-    }
-    [[nodiscard]] Eigen::VectorXd place(const Moment& moment) const {
-        Eigen::VectorXd x((cycles_ ? 1 : 2) + static_cast<Eigen::Index>(moment.states.size()));
-        Eigen::Index i = 0;
-        if (!cycles_) x[i++] = moment.state.theta;
-        x[i++] = moment.state.velocity;
-        for (const double z : moment.states) x[i++] = z;
-        return x;
-    }
-    [[nodiscard]] Moment moment(const Eigen::VectorXd& x, const Runs& runs) const {
-        Moment moment{.state = {}, .relays = relays_};
-        Eigen::Index i = 0;
-        moment.state.theta = cycles_ ? section_.theta : x[i++];
-        moment.state.velocity = x[i++];
-        for (; i < x.size(); ++i) moment.states.push_back(x[i]);
-        if (const auto& walls = runs.question().system.walls()) {
-            moment.state.theta = std::clamp(moment.state.theta, walls->lower, walls->upper);
-        }
-        return moment;
-    }
-
-    const Family& family_;
-    const motion::Monitor& monitor_;
-    int periods_, passages_ = 1;
-    bool timeless_ = false;
-    double offset_ = 0, period_ = 0;
-    Section section_;
-    std::vector<bool> relays_;
-    std::unique_ptr<Here> here_;
-};
+/// The sizes of the greatest angle or velocity.
+double greatest(const Reach& reach, Index count) {
+    return reach.range().head(count).cwiseAbs().maxCoeff();
+}
 
 }  // namespace
 
-std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
-                                            const motion::Monitor& monitor) {
-    if (!motion.asked) return {};
-    auto circuit = std::make_unique<ReturnCircuit>(family, p, motion, periods, monitor);
-    if (circuit->first().size() == 0) return {};
-    return circuit;
+/// A motion that comes back after some returns.
+struct ReturnSearch::Closed {
+    VectorXd x;
+    HeldMode mode;
+    int returns = 1;
+    double period = 0, residual = 0;
+};
+
+/// Finds it from the returns that it makes, by Newton's method where these lead near.
+class ReturnSearch::ClosedSearch {
+public:
+    using Return = Returns::Return;
+    ClosedSearch(Returns& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
+
+    /// What one return after the other leads to.
+    std::optional<Closed> follow(Return first, const std::vector<int>& counts) {
+        seen_ = {std::move(first)};
+        for (const int until : counts) {
+            while (static_cast<int>(seen_.size()) <= until) {
+                Return next = map_(seen_.back().to, seen_.back().mode);
+                ++maps_;
+                if (!next.finished) {
+                    failed_ = next.outcome;
+                    return {};
+                }
+                seen_.push_back(std::move(next));
+            }
+            for (const double near : {1e-5, 5e-2}) {
+                if (auto found = closes(near)) return found;
+            }
+        }
+        return {};
+    }
+
+    [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
+    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
+
+private:
+    static constexpr double to_rounding = 1e-11;
+
+    std::optional<Closed> closes(double near) {
+        const std::size_t last = seen_.size() - 1;
+        int tries = 0;  // chaos comes near to itself again and again
+        for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
+            if (seen_[last].mode != seen_[last - m].mode) continue;
+            const double off = size_of_step(seen_[last].to - seen_[last - m].to);
+            if (off > near) continue;
+            ++tries;
+            auto found = newton(seen_[last], static_cast<int>(m));
+            if (found && approaches(found->x, m)) return shortest(*found);
+            if (found || off > to_rounding) continue;
+            return itself(seen_[last], static_cast<int>(m));
+        }
+        return {};
+    }
+
+    /// It may have come back before: what dies out slowly is nearer to itself after more returns.
+    Closed shortest(Closed found) {
+        for (int m = 1; m < found.returns; ++m) {
+            if (found.returns % m != 0) continue;
+            const Return back = map_(found.x, found.mode, m);
+            maps_ += m;
+            constexpr double there = 1e-10;
+            const double off = back.finished ? size_of_step(back.to - found.x) : 1;
+            if (!back.finished || back.mode != found.mode || off > std::max(there, 10 * found.residual)) continue;
+            found.returns = m, found.period = back.time, found.residual = off;
+            break;
+        }
+        return found;
+    }
+
+    /// The run comes nearer to it all the time, and is there soon.
+    [[nodiscard]] bool approaches(const VectorXd& x, std::size_t m) const {
+        const std::size_t last = seen_.size() - 1;
+        const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
+        constexpr double there = 1e-7, close = 0.3;
+        return now <= there || (now <= close && now < 0.98 * before);
+    }
+
+    /// It has come back to rounding, and differences do not tell more.
+    std::optional<Closed> itself(const Return& from, int m) {
+        const Return back = map_(from.to, from.mode, m);
+        maps_ += m;
+        if (!back.finished) return {};
+        return Closed{from.to, *from.mode, m, back.time, size_of_step(back.to - from.to)};
+    }
+
+    std::optional<Closed> newton(const Return& from, int m) {
+        VectorXd x = from.to;
+        std::optional<Closed> best;
+        std::optional<Eigen::MatrixXd> D;
+        constexpr int most = 14;
+        for (int i = 0; i < most; ++i) {
+            const Return there = map_(x, from.mode, m);
+            maps_ += m;
+            if (!there.finished || there.mode != from.mode) return good(best);
+            const VectorXd off = there.to - x;
+            const double residual = size_of_step(off);
+            const bool slower = best && residual > 0.1 * best->residual;
+            if (best && residual >= best->residual && best->residual <= to_rounding) return best;
+            if (!best || residual < best->residual) best = Closed{x, *from.mode, m, there.time, residual};
+            if (residual <= 4 * std::numeric_limits<double>::epsilon()) return best;
+            if (!D || slower) {
+                D = map_.derivative(x, *from.mode, m, 2);
+                maps_ += 2 * m * static_cast<int>(x.size());
+                if (!D) return good(best);
+            }
+            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - *D;
+            const VectorXd step = algebra::solve_shortest(left, off);
+            if (!step.allFinite()) return good(best);
+            constexpr double farthest = 1;
+            x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
+        }
+        return good(best);
+    }
+
+    static std::optional<Closed> good(const std::optional<Closed>& best) {
+        constexpr double enough = 1e-9;
+        return best && best->residual <= enough ? best : std::nullopt;
+    }
+
+    Returns& map_;
+    int& maps_;
+    int longest_;
+    std::vector<Return> seen_;
+    std::optional<model::Outcome> failed_;
+};
+
+void ReturnSearch::search() {
+    facts_.period = question().repeats.period;
+    question().settles > 0 ? settle() : question().repeats.period > 0 ? forced() : cycle();
+    if (!runs_.contradiction()) return;
+    facts_.contradiction = runs_.contradiction();
+    facts_.outcome = model::Outcome::not_a_function;
+    facts_.status = SteadyStatus::none;
 }
 
-std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
-                                                 const motion::Monitor& monitor) {
-    if (!rest.asked) return {};
-    ReturnCircuit still(family, p, rest, 1, monitor);
-    const Vector x = still.first();
-    const Circuit::Lap lap = still.lap(x, p);
-    const Vector units = still.units(x, lap, rest);
-    const Eigen::Index n = x.size();
-    Eigen::MatrixXd D(n, n);  // of the scaled places
-    constexpr double h = 1e-4;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Vector step = h * units[i] * Vector::Unit(n, i);
-        const Circuit::Lap up = still.lap(x + step, p), down = still.lap(x - step, p);
-        if (!up.finished || !down.finished) return {};
-        D.col(i) = (up.to - down.to).cwiseQuotient(2 * h * units);
-    }
-    const auto [values, vectors] = algebra::eigenpairs(D);
-    Eigen::Index best = 0;
-    for (Eigen::Index i = 1; i < n; ++i) {
-        if (std::abs(std::abs(values[i]) - 1) < std::abs(std::abs(values[best]) - 1)) best = i;
-    }
-    const double turn = std::fabs(std::arg(values[best]));
-    if (!(turn > 1e-6)) return {};
-    constexpr double small = 1e-3;  // of the units: the cycle differs from the linearised motion by its square
-    const Eigen::VectorXcd mode = small * vectors.col(best).normalized().cwiseProduct(units);
-    const Vector begin = x + mode.real();
-    SteadyQuestion asked = *rest.asked;
-    asked.initial = {begin[0], begin[1]};
-    for (Eigen::Index i = 2; i < n; ++i) asked.extras.states[static_cast<std::size_t>(i) - 2].start = begin[i];
-    SteadyMotion cycle;
-    cycle.status = SteadyStatus::steady;
-    cycle.period = 2 * std::numbers::pi * lap.time / turn;
-    cycle.low = x[0] - std::abs(mode[0]);
-    cycle.high = x[0] + std::abs(mode[0]);
-    cycle.asked = std::make_shared<const SteadyQuestion>(std::move(asked));
-    return circuit_of_returns(family, p, cycle, 1, monitor);
+double ReturnSearch::pace() const {
+    if (question().repeats.period > 0) return question().repeats.period;
+    const double natural = runs_.natural_period();
+    return natural > 0 ? natural : 1;
 }
 
-void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {
-    motion.start = run.initial;
-    motion.low = motion.high = run.initial.theta;
-    motion.t_high = run.t_start;
-    const auto see = [&motion](double t, double theta) {
-        if (theta > motion.high) motion.high = theta, motion.t_high = t;
-        motion.low = std::min(motion.low, theta);
+/// A stretch of the run; none when it failed, and the answer says how.
+std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
+    Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
+    facts_.outcome = run.outcome;
+    reach = reach_of(run, chart_);
+    constexpr double beyond = 1e100, no_number = 1e50;  // there M may have none
+    const double greatest = analysis::greatest(reach, 2 * n());
+    const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
+    if (whole && greatest < beyond) return run;
+    if (whole || (run.outcome == model::Outcome::excitation_not_finite && greatest > no_number)) {
+        facts_.outcome = model::Outcome::state_not_finite;
+    }
+    if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
+    return {};
+}
+
+/// Units of places: never zero.
+VectorXd ReturnSearch::units_of(const Reach& reach) const {
+    VectorXd units = reach.range();
+    const VectorXd most = reach.high.cwiseAbs().cwiseMax(reach.low.cwiseAbs());
+    const double angles = std::max(units.head(n()).maxCoeff(), 1e-300);
+    const double speeds = std::max(units.segment(n(), n()).maxCoeff(), 1e-300);
+    for (Index k = 0; k < units.size(); ++k) {
+        if (units[k] > 1e-9 * most[k]) continue;
+        units[k] = std::max(most[k], k < n() ? angles : k < 2 * n() ? speeds : 0.0);
+        if (!(units[k] > 0)) units[k] = 1;
+    }
+    return units;
+}
+
+// ---- with a period
+
+void ReturnSearch::forced() {
+    const double period = question().repeats.period;
+    // An act at the very beginning of a run would not happen: returns are looked at where nothing does.
+    constexpr double nowhere = 0.3819660112501051;
+    Moment now = runs_.first();
+    double start = question().repeats.start;
+    Reach reach;
+    if (has_acts(question().drive)) {
+        const auto run = stretch(now, start, nowhere * period, reach);
+        if (!run) return;
+        now = Runs::at_stop(*run);
+        start += nowhere * period;
+    }
+    const auto first = stretch(now, start, period, reach);
+    if (!first) return;
+    now = Runs::at_stop(*first);
+    std::vector<double> ranges{greatest(reach, n())};  // of single periods
+    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one
+    const double natural = runs_.natural_period();
+    const int longest = question().periods > 0 ? question().periods : 32;
+    for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
+        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
+        ClosedSearch search(map, facts_.maps, longest);
+        const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
+        if (found && tells_closed(map, *found)) return;
+        if (search.failed()) {
+            facts_.outcome = *search.failed();
+            if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
+            return;
+        }
+        const auto& seen = search.seen();
+        const auto largest = [&](std::size_t from, std::size_t until) {
+            double size = 0;
+            for (std::size_t i = from; i < until; ++i) {
+                const VectorXd y = chart_.measured(map.moment(seen[i].to, seen[i].mode).y).cwiseAbs();
+                // Bodies that nothing pulls back may drift without an end.
+                if (natural > 0) size = std::max(size, y.head(n()).maxCoeff());
+                const double pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
+                size = std::max(size, y.segment(n(), n()).maxCoeff() * pace);
+            }
+            return size;
+        };
+        const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
+        sizes.push_back(largest(0, half));
+        if (half < seen.size()) sizes.push_back(largest(half, seen.size()));
+        now = map.moment(seen.back().to, seen.back().mode);
+        if (!stretch(now, start, period, reach)) return;
+        ranges.push_back(greatest(reach, n()));
+    }
+    // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
+    const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
+    if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
+        facts_.status = SteadyStatus::grows;
+        facts_.growth = (sizes[2] - sizes[1]) / 160;
+    }
+}
+
+// ---- with controllers that sample or wait
+
+/// Angles and velocities as they are measured, states, and what the controllers give. What they remember besides is not
+/// seen, so a motion must return more than once.
+VectorXd ReturnSearch::seen_at(const engine::Carry& carry) const {
+    const VectorXd y = chart_.measured(vector_of(carry.y));
+    std::vector<double> all(y.begin(), y.end());
+    for (const auto& controllers : carry.controllers) {
+        for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
+    }
+    return vector_of(all);
+}
+
+/// The run itself goes on until it repeats itself.
+void ReturnSearch::settle() {
+    const double length = question().settles, start = question().repeats.start;
+    double delay = 0;
+    for (const model::Excitation& load : question().drive.loads) delay = std::max(delay, longest_delay(load));
+    const auto past = static_cast<std::size_t>(std::ceil(std::min(delay / length, 1e6)));
+    const bool timeless = question().repeats.period == 0;
+    const int first = std::max(question().periods, 1), longest = timeless ? 2048 : 32;
+    const std::size_t least = timeless ? 20000 : 4096;
+    const std::size_t most = std::clamp(std::max(4 * past, static_cast<std::size_t>(8 * first)), least, 4 * least);
+    std::shared_ptr<const engine::Carry> carry;
+    std::vector<VectorXd> seen;
+    std::vector<double> sizes;
+    std::size_t small = 0;  // the last returns in which hardly anything moved
+    VectorXd size;
+    Runs::Run run;
+    constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
+    constexpr double finest = 1e-12;  // sizes: of rounding in runs
+    // How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
+    const auto off = [&](std::size_t m, std::size_t back) {
+        const std::size_t span = std::max(m, past + 1) + 1;
+        if (seen.size() < back + m + span) return model::never;
+        double worst = 0;
+        for (std::size_t i = seen.size() - back - span; i < seen.size() - back; ++i) {
+            worst = std::max(worst, (seen[i] - seen[i - m]).cwiseQuotient(size).cwiseAbs().maxCoeff());
+            if (worst > alike) break;
+        }
+        return worst;
     };
-    for (const model::Event& event : run.events) {
-        see(event.t, event.theta);
-        if (event.kind != model::EventKind::user) continue;
-        if (const auto thrown = run.at(event.t)) see(event.t, thrown->theta);
+    const auto comes_back = [&](double within) -> std::size_t {
+        const auto fewest = static_cast<std::size_t>(first);
+        const std::size_t last = question().periods > 0 ? fewest : static_cast<std::size_t>(longest);
+        for (std::size_t m = fewest; m <= last; ++m) {
+            const double now = off(m, 0), before = off(m, 4 * m);
+            if (!(now <= alike)) continue;
+            // Differences that shrink by so much in a period of the motion add up to this.
+            const double kept = std::pow(now / before, 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
+            if (now > finest && left > within) continue;
+            // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
+            for (std::size_t fewer = fewest; fewer < m; ++fewer) {
+                if (off(fewer, 0) <= alike) return fewer;
+            }
+            return m;
+        }
+        return 0;
+    };
+    constexpr std::size_t least_returns = 16;
+    for (std::size_t until = least_returns; seen.size() < most; until += std::max(least_returns, until / 4)) {
+        until = std::min(until, most);
+        for (; seen.size() < until; ++facts_.maps) {
+            const auto k = static_cast<double>(seen.size());
+            run = runs_.go_on(carry, start + k * length, start + (k + 1) * length, motion::Grid::none());
+            facts_.outcome = run.outcome;
+            const Reach reach = reach_of(run, chart_, timeless ? 4 : 64);
+            constexpr double beyond = 1e50;
+            const double greatest = analysis::greatest(reach, 2 * n());
+            if (!(greatest < beyond)) facts_.outcome = model::Outcome::state_not_finite;
+            if (!model::is_whole(facts_.outcome)) {
+                if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
+                return;
+            }
+            carry = run.carry;
+            seen.push_back(seen_at(*carry));
+            largest_ = std::max(largest_, greatest);
+            const VectorXd now = units_of(reach);
+            size = seen.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
+            constexpr double nothing = 1e-12;  // of what it was: it dies out
+            size.head(now.size()) = now.cwiseMax(nothing * largest_);
+            sizes.push_back(greatest);
+            constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
+            small = greatest <= dead * largest_ ? small + 1 : 0;
+        }
+        const bool alone = timeless && question().drive.states.empty();
+        if (alone && small >= least_returns && run.motion_at_stop != model::Motion::stuck) {
+            note_rest(run, false);
+            return;
+        }
+        constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
+        std::size_t m = comes_back(settled);
+        if (m == 0 && seen.size() >= most) m = comes_back(alike);
+        if (m == 0) continue;
+        facts_.period = static_cast<double>(m) * length;
+        facts_.periods = timeless ? 1 : static_cast<int>(std::round(facts_.period / question().repeats.period));
+        facts_.residual = off(m, 0);
+        tell_settled(run);
+        return;
     }
-    if (run.on_belt) {
-        for (const model::Event& turn : motion::turns_on_belt(run)) see(turn.t, turn.theta);
-    }
-    see(run.t_stop, run.state_at_stop.theta);
-    const double length = run.t_stop - run.t_start;
-    double stuck = 0;
-    motion.stops = 0;
-    for (const Stretch& s : stretches(run)) {
-        if (!s.stuck) continue;
-        motion.stops += s.begun_by ? 1U : 0U;
-        stuck += s.lasts();
-    }
-    const bool moves = motion.high > motion.low;
-    motion.status = moves ? SteadyStatus::steady : SteadyStatus::adheres;
-    motion.amplitude = (motion.high - motion.low) / 2 + 0.0;
-    motion.stuck = moves ? std::min(1.0, stuck / length) : 1;
-    if (!moves) motion.rest = rest_of(question, motion.start.theta);
+    // A motion that beats is as large in the first half as in the second.
+    const auto half = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    const double before = *std::max_element(sizes.begin(), half + 1), last = *std::max_element(half, sizes.end());
+    constexpr double clearly = 1.3;
+    if (last < clearly * before) return;
+    facts_.status = SteadyStatus::grows;
+    facts_.growth = (last - before) / static_cast<double>(sizes.end() - 1 - half);
 }
 
-SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return ReturnSearch(question, monitor).found();
+// ---- without
+
+void ReturnSearch::cycle() {
+    const double natural = runs_.natural_period(), base = pace(), start = question().repeats.start;
+    Moment now = runs_.first();
+    double length = base, time = 0;
+    std::size_t events = 0;
+    std::vector<std::pair<double, double>> ranges;  // time, range
+    VectorXd most_changed;
+    constexpr int most_stretches = 40;
+    for (int i = 0; i < most_stretches; ++i) {
+        Reach reach;
+        const auto run = stretch(now, start, length, reach);
+        if (!run) return;
+        time += length;
+        events += run->events.size();
+        const VectorXd range = reach.range();
+        most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
+        ranges.emplace_back(time, greatest(reach, n()));
+        largest_ = std::max(largest_, greatest(reach, 2 * n()));
+        now = Runs::at_stop(*run);
+        if (rests(*run, range, most_changed)) return;
+        if (closes_from(now, reach, length, i)) return;
+        constexpr std::size_t many_events = 6000, few_events = 200;
+        const bool cheap = !(natural > 0) && events < few_events;
+        if (events > many_events || (!cheap && time > 3000 * base)) break;
+        length *= 1.5;
+    }
+    const auto last = ranges.rbegin();
+    if (ranges.size() < 4 || !(last[0].second > 1.2 * last[1].second) || !(last[1].second > 1.2 * last[2].second)) {
+        return;
+    }
+    facts_.status = SteadyStatus::grows;
+    facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
+}
+
+bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
+    // The angle that changes most beside its size, or a velocity where no angle is measured.
+    const VectorXd range = reach.range();
+    Index widest = -1;
+    for (const Index from : {Index{0}, n()}) {
+        for (Index k = from; k < from + n() && (widest < 0 || widest >= from); ++k) {
+            const double most = std::max(std::fabs(reach.low[k]), std::fabs(reach.high[k]));
+            if (!chart_.measures(k) || !(range[k] > 1e-9 * most)) continue;
+            if (widest < 0 || range[k] > range[widest]) widest = k;
+        }
+        if (widest >= 0) break;
+    }
+    if (widest < 0) return false;
+    const Returns::Section section{widest, reach.low[widest] + section_at * range[widest]};
+    Returns map(runs_, chart_, question().repeats.start, 3 * length, section, units_of(reach), now.y);
+    const Returns::Return first = map.arrival(now);
+    if (!first.finished) return false;
+    ClosedSearch search(map, facts_.maps, 16);
+    const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
+    const auto found = search.follow(first, counts);
+    return found && tells_closed(map, *found);
+}
+
+/// Nothing depends on the time: what stands, or goes round evenly, and leaves everything as it is, does so for ever.
+bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const VectorXd& most_changed) {
+    const bool stands = run.outcome == model::Outcome::at_rest ||
+                        (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
+    bool still = true, still_states = true;
+    for (Index k = 0; k < range.size(); ++k) {
+        const double size = std::max(most_changed[k], std::fabs(run.carry->y[static_cast<std::size_t>(k)]));
+        const bool own = !chart_.measures(k) || range[k] <= 1e-11 * size;
+        still = still && own;
+        if (k >= 2 * n()) still_states = still_states && own;
+    }
+    const bool rides = n() == 1 && still_states && run.motion_at_stop == model::Motion::stuck && run.events.empty() &&
+                       !(runs_.natural_period() > 0) && runs_.system().joints.front().spring.none() &&
+                       !question().drive.loads.front().has_feedback();
+    if (stands || still || rides) note_rest(run, stands);
+    return stands || still || rides;
+}
+
+void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
+    facts_.period = 0;
+    facts_.stable = true;
+    facts_.status = SteadyStatus::rest;
+    tell_rest(run, stands);
+}
+
+/// The facts about a motion that closes; false when no run stays with it.
+bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
+    const auto D = map.derivative(found.x, found.mode, found.returns, 4);
+    facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
+    std::vector<std::complex<double>> multipliers;
+    if (D) multipliers = multipliers_of(*D);
+    if (!multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
+    const bool forced = question().repeats.period > 0;
+    facts_.periods = forced ? found.returns : 1;
+    facts_.period = forced ? found.returns * question().repeats.period : found.period;
+    facts_.differentiable = D.has_value();
+    facts_.stable = true;
+    facts_.residual = found.residual;
+    facts_.multipliers = std::move(multipliers);
+    note_family(facts_);
+    return tells(map.moment(found.x, found.mode), map.start());
 }
 
 }  // namespace dinal::analysis

@@ -5,18 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/steady.hpp"
-#include "motion/engine/run.hpp"
+#include "analysis/returns.hpp"
 
 namespace dinal::analysis {
-
-struct RigQuestion {
-    model::AssemblyHandle system;
-    motion::engine::Drive drive;
-    Drive repeats = {};  ///< period 0: nothing depends on the time
-    int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
-    double settles = 0;  ///< not 0: controllers sample or wait, and all that drives the bodies repeats after this time
-};
 
 struct RigMotion {
     /// What is known of all bodies together: status, period, periods, multipliers, stable, unique, growth, residual.

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
-#include "analysis/settling/settled.hpp"
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/sine/sliding_start.hpp"
 #include "analysis/sine/stopping_start.hpp"
@@ -301,19 +300,13 @@ private:
 }  // namespace
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const bool remembers = model::has_memory(question.excitation);
-    if (model::has_memory<model::DelayedController>(question.excitation))
-        return settling::settled_motion(question, monitor);
-    const bool sampled_control = model::has_memory<model::SampledController>(question.excitation);
-    if (question.is_timeless() || question.extras.any()) {
-        // A relay in a motion that returns through a section is a part of the section's state.
-        const bool settles = sampled_control || (remembers && !question.is_timeless());
-        return settles ? settling::settled_motion(question, monitor) : returning_motion(question, monitor);
-    }
+    const bool waits = model::has_memory<model::DelayedController>(question.excitation);
+    if (waits || question.is_timeless() || question.extras.any()) return returning_motion(question, monitor);
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
-    if (remembers && !settling::goes_on(question, motion, monitor) && motion.outcome != model::Outcome::interrupted) {
-        return settling::settled_motion(question, monitor);
+    if (model::has_memory(question.excitation) && !goes_on(question, motion, monitor) &&
+        motion.outcome != model::Outcome::interrupted) {
+        return returning_motion(question, monitor);
     }
     return motion;
 }

@@ -33,7 +33,11 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
 /// The facts that one period as a run tells: its extremes and stops, and whether anything moves.
 void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
 
-/// The motion of a run with more in it, or a limit cycle, that a run from `initial` leads to; in returns.cpp.
+/// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to;
+/// in returning.cpp.
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);
+
+/// Whether a motion that was found by theta and velocity alone goes on like this in one run of some periods.
+bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "motion/engine/run.hpp"
-
 namespace dinal::motion::engine {
 
 namespace {
@@ -55,6 +53,8 @@ private:
     std::shared_ptr<const History> history_;
 };
 
+}  // namespace
+
 model::Assembly assembly_of(const model::Oscillator& system) {
     model::Joint ground;
     ground.stiffness = system.stiffness(), ground.damping = system.damping();
@@ -62,18 +62,27 @@ model::Assembly assembly_of(const model::Oscillator& system) {
     return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = {}};
 }
 
-}  // namespace
+Drive drive_of(const model::Excitation& excitation, const model::Extras& extras, const model::State& initial) {
+    return {.loads = {excitation},
+            .belts = {extras.belt},
+            .base = extras.base,
+            .states = extras.states,
+            .events = extras.events,
+            .theta0 = {initial.theta},
+            .velocity0 = {initial.velocity}};
+}
+
+std::shared_ptr<const Carried> carried_by(const std::shared_ptr<const Carry>& carry) {
+    auto carried = std::make_shared<Left>();
+    carried->states.assign(carry->y.begin() + 2, carry->y.end());
+    carried->carry = carry;
+    return carried;
+}
 
 Trajectory run(const Problem& problem, const Cut& cut) {
     const model::Assembly system = assembly_of(problem.system);
     const model::Extras& extras = *problem.extras;
-    Drive drive{.loads = {problem.excitation},
-                .belts = {extras.belt},
-                .base = extras.base,
-                .states = extras.states,
-                .events = extras.events,
-                .theta0 = {problem.initial.theta},
-                .velocity0 = {problem.initial.velocity}};
+    const Drive drive = drive_of(problem.excitation, extras, problem.initial);
     const auto* left = dynamic_cast<const Left*>(problem.carried);
     AssemblyRun run = run_plain({.system = system,
                                  .drive = drive,
@@ -107,10 +116,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
     trajectory.noise = run.noise;
     trajectory.gap = run.gap;
     for (const model::WantedEvent& wanted : extras.events) trajectory.event_names.push_back(wanted.name);
-    auto carried = std::make_shared<Left>();
-    carried->states.assign(run.carry->y.begin() + 2, run.carry->y.end());
-    carried->carry = run.carry;
-    trajectory.carried = std::move(carried);
+    trajectory.carried = carried_by(run.carry);
     if (problem.limits.dense) trajectory.course = std::make_shared<OneBodyCourse>(problem.system, run.history);
     return trajectory;
 }

@@ -1,0 +1,200 @@
+// Motions that come back to themselves, of one body or of several, with all that a run may have: fixed points of a map
+// of the whole state, from one period to the next, or from one passage of an angle to the next where nothing depends on
+// the time. docs/theory.md, section 10.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "analysis/steady.hpp"
+#include "motion/engine/run.hpp"
+
+namespace dinal::analysis {
+
+struct RigQuestion {
+    model::AssemblyHandle system;
+    motion::engine::Drive drive;
+    Drive repeats = {};  ///< period 0: nothing depends on the time
+    int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
+    double settles = 0;  ///< not 0: controllers sample or wait, and all that drives the bodies repeats after this time
+    double longest = model::never;  ///< stretch of its runs, time units
+};
+
+/// Discrete part of a moment: no number that may change a little.
+struct HeldMode {
+    motion::engine::Mode mode;
+    std::vector<std::vector<motion::engine::Signal::Memory>> controllers;
+
+    friend bool operator==(const HeldMode& a, const HeldMode& b);
+};
+
+/// Everything that decides how the motion goes on: all of y, and the mode; none where it follows from y.
+struct Moment {
+    Eigen::VectorXd y;
+    std::optional<HeldMode> mode = {};
+};
+
+/// Runs of the question that begin at any moment.
+class Runs {
+public:
+    using Run = motion::engine::AssemblyRun;
+    Runs(const RigQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
+
+    [[nodiscard]] const RigQuestion& question() const { return question_; }
+    [[nodiscard]] const model::Assembly& system() const { return *question_.system; }
+    [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
+    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
+    [[nodiscard]] Moment first() const;
+    /// The drive of a run that begins at this moment.
+    [[nodiscard]] motion::engine::Drive from(const Moment& moment) const;
+    [[nodiscard]] Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+                          const std::optional<model::WantedEvent>& section = {});
+    /// From where another run ended, with all that its controllers and delays remember; none: from the start.
+    [[nodiscard]] Run go_on(std::shared_ptr<const motion::engine::Carry> before, double start, double end,
+                            const motion::Grid& rows);
+    [[nodiscard]] static Moment at_stop(const Run& run);
+    /// The longest natural period of a body on the stiffness around it; 0 where there is none.
+    [[nodiscard]] double natural_period() const;
+    /// Directions in which a moment may be disturbed without leaving its mode: orthonormal columns.
+    [[nodiscard]] Eigen::MatrixXd allowed(const HeldMode& mode, Eigen::Index size) const;
+
+private:
+    [[nodiscard]] Run run(const motion::engine::Drive& drive, double start, double end, const motion::Grid& rows,
+                          bool dense, std::shared_ptr<const motion::engine::Carry> before);
+
+    const RigQuestion& question_;
+    const motion::Monitor& monitor_;
+    std::optional<model::Contradiction> contradiction_;
+};
+
+/// How the state is measured where the motion returns: angles of bodies that go round are those from another body.
+class Chart {
+public:
+    /// `from` of each body: the body from which its angle is measured; -1: the ground; itself: not at all.
+    explicit Chart(std::vector<Eigen::Index> from) : from_(std::move(from)) {}
+
+    [[nodiscard]] bool measures(Eigen::Index k) const {
+        return k >= static_cast<Eigen::Index>(from_.size()) || from_[static_cast<std::size_t>(k)] != k;
+    }
+    [[nodiscard]] bool goes_round(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
+    [[nodiscard]] bool any_goes_round() const;
+    /// Of all of y: angles from another body where they are measured so, and 0 where not at all.
+    [[nodiscard]] Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
+    /// The reverse, for bodies from which others are measured at these angles.
+    [[nodiscard]] Eigen::VectorXd state(const Eigen::VectorXd& x, const Eigen::VectorXd& there) const;
+    [[nodiscard]] double value(Eigen::Index k, std::span<const double> y) const;
+
+private:
+    std::vector<Eigen::Index> from_;
+};
+
+/// From one return of the motion to the next: from period to period, or from passage to passage of a section. A place
+/// is the measured numbers but for that of the section, each in its unit.
+class Returns {
+public:
+    struct Return {
+        Eigen::VectorXd to;
+        double time = 0;
+        bool finished = false;
+        model::Outcome outcome = model::Outcome::reached_end;
+        std::optional<HeldMode> mode = {};
+    };
+    /// A value that a measured number passes, upwards (way = 1) or downwards (-1).
+    struct Section {
+        Eigen::Index measured = 0;
+        double place = 0, way = 1;
+    };
+
+    /// A passage must come within `length`. What a place does not have is that of `there`.
+    Returns(Runs& runs, const Chart& chart, double start, double length, const std::optional<Section>& section,
+            Eigen::VectorXd units, Eigen::VectorXd there);
+
+    [[nodiscard]] Eigen::VectorXd place(const Eigen::VectorXd& y) const;
+    [[nodiscard]] Moment moment(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
+    /// Some returns on.
+    [[nodiscard]] Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns = 1);
+    /// The first return after a moment that need not be one.
+    [[nodiscard]] Return arrival(const Moment& from);
+    /// D of the map of so many returns, by differences of this order in what the mode allows.
+    [[nodiscard]] std::optional<Eigen::MatrixXd> derivative(const Eigen::VectorXd& at, const HeldMode& mode,
+                                                            int returns, int order);
+    [[nodiscard]] double start() const { return start_; }
+
+private:
+    void once(const Moment& from, Return& sum);
+
+    Runs& runs_;
+    const Chart& chart_;
+    double start_, length_;
+    std::optional<Section> section_;
+    Eigen::VectorXd units_, there_;
+    std::vector<Eigen::Index> own_;  // of all of y: what a place has
+    std::optional<model::WantedEvent> passage_;
+};
+
+/// How far one stretch of a run gets, at so many looks: of each measured number.
+struct Reach {
+    Eigen::VectorXd low, high;
+    [[nodiscard]] Eigen::VectorXd range() const { return high - low; }
+};
+Reach reach_of(const Runs::Run& run, const Chart& chart, int looks = 512);
+
+inline constexpr double largest_stable = 1 + 1e-5;  ///< multiplier
+/// The greatest one first.
+std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative);
+/// A motion beside which others are neutral is not the only one.
+void note_family(SteadyMotion& motion);
+
+/// Of its range, the place of a section: off the middle, where many motions have an end of something.
+inline constexpr double section_at = 0.42;
+
+/// Searches for the motion that a run from the start of the question leads to.
+class ReturnSearch {
+public:
+    ReturnSearch(const RigQuestion& question, Chart chart, const motion::Monitor& monitor)
+        : runs_(question, monitor), chart_(std::move(chart)) {}
+    ReturnSearch(const ReturnSearch&) = delete;
+    ReturnSearch& operator=(const ReturnSearch&) = delete;
+    virtual ~ReturnSearch() = default;
+
+protected:
+    void search();
+
+    /// A motion of facts_.period begins at this moment; false if it can not be run, and the search goes on.
+    virtual bool tells(const Moment& moment, double start) = 0;
+    /// A run that has settled has gone on to here; facts_.period later it will be here again.
+    virtual void tell_settled(const Runs::Run& so_far) = 0;
+    /// The bodies come to rest or go round evenly; stands: friction holds all.
+    virtual void tell_rest(const Runs::Run& run, bool stands) = 0;
+
+    [[nodiscard]] const RigQuestion& question() const { return runs_.question(); }
+    [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
+    /// The period of M, or the slowest natural one.
+    [[nodiscard]] double pace() const;
+
+    Runs runs_;
+    Chart chart_;
+    SteadyMotion facts_;
+    double largest_ = 0;  // how far any angle or velocity went, where a run settles
+
+private:
+    std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
+    [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
+    void forced();
+    void settle();
+    [[nodiscard]] Eigen::VectorXd seen_at(const motion::engine::Carry& carry) const;
+    void cycle();
+    bool closes_from(const Moment& now, const Reach& reach, double length, int i);
+    bool rests(const Runs::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
+    void note_rest(const Runs::Run& run, bool stands);
+    struct Closed;
+    class ClosedSearch;
+    bool tells_closed(Returns& map, const Closed& found);
+};
+
+/// The longest dead time of a controller.
+double longest_delay(const model::Excitation& excitation);
+
+}  // namespace dinal::analysis
