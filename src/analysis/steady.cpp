@@ -7,8 +7,6 @@
 
 #include "analysis/fixed_point.hpp"
 #include "analysis/sine/short_slides.hpp"
-#include "analysis/sine/sliding_start.hpp"
-#include "analysis/sine/stopping_start.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
@@ -110,8 +108,7 @@ private:
             answer_ = slides->motion(question_);
             return true;
         }
-        auto start = sine::sliding_start(*own);
-        if (!start) start = sine::stopping_start(*own);
+        const auto start = sine::sine_start(*own);
         if (!start) return false;
         const auto found = FixedPointSearch(half_, -1, answer_.maps).confirmed(place_of(*start, half_.omega()));
         return found && found->step.moved && settle(*found, half_, 1, true);

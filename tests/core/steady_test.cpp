@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "analysis/sine/stopping_start.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"

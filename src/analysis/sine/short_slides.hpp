@@ -7,7 +7,7 @@
 #include <complex>
 #include <optional>
 
-#include "analysis/sine/single_sine.hpp"
+#include "analysis/sine/sine.hpp"
 #include "analysis/steady.hpp"
 
 namespace dinal::analysis::sine {

@@ -1,0 +1,300 @@
+#include "analysis/sine/sine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "model/lowered.hpp"
+#include "theory/den_hartog.hpp"
+#include "theory/theory_forced.hpp"
+
+namespace dinal::analysis::sine {
+
+std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
+    const auto components = question.excitation.components();
+    const model::Oscillator& system = question.system;
+    if (components.size() != 1 || !system.has_linear_spring() || system.walls()) return {};
+    const model::Component& only = components.front();
+    const auto* sine = std::get_if<model::Harmonic>(&only.term);
+    if (sine == nullptr || std::isfinite(only.from) || std::isfinite(only.to)) return {};
+    const model::Lowered lowered(system);
+    const double Rd = lowered.braking(model::Motion::forward), Re = lowered.holding(model::Motion::forward);
+    const bool even = Rd == -lowered.braking(model::Motion::backward) && Re == lowered.holding(model::Motion::backward);
+    const double load = only.gain * sine->amplitude, M0 = std::fabs(load);
+    SingleSine own{.zeta = system.damping_ratio(), .omega0 = system.natural_frequency()};
+    own.r = sine->omega / own.omega0;
+    if (!(M0 > 0) || !even || lowered.has_remainder() || !(own.r > theory::DenHartog::slowest) ||
+        !(own.r < theory::DenHartog::fastest)) {
+        return {};
+    }
+    own.sliding = Rd / M0, own.holding = Re / M0;
+    own.spare = (M0 - Re) / M0;
+    own.unit = M0 / system.stiffness();
+    own.phase = sine->omega * question.drive.start + sine->phase + (load < 0 ? std::numbers::pi : 0);
+    return own;
+}
+
+namespace {
+
+/// The product as it is for finite numbers.
+std::complex<double> product(std::complex<double> a, std::complex<double> b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+std::complex<double> phasor(double angle) {
+    return {std::cos(angle), std::sin(angle)};
+}
+
+/// The slides of a SingleSine from standstill to standstill.
+class SineArcs {
+public:
+    /// Only where applies_to() says so.
+    explicit SineArcs(const SingleSine& sine)
+        : sine_(sine),
+          root_(-sine.zeta, theory::Modes(sine.zeta).rate()),
+          step_(0.3 * std::min(1.0, 1 / sine.r)),
+          forced_turn_(phasor(sine.r * step_)),
+          free_turn_(std::exp(-sine.zeta * step_) * phasor(root_.imag() * step_)),
+          answer_(theory::magnification(sine.r, sine.zeta) * phasor(-theory::phase_lag(sine.r, sine.zeta))) {}
+    static bool applies_to(const SingleSine& sine) {
+        constexpr double heavy = 0.99, resonant = 1e-6;  // where forms of other kinds would be needed
+        return sine.zeta < heavy && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
+    }
+
+    /// Takes leave from velocity 0 at this place and phase of the load; way is +1 or -1.
+    void leave(double phase, double y, double way) {
+        way_ = way;
+        forced_ = product(answer_, phasor(phase));
+        const double apart = y - (forced_.imag() - way * sine_.sliding), slower = -sine_.r * forced_.real();
+        free_ = {apart, -(slower + sine_.zeta * apart) / root_.imag()};
+    }
+
+    struct Sliding {
+        theory::Motion2 motion;
+        double slope;  ///< of the velocity
+    };
+    [[nodiscard]] Sliding at(double x) const {
+        const Complex load = product(forced_, phasor(sine_.r * x));
+        const Complex own = product(free_, std::exp(root_.real() * x) * phasor(root_.imag() * x));
+        const Complex rate = product(root_, own);
+        return {{load.imag() + own.real() - way_ * sine_.sliding, sine_.r * load.real() + rate.real()},
+                -sine_.r * sine_.r * load.imag() + product(root_, rate).real()};
+    }
+
+    /// For how long it slides before its velocity is zero again; none when it does not get under way, or goes on beyond
+    /// `most` of x.
+    [[nodiscard]] std::optional<double> first_zero(double most) const {
+        Complex load = forced_, own = free_;
+        double before = 0, v_before = 0;
+        for (int i = 1; before < most; ++i) {
+            load = product(load, forced_turn_);
+            own = product(own, free_turn_);
+            const double x = i * step_;
+            const double v = way_ * (sine_.r * load.real() + root_.real() * own.real() - root_.imag() * own.imag());
+            if (!(v > 0)) {
+                constexpr int finer = 5;
+                double part = x;
+                for (int j = 0; before == 0 && j < finer; ++j) {
+                    part /= 4;
+                    v_before = way_ * at(part).motion.dy;
+                    if (v_before > 0) before = part;
+                }
+                if (before == 0) return {};
+                return zero_between(before, x, before + (x - before) * (v_before / (v_before - v)));
+            }
+            before = x, v_before = v;
+        }
+        return {};
+    }
+
+private:
+    using Complex = std::complex<double>;
+
+    /// Newton's method from a place where it still slides to one where it would slide back, kept between them.
+    [[nodiscard]] double zero_between(double from, double to, double x) const {
+        constexpr int most_steps = 60;
+        constexpr double nearly = 1e-6;  // from there the next step leaves about rounding
+        const auto newton = [this](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
+        for (int i = 0; i < most_steps; ++i) {
+            const Sliding now = at(x);
+            (way_ * now.motion.dy > 0 ? from : to) = x;
+            double next = newton(x, now);
+            if (!(next > from && next < to)) next = (from + to) / 2;
+            const double moved = std::fabs(next - x);
+            x = next;
+            if (moved <= nearly * x) return newton(x, at(x));
+        }
+        return x;
+    }
+
+    SingleSine sine_;
+    Complex root_;                     // of the free motion, -zeta + iq
+    double step_;                      // of the search
+    Complex forced_turn_, free_turn_;  // by a step
+    Complex answer_;                   // to the load
+    double way_ = 1;
+    Complex forced_ = 0, free_ = 0;  // at the leave: y = Im forced + Re free - way Rd/M0
+};
+
+/// By Den Hartog's closed form of a motion without stops; none where such a motion would stop, as far as one look at
+/// its slide tells.
+std::optional<model::State> sliding_start(const SingleSine& sine) {
+    const double r = sine.r, half = half_load / r;
+    const auto motion = theory::DenHartog(r, sine.zeta).without_stops(sine.sliding);
+    if (!motion || !(motion->amplitude > 0)) return {};
+    // The load is greatest at a phase of pi/2, theta by its lag later; half a period after that all is the opposite.
+    const double crest = half_load / 2 + motion->lag;
+    if (sine.sliding > 0 && SineArcs::applies_to(sine)) {
+        SineArcs slide(sine);
+        slide.leave(crest, motion->amplitude, -1);
+        constexpr double nearly = 1e-6;  // a stop just before the turn is one for the search
+        const auto end = slide.first_zero(half * (1 + nearly));
+        if (!end || *end < half * (1 - nearly)) return {};
+    }
+    const double phase = sine.phase - crest;
+    const double halves = std::floor(phase / half_load);
+    const double since = (phase / half_load - halves) * half;  // the last turn
+    const double sign = std::fmod(halves, 2) == 0 ? 1 : -1;
+    const double phi = theory::magnification(r, sine.zeta), lag = theory::phase_lag(r, sine.zeta);
+    const auto forced = [&](double x) {
+        const double angle = r * x + crest - lag;
+        return theory::Motion2{phi * std::sin(angle), phi * r * std::cos(angle)};
+    };
+    const theory::Motion2 at_turn = forced(0), now = forced(since);
+    const theory::Motion2 free = theory::free_motion(
+        theory::Modes(sine.zeta), {motion->amplitude - at_turn.y - sine.sliding, -at_turn.dy}, since);
+    const model::State start = sine.state({sign * (now.y + sine.sliding + free.y), sign * (now.dy + free.dy)});
+    if (!std::isfinite(start.theta) || !std::isfinite(start.velocity)) return {};
+    return start;
+}
+
+/// The first of the phases base, base + 2 pi, ... and base - 2 pi, ... that is not before `now`.
+double next_of(double base, double now) {
+    return base + 2 * half_load * std::ceil((now - base) / (2 * half_load));
+}
+
+/// From release to release the motion depends on the place of rest alone: half a period later it is the opposite where
+/// a function of one number is zero.
+class StoppingSearch {
+public:
+    explicit StoppingSearch(const SingleSine& sine) : sine_(sine), arcs_(sine) {}
+
+    std::optional<model::State> found() {
+        constexpr std::size_t most = 24;
+        std::array<Stick, most> sticks{};
+        const auto first = released_from(0);
+        if (!first) return {};
+        sticks[0] = *first;
+        for (std::size_t i = 1; i < most; ++i) {
+            const auto next = this->next(sticks[i - 1]);
+            if (!next) return {};
+            sticks[i] = *next;
+            for (std::size_t n = 1; n <= i; ++n) {
+                const Stick &a = sticks[i - n], &b = sticks[i];
+                constexpr double about = 0.3;  // the secants lead on from there
+                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < about)) continue;
+                if (const auto y = place_of_rest(a, b, n)) return at_start(*y, n);
+                break;
+            }
+        }
+        return {};
+    }
+
+private:
+    /// At rest, and released when the load has reached this phase.
+    struct Stick {
+        double y = 0, release = 0;
+        double way = 1;  ///< of the release
+    };
+
+    /// Released forward from here; none where the load cannot do that.
+    [[nodiscard]] std::optional<Stick> released_from(double y) const {
+        const double needed = y + sine_.holding;
+        if (!(std::fabs(needed) < 1)) return {};
+        return Stick{y, std::asin(needed), 1};
+    }
+
+    /// The next place of rest; none when it has slid for three periods.
+    std::optional<Stick> next(const Stick& from) {
+        double phase = from.release, y = from.y, way = from.way;
+        const double latest = phase + 6 * half_load;
+        while (phase < latest) {
+            arcs_.leave(phase, y, way);
+            const auto slide = arcs_.first_zero((latest - phase) / sine_.r);
+            if (!slide) return {};
+            const double end = phase + sine_.r * *slide;
+            if (wanted_ >= phase && wanted_ <= end) found_ = arcs_.at((wanted_ - phase) / sine_.r).motion;
+            y = arcs_.at(*slide).motion.y;
+            const double pull = std::sin(end) - y;
+            if (std::fabs(pull) <= sine_.holding) return at_rest(y, end);
+            phase = end;
+            way = pull > 0 ? 1 : -1;
+        }
+        return {};
+    }
+
+    std::optional<Stick> at_rest(double y, double since) {
+        const double up = y + sine_.holding, down = y - sine_.holding;
+        constexpr double never = 1e300;
+        const double forward = up < 1 ? next_of(std::asin(std::max(up, -1.0)), since) : never;
+        const double backward = down > -1 ? next_of(half_load - std::asin(std::min(down, 1.0)), since) : never;
+        const Stick stick{y, std::min(forward, backward), forward < backward ? 1.0 : -1.0};
+        if (wanted_ >= since && wanted_ <= stick.release) found_ = theory::Motion2{y, 0};
+        return stick.release < never ? std::optional(stick) : std::nullopt;
+    }
+
+    /// By how much it is off half a period later, n stops on, less the sign.
+    std::optional<double> off(double y, std::size_t n) {
+        auto stick = released_from(y);
+        const double begin = stick ? stick->release : 0;
+        for (std::size_t i = 0; i < n && stick; ++i) stick = next(*stick);
+        if (!stick || stick->way > 0 || !(std::fabs(stick->release - begin - half_load) < 1)) return {};
+        return -stick->y - y;
+    }
+
+    /// The root of off(), by secants, the last of which need not be looked at: what it leaves is a product of what the
+    /// last two were off. All is proven by others, so that a slow search is left to them.
+    std::optional<double> place_of_rest(const Stick& a, const Stick& b, std::size_t n) {
+        constexpr double rounding = 1e-17;
+        constexpr int most = 12;
+        double y0 = a.way * a.y, off0 = b.way * b.y - y0;
+        double y1 = y0 + off0;
+        for (int i = 0; i < most; ++i) {
+            const auto off1 = off(y1, n);
+            if (!off1) return {};
+            const double y2 = *off1 == off0 ? y1 : y1 - *off1 * (y1 - y0) / (*off1 - off0);
+            if (std::fabs(*off1 * off0) <= rounding) return y2;
+            y0 = y1, off0 = *off1, y1 = y2;
+        }
+        return {};
+    }
+
+    /// The motion from rest to rest at the phase that the drive starts with.
+    std::optional<model::State> at_start(double y, std::size_t n) {
+        auto stick = released_from(y);
+        if (!stick) return {};
+        const double halves = std::floor((sine_.phase - stick->release) / half_load);
+        const double sign = std::fmod(halves, 2) == 0 ? 1 : -1;
+        wanted_ = sine_.phase - halves * half_load;
+        for (std::size_t i = 0; i < n && stick; ++i) stick = next(*stick);
+        if (!found_) return {};
+        return sine_.state({sign * found_->y, sign * found_->dy});
+    }
+
+    SingleSine sine_;
+    SineArcs arcs_;
+    double wanted_ = -1e300;                // a phase,
+    std::optional<theory::Motion2> found_;  // and where it is there, once next() has passed it
+};
+
+}  // namespace
+
+std::optional<model::State> sine_start(const SingleSine& sine) {
+    if (const auto start = sliding_start(sine)) return start;
+    if (!SineArcs::applies_to(sine) || !(sine.holding > 0)) return {};
+    // From release to release the motion depends on the place of rest alone: it is the root of a function of one
+    // number.
+    return StoppingSearch(sine).found();
+}
+
+}  // namespace dinal::analysis::sine
