@@ -1,14 +1,11 @@
 #include "analysis/rig_steady.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "analysis/steady_facts.hpp"
+#include "analysis/prose.hpp"
 #include "model/controller.hpp"
-#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -264,63 +261,60 @@ std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotio
     return others;
 }
 
+namespace {
+
+class RigSteadyStory : protected SteadyProse {
+public:
+    std::string told(const RigQuestion& question, const RigMotion& motion, std::size_t others) {
+        const SteadyMotion& facts = motion.facts;
+        const bool timeless = question.repeats.period == 0;
+        switch (facts.status) {
+            case SteadyStatus::steady:
+                if (facts.period == 0) return "All bodies rotate at constant speed.";
+                tell_period(facts, timeless);
+                tell_bodies(question, motion);
+                break;
+            case SteadyStatus::adheres:
+                say("Nothing moves: over a period M never exceeds what friction can hold.");
+                break;
+            case SteadyStatus::rest:
+                say("The motion dies out: all bodies come to rest.");
+                break;
+            case SteadyStatus::grows:
+                tell_unbounded();
+                return std::move(sentences_);
+            case SteadyStatus::none:
+                tell_none(facts, timeless);
+                return std::move(sentences_);
+        }
+        tell_stability(facts);
+        if (others > 0) {
+            say("From other starts {} was seen.", text::counted(others, "other motion"));
+        } else if (!facts.unique.has_value() && facts.status == SteadyStatus::steady) {
+            say("8 other starts led to no other motion, which is no proof.");
+        }
+        return std::move(sentences_);
+    }
+
+private:
+    void tell_bodies(const RigQuestion& question, const RigMotion& motion) {
+        for (std::size_t i = 0; i < question.system->bodies.size(); ++i) {
+            const std::string& name = question.system->bodies[i].name;
+            const double size = std::max(std::fabs(motion.low[i]), std::fabs(motion.high[i]));
+            if (motion.turned[i] != 0) {
+                say("{} turns by {:.5g} in each period.", name, motion.turned[i]);
+            } else if (question.system->named && motion.high[i] > motion.low[i]) {
+                say("{} swings between {} and {}.", name, text::number_text(motion.low[i], size),
+                    text::number_text(motion.high[i], size));
+            }
+        }
+    }
+};
+
+}  // namespace
+
 std::string told(const RigQuestion& question, const RigMotion& motion, std::size_t others) {
-    const SteadyMotion& facts = motion.facts;
-    std::string text;
-    const auto say = [&](std::string sentence) { text += (text.empty() ? "" : " ") + std::move(sentence); };
-    const bool timeless = question.repeats.period == 0;
-    switch (facts.status) {
-        case SteadyStatus::steady:
-            if (facts.period == 0) {
-                say("All bodies rotate at constant speed.");
-                return text;
-            }
-            say(timeless ? fmt::format("The motion is a limit cycle of period {:.6g}.", facts.period)
-                         : fmt::format("The motion repeats itself every {:.6g}, {} of M.", facts.period,
-                                       facts.periods == 1 ? "the period" : fmt::format("{} periods", facts.periods)));
-            for (std::size_t i = 0; i < question.system->bodies.size(); ++i) {
-                const double size = std::max(std::fabs(motion.low[i]), std::fabs(motion.high[i]));
-                if (motion.turned[i] != 0) {
-                    say(fmt::format("{} turns by {:.5g} in each period.", question.system->bodies[i].name,
-                                    motion.turned[i]));
-                } else if (question.system->named && motion.high[i] > motion.low[i]) {
-                    say(fmt::format("{} swings between {} and {}.", question.system->bodies[i].name,
-                                    text::number_text(motion.low[i], size), text::number_text(motion.high[i], size)));
-                }
-            }
-            break;
-        case SteadyStatus::adheres:
-            say("Nothing moves: over a period M never exceeds what friction can hold.");
-            break;
-        case SteadyStatus::rest:
-            say("The motion dies out: all bodies come to rest.");
-            break;
-        case SteadyStatus::grows:
-            say("There is no steady motion: the amplitude grows without bound.");
-            return text;
-        case SteadyStatus::none:
-            say(timeless
-                    ? "No limit cycle was found: the motion is irregular, or it settles very slowly."
-                    : fmt::format(
-                          "No motion of up to 32 periods of M was found within {} periods: the motion is irregular, "
-                          "or it settles very slowly.",
-                          facts.maps));
-            return text;
-    }
-    if (facts.differentiable) {
-        double largest = 0;
-        for (const std::complex<double>& value : facts.multipliers) largest = std::max(largest, std::abs(value));
-        say(largest > 1 - 1e-6 ? "It is marginally stable: a disturbance neither grows nor decays."
-            : largest < 1e-12
-                ? "It is stable: a disturbance is gone after one period."
-                : fmt::format("It is stable: {} of a disturbance remains after a period.", text::percent(largest)));
-    }
-    if (others > 0) {
-        say(fmt::format("From other starts {} was seen.", text::counted(others, "other motion")));
-    } else if (!facts.unique.has_value() && facts.status == SteadyStatus::steady) {
-        say("8 other starts led to no other motion, which is no proof.");
-    }
-    return text;
+    return RigSteadyStory().told(question, motion, others);
 }
 
 }  // namespace dinal::analysis

@@ -1,15 +1,12 @@
 #include "analysis/rig_story.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "analysis/prose.hpp"
 #include "analysis/stretches.hpp"
 #include "motion/stillness.hpp"
-#include "text/characters.hpp"
-#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -20,7 +17,7 @@ double sum(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-class RigStory {
+class RigStory : protected Prose {
 public:
     RigStory(const model::Assembly& system, const engine::Drive& drive, const engine::AssemblyRun& run,
              const std::vector<const motion::Trajectory*>& parts)
@@ -40,20 +37,6 @@ public:
     }
 
 private:
-    template <class... Values>
-    void say(fmt::format_string<Values...> format, Values&&... values) {
-        sentence_ += sentence_.empty() ? "" : " ";
-        sentence_ += fmt::format(format, std::forward<Values>(values)...);
-    }
-    template <class... Values>
-    void add(fmt::format_string<Values...> format, Values&&... values) {
-        sentence_ += fmt::format(format, std::forward<Values>(values)...);
-    }
-    void end_paragraph() {
-        if (sentence_.empty()) return;
-        text_ += (text_.empty() ? "" : "\n") + text::wrapped(sentence_);
-        sentence_.clear();
-    }
     [[nodiscard]] std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
     [[nodiscard]] double lasted() const { return run_.t_stop - run_.t_start; }
     [[nodiscard]] const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
@@ -209,7 +192,6 @@ private:
     const engine::Drive& drive_;
     const engine::AssemblyRun& run_;
     const std::vector<const motion::Trajectory*>& parts_;
-    std::string sentence_, text_;
 };
 
 }  // namespace

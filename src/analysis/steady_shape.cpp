@@ -1,17 +1,15 @@
 // The integrals of a steady motion over its period, and the motion told in sentences.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "analysis/friction_wave.hpp"
+#include "analysis/prose.hpp"
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
-#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -114,7 +112,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 
 namespace {
 
-class SteadyStory {
+class SteadyStory : protected SteadyProse {
 public:
     SteadyStory(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape)
         : question_(question), motion_(motion), shape_(shape) {}
@@ -123,7 +121,8 @@ public:
         switch (motion_.status) {
             case SteadyStatus::steady:
                 tell_motion();
-                tell_stability();
+                tell_memory();
+                tell_stability(motion_);
                 break;
             case SteadyStatus::adheres:
                 say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it "
@@ -139,7 +138,7 @@ public:
                 break;
             case SteadyStatus::grows:
                 if (question_.is_timeless()) {
-                    say("There is no steady motion: the amplitude grows without bound.");
+                    tell_unbounded();
                     break;
                 }
                 say("There is no steady motion: M supplies more energy than is dissipated, and the amplitude grows "
@@ -147,44 +146,27 @@ public:
                     number(motion_.growth), question_.drive.period);
                 break;
             case SteadyStatus::none:
+                tell_none(motion_, question_.is_timeless());
+                if (!model::has_memory<model::SampledController>(question_.excitation)) break;
                 if (question_.is_timeless()) {
-                    tell_no_cycle();
-                    break;
-                }
-                say("No motion of up to 32 periods of M was found within {} periods: the motion is irregular, or it "
-                    "settles very slowly.",
-                    motion_.maps);
-                if (model::has_memory<model::SampledController>(question_.excitation)) {
+                    say("A sampled controller has a cycle only if a whole number of sampling intervals is a period of "
+                        "the motion.");
+                } else {
                     say("A controller that samples may have no period in common with M: choose an every that divides "
                         "the period.");
                 }
                 break;
         }
         tell_others(others);
-        return text_;
+        return std::move(sentences_);
     }
 
 private:
-    template <class... Values>
-    void say(fmt::format_string<Values...> format, Values&&... values) {
-        text_ += text_.empty() ? "" : " ";
-        text_ += fmt::format(format, std::forward<Values>(values)...);
-    }
     [[nodiscard]] std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
-    void tell_no_cycle() {
-        say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
-        if (!model::has_memory<model::SampledController>(question_.excitation)) return;
-        say("A sampled controller has a cycle only if a whole number of sampling intervals is a period of the motion.");
-    }
     void tell_motion() {
-        if (question_.is_timeless()) {
-            say("The motion is a limit cycle of period {:.6g}.", motion_.period);
-        } else {
-            say("The motion repeats itself every {:.6g}, {} of M.", motion_.period,
-                motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
-        }
+        tell_period(motion_, question_.is_timeless());
         say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
             number(motion_.high));
         if (shape_.lag) {
@@ -198,27 +180,10 @@ private:
         }
         if (motion_.symmetric) say("The motion is symmetric: theta(t + T/2) = -theta(t).");
     }
-    void tell_stability() {
-        if (motion_.settled && !motion_.asked && question_.is_timeless()) {
-            say("A run led to it; it has no multipliers, because the memory of M is part of the state.");
-        } else if (motion_.settled && !motion_.asked) {
-            say("A run of {} periods of M led to it; it has no multipliers, because the memory of M is part of the "
-                "state.",
-                motion_.maps);
-        }
-        if (!motion_.differentiable) return;
-        double largest = 0;
-        for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
-        if (!motion_.stable) {
-            say("It is unstable: a disturbance grows by a factor of {:.6g} in a period, so no run stays on it.",
-                largest);
-        } else if (largest > 1 - 1e-6) {
-            say("It is marginally stable: a disturbance neither grows nor decays.");
-        } else if (largest < 1e-12) {
-            say("It is stable: a disturbance is gone after one period.");
-        } else {
-            say("It is stable: {} of a disturbance remains after a period.", text::percent(largest));
-        }
+    void tell_memory() {
+        if (!motion_.settled || motion_.asked) return;
+        say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
+            question_.is_timeless() ? "" : fmt::format("of {} periods of M ", motion_.maps));
     }
     void tell_other(const SteadyMotion& other) {
         if (other.status == SteadyStatus::adheres || other.status == SteadyStatus::rest) {
@@ -251,7 +216,6 @@ private:
     const SteadyQuestion& question_;
     const SteadyMotion& motion_;
     const SteadyShape& shape_;
-    std::string text_;
 };
 
 }  // namespace

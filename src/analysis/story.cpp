@@ -8,7 +8,6 @@
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "motion/belt_slope.hpp"
-#include "text/characters.hpp"
 
 namespace dinal::analysis {
 
@@ -59,13 +58,6 @@ std::string Story::told() {
     tell_stops();
     tell_end();
     return std::move(text_);
-}
-
-void Story::end_paragraph() {
-    if (sentence_.empty()) return;
-    text_ += text_.empty() ? "" : "\n";
-    text_ += text::wrapped(sentence_);
-    sentence_.clear();
 }
 
 /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.

@@ -1,13 +1,12 @@
 // The story of a run while it is being told, sentence by sentence, paragraph by paragraph; explain() is the way in.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "analysis/prose.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
 #include "model/extras.hpp"
@@ -16,7 +15,7 @@
 
 namespace dinal::analysis {
 
-class Story {
+class Story : protected Prose {
 public:
     /// All of it must outlive the story.
     Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
@@ -24,17 +23,6 @@ public:
     std::string told();
 
 private:
-    template <class... Values>
-    void say(fmt::format_string<Values...> format, Values&&... values) {
-        sentence_ += sentence_.empty() ? "" : " ";
-        sentence_ += fmt::format(format, std::forward<Values>(values)...);
-    }
-    void end_paragraph();
-    /// Goes on with the last sentence.
-    template <class... Values>
-    void add(fmt::format_string<Values...> format, Values&&... values) {
-        sentence_ += fmt::format(format, std::forward<Values>(values)...);
-    }
     [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
     /// Where a stretch ended.
     [[nodiscard]] static std::string place(const Stretch& s) {
@@ -111,7 +99,6 @@ private:
     std::size_t half_cycles_ = 0;
     bool decay_told_ = false;  // by its closed form
     bool still_ = false;       // for good, under a periodic M
-    std::string text_, sentence_;
 };
 
 }  // namespace dinal::analysis
