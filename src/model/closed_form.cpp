@@ -13,16 +13,6 @@ concept WithClosedForm = requires(const T& term, double inside, ClosedForm& sum)
     term.closed_form(inside, sum);
 };
 
-/// Only hears whether there is more than a constant.
-struct Listener {
-    bool more = false;
-    void add_constant(double /*level*/) {}
-    void add_line(double /*at*/, double /*level*/, double slope) { more = more || slope != 0; }
-    void add_powers(double /*at*/, std::span<const double> coefficients) { more = more || coefficients.size() > 1; }
-    void add_sine(double /*amplitude*/, double /*omega*/, double /*at*/, double /*phase*/) { more = true; }
-    void add_exponential(double /*amplitude*/, double /*rate*/, double /*at*/) { more = true; }
-};
-
 /// Polynomials of so many coefficients are shifted without asking for memory.
 constexpr std::size_t max_powers = 16;
 
@@ -120,21 +110,6 @@ void closed_form(const Excitation& excitation, double time, double rest, ClosedF
             },
             c.term);
     }
-}
-
-bool stays_as_it_is(const Component& component, double inside) {
-    if (component.gain == 0 || inside < component.from || inside >= component.to) return true;
-    return std::visit(
-        [inside](const auto& term) {
-            Listener heard;
-            if constexpr (requires { term.closed_form(inside, heard); }) {
-                term.closed_form(inside, heard);
-                return !heard.more;
-            } else {
-                return false;
-            }
-        },
-        component.term);
 }
 
 }  // namespace dinal::model

@@ -87,7 +87,4 @@ bool has_closed_form(const Excitation& excitation);
 /// that has one.
 void closed_form(const Excitation& excitation, double time, double rest, ClosedForm& sum);
 
-/// Whether a native component is constant on the stretch between its breaks in which this time lies.
-bool stays_as_it_is(const Component& component, double inside);
-
 }  // namespace dinal::model
