@@ -162,7 +162,7 @@ private:
         facts_.stuck = stuck ? 1 : 0;
         facts_.rest = stuck && !rides ? rest_of(one_, theta) : std::pair(theta, theta);
         if (facts_.rest.first < facts_.rest.second) facts_.unique = false;
-        if (question().settles > 0) return;
+        if (question().settles >= 0) return;
         facts_.asked = std::make_shared<const SteadyQuestion>(begun_at(one_, now, one_.drive.start));
     }
 
@@ -442,137 +442,6 @@ double sampling_period(const model::Excitation& excitation) {
     return 0;
 }
 
-/// A cycle behind a dead time, of which nothing prescribes the period: the run goes on until its passages through a
-/// section, as many as the dead time reaches back to, repeat themselves.
-class DelayedCycle {
-public:
-    DelayedCycle(const SteadyQuestion& question, const RigQuestion& assembly, const motion::Monitor& monitor)
-        : question_(question),
-          runs_(assembly, monitor),
-          monitor_(monitor),
-          delay_(longest_delay(question.excitation)) {}
-
-    SteadyMotion found() {
-        const double natural = runs_.natural_period(), base = std::max(natural > 0 ? natural : 1, delay_);
-        double length = 2 * base;
-        constexpr int most_parts = 300;
-        for (int part = 0; part < most_parts; ++part) {
-            if (!runs_on(length)) return answer_;
-            if (rests()) return answer_;
-            if (passages_.size() < 6 && part < 24) length *= 1.3;
-            if (const int m = comes_back(); m > 0 && tells(m)) return answer_;
-        }
-        return answer_;
-    }
-
-private:
-    struct Pass {
-        double t = 0, velocity = 0;
-    };
-
-    bool runs_on(double length) {
-        const double start = run_.carry ? run_.t_stop : question_.drive.start;
-        run_ = runs_.go_on(run_.carry, start, start + length, motion::Grid::none());
-        answer_.outcome = run_.outcome;
-        answer_.contradiction = run_.contradiction;
-        ++answer_.maps;
-        if (!model::is_whole(run_.outcome)) {
-            if (answer_.outcome == model::Outcome::state_not_finite) answer_.status = SteadyStatus::grows;
-            return false;
-        }
-        const Reach reach = reach_of(run_, ground(), 256);
-        low_ = reach.low[0], high_ = reach.high[0];
-        largest_ = std::max({largest_, std::fabs(low_), std::fabs(high_), high_ - low_});
-        constexpr double beyond = 1e100;
-        if (largest_ > beyond) {
-            answer_.status = SteadyStatus::grows;
-            return false;
-        }
-        const double range = high_ - low_;
-        if (!(section_ > low_ + 0.2 * range && section_ < high_ - 0.2 * range)) {
-            section_ = low_ + section_at * range;
-            passages_.clear();
-        }
-        constexpr int looks = 256;
-        double before = start, theta = theta_at(start);
-        for (int i = 1; i <= looks; ++i) {
-            const double now = start + length * i / looks, next = theta_at(now);
-            if (theta < section_ && next >= section_) pass(before, now);
-            before = now, theta = next;
-        }
-        return true;
-    }
-
-    [[nodiscard]] double theta_at(double t) const { return run_.history->at(t)[0]; }
-
-    void pass(double below, double above) {
-        constexpr int halvings = 60;
-        for (int i = 0; i < halvings; ++i) {
-            const double middle = below + (above - below) / 2;
-            (theta_at(middle) < section_ ? below : above) = middle;
-        }
-        passages_.push_back({above, run_.history->at(above)[1]});
-    }
-
-    bool rests() {
-        const bool still = high_ - low_ <= 1e-11 * largest_ && question_.extras.states.empty();
-        if (!still) return false;
-        answer_.status = SteadyStatus::rest;
-        const double theta = run_.carry->y[0];
-        answer_.start = {theta, 0};
-        answer_.low = answer_.high = theta;
-        answer_.rest = {theta, theta};
-        answer_.stuck = run_.motion_at_stop == model::Motion::stuck ? 1 : 0;
-        answer_.stable = true;
-        return true;
-    }
-
-    /// How far the last passages are from those m before them.
-    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
-        const std::size_t last = passages_.size() - 1;
-        if (last < back + 2 * m) return model::never;
-        const std::size_t end = last - back;
-        const double period = passages_[end].t - passages_[end - m].t;
-        double most = 0, speed = 0;
-        for (std::size_t i = end; i >= m && passages_[end].t - passages_[i].t <= delay_ + period; --i) {
-            speed = std::max(speed, std::fabs(passages_[i].velocity));
-            const double apart = std::fabs(passages_[i].velocity - passages_[i - m].velocity);
-            const double late = std::fabs(passages_[i].t - passages_[i - m].t - period);
-            most = std::max({most, apart / speed, late / period});
-            if (i == m && passages_[end].t - passages_[i].t < delay_) return model::never;
-        }
-        return most;
-    }
-
-    [[nodiscard]] int comes_back() const {
-        constexpr std::size_t most = 16;
-        constexpr double alike = 1e-7, settled = 1e-11, finest = 2e-12;
-        for (std::size_t m = 1; m <= most && 6 * m < passages_.size(); ++m) {
-            const double now = off(m, 0), before = off(m, 4 * m);
-            if (!(now <= alike) || before == model::never) continue;
-            const double kept = std::pow(now / before, 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
-            if (now > finest && left > settled) continue;
-            return static_cast<int>(m);
-        }
-        return 0;
-    }
-
-    bool tells(int m) {
-        const auto before = passages_.end() - 1 - m;
-        answer_.period = passages_.back().t - before->t;
-        answer_.residual = off(static_cast<std::size_t>(m), 0);
-        return tell_next_period(question_, run_, answer_, monitor_);
-    }
-
-    const SteadyQuestion& question_;
-    Runs runs_;
-    const motion::Monitor& monitor_;
-    double delay_, low_ = 0, high_ = 0, largest_ = 0, section_ = model::never;
-    Runs::Run run_;
-    std::vector<Pass> passages_;
-    SteadyMotion answer_;
-};
-
 }  // namespace
 
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
@@ -582,7 +451,6 @@ SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Moni
     // A relay in a motion that returns through a section is a part of the section's state.
     if (delays || samples || (!question.is_timeless() && model::has_memory(question.excitation))) {
         assembly.settles = question.is_timeless() ? sampling_period(question.excitation) : question.drive.period;
-        if (!(assembly.settles > 0)) return DelayedCycle(question, assembly, monitor).found();
     }
     return OneBodySearch(question, assembly, monitor).found();
 }

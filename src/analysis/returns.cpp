@@ -43,6 +43,14 @@ private:
     bool named_;
 };
 
+/// Ends a run.
+model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named) {
+    return {.name = "",
+            .when = std::make_shared<Passage>(chart, section, named),
+            .direction = model::Crossing::up,
+            .stop = true};
+}
+
 }  // namespace
 
 bool operator==(const HeldMode& a, const HeldMode& b) {
@@ -95,8 +103,19 @@ Runs::Run Runs::run(const Moment& from, double start, double end, const motion::
     return run(drive, start, end, rows, dense, before);
 }
 
-Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start, double end, const motion::Grid& rows) {
-    return run(question_.drive, start, end, rows, true, std::move(before));
+Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start, double end, const motion::Grid& rows,
+                      const std::optional<model::WantedEvent>& section) {
+    if (!section) return run(question_.drive, start, end, rows, true, std::move(before));
+    engine::Drive drive = question_.drive;
+    drive.events.push_back(*section);
+    const auto unwatched = [](const engine::Carry& carry) {  // other runs have other events
+        auto copy = std::make_shared<engine::Carry>(carry);
+        copy->watches.clear();
+        return copy;
+    };
+    Run result = run(drive, start, end, rows, true, unwatched(*before));
+    result.carry = unwatched(*result.carry);
+    return result;
 }
 
 Runs::Run Runs::run(const engine::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
@@ -193,11 +212,7 @@ Returns::Returns(Runs& runs, const Chart& chart, double start, double length, co
     for (Index k = 0; k < units_.size(); ++k) {
         if (chart.measures(k) && !(section && section->measured == k)) own_.push_back(k);
     }
-    if (!section) return;
-    passage_ = {.name = "",
-                .when = std::make_shared<Passage>(chart, *section, runs.system().named),
-                .direction = model::Crossing::up,
-                .stop = true};
+    if (section) passage_ = passage(chart, *section, runs.system().named);
 }
 
 VectorXd Returns::place(const VectorXd& y) const {
@@ -289,6 +304,9 @@ void note_family(SteadyMotion& motion) {
     if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
 }
 
+namespace {
+
+/// The longest dead time of a controller.
 double longest_delay(const model::Excitation& excitation) {
     double most = 0;
     for (const model::Component& c : excitation.components()) {
@@ -296,8 +314,6 @@ double longest_delay(const model::Excitation& excitation) {
     }
     return most;
 }
-
-namespace {
 
 double size_of_step(const VectorXd& step) {
     return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
@@ -438,15 +454,6 @@ private:
     std::optional<model::Outcome> failed_;
 };
 
-void ReturnSearch::search() {
-    facts_.period = question().repeats.period;
-    question().settles > 0 ? settle() : question().repeats.period > 0 ? forced() : cycle();
-    if (!runs_.contradiction()) return;
-    facts_.contradiction = runs_.contradiction();
-    facts_.outcome = model::Outcome::not_a_function;
-    facts_.status = SteadyStatus::none;
-}
-
 double ReturnSearch::pace() const {
     if (question().repeats.period > 0) return question().repeats.period;
     const double natural = runs_.natural_period();
@@ -544,112 +551,178 @@ void ReturnSearch::forced() {
 
 // ---- with controllers that sample or wait
 
-/// Angles and velocities as they are measured, states, and what the controllers give. What they remember besides is not
-/// seen, so a motion must return more than once.
-VectorXd ReturnSearch::seen_at(const engine::Carry& carry) const {
-    const VectorXd y = chart_.measured(vector_of(carry.y));
-    std::vector<double> all(y.begin(), y.end());
-    for (const auto& controllers : carry.controllers) {
-        for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
+/// The run itself goes on until it repeats itself: from period to period of what drives it and samples, or behind a
+/// dead time, where nothing prescribes a period, from passage to passage.
+class ReturnSearch::Settling {
+public:
+    explicit Settling(ReturnSearch& search)
+        : s_(search),
+          length_(search.question().settles),
+          timeless_(search.question().repeats.period == 0),
+          t_(search.question().repeats.start) {
+        for (const model::Excitation& load : s_.question().drive.loads) {
+            delay_ = std::max(delay_, longest_delay(load));
+        }
+        stretch_ = 2 * std::max(s_.pace(), delay_);
     }
-    return vector_of(all);
-}
 
-/// The run itself goes on until it repeats itself.
-void ReturnSearch::settle() {
-    const double length = question().settles, start = question().repeats.start;
-    double delay = 0;
-    for (const model::Excitation& load : question().drive.loads) delay = std::max(delay, longest_delay(load));
-    const auto past = static_cast<std::size_t>(std::ceil(std::min(delay / length, 1e6)));
-    const bool timeless = question().repeats.period == 0;
-    const int first = std::max(question().periods, 1), longest = timeless ? 2048 : 32;
-    const std::size_t least = timeless ? 20000 : 4096;
-    const std::size_t most = std::clamp(std::max(4 * past, static_cast<std::size_t>(8 * first)), least, 4 * least);
-    std::shared_ptr<const engine::Carry> carry;
-    std::vector<VectorXd> seen;
-    std::vector<double> sizes;
-    std::size_t small = 0;  // the last returns in which hardly anything moved
-    VectorXd size;
-    Runs::Run run;
-    constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
-    constexpr double finest = 1e-12;  // sizes: of rounding in runs
-    // How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
-    const auto off = [&](std::size_t m, std::size_t back) {
+    void search() {
+        const auto periods = static_cast<std::size_t>(s_.question().periods);
+        const auto reaches_back = static_cast<std::size_t>(std::min(4 * delay_ / s_.pace(), 1e6));
+        const std::size_t least = !timeless_ ? 4096 : length_ > 0 ? 20000 : 2048;
+        const std::size_t most = std::clamp(std::max(reaches_back, 8 * periods), least, 4 * least);
+        constexpr std::size_t least_returns = 16;
+        for (std::size_t until = least_returns; sizes_.size() < most; until += std::max(least_returns, until / 4)) {
+            until = std::min(until, most);
+            for (; sizes_.size() < until; ++s_.facts_.maps) {
+                if (!goes_on()) return;
+            }
+            const bool alone = timeless_ && s_.question().drive.states.empty();
+            if (alone && small_ >= least_returns && run_.motion_at_stop != model::Motion::stuck) {
+                s_.note_rest(run_, false);
+                return;
+            }
+            constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
+            std::size_t m = comes_back(settled);
+            if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
+            if (m == 0) continue;
+            tell(m);
+            return;
+        }
+        judge_growth();
+    }
+
+private:
+    static constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
+    static constexpr double finest = 1e-12;  // sizes: of rounding in runs
+
+    /// One return more; false when that is the end.
+    bool goes_on() {
+        const double start = t_;
+        t_ = length_ > 0 ? s_.question().repeats.start + static_cast<double>(sizes_.size() + 1) * length_
+                         : start + stretch_;
+        run_ = s_.runs_.go_on(run_.carry, start, t_, motion::Grid::none(), passage_);
+        SteadyMotion& facts = s_.facts_;
+        facts.outcome = run_.outcome;
+        const Reach reach = reach_of(run_, s_.chart_, timeless_ && length_ > 0 ? 4 : 64);
+        const double size = greatest(reach, 2 * s_.n());
+        constexpr double beyond = 1e50;
+        if (!(size < beyond)) facts.outcome = model::Outcome::state_not_finite;
+        if (!model::is_whole(facts.outcome) && !(passage_ && facts.outcome == model::Outcome::stopped)) {
+            if (facts.outcome != model::Outcome::state_not_finite) return false;
+            facts.status = SteadyStatus::grows;
+            const std::size_t last = sizes_.size();
+            if (!timeless_ && last > 1) facts.growth = sizes_[last - 1] - sizes_[last - 2];
+            return false;
+        }
+        s_.largest_ = std::max(s_.largest_, size);
+        sizes_.push_back(size);
+        constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
+        small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
+        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
+        t_ = run_.t_stop;
+        times_.push_back(t_);
+        seen_.push_back(seen(t_ - start));
+        const VectorXd units = s_.units_of(reach);
+        size_ = seen_.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
+        constexpr double nothing = 1e-12;  // of what it was: it dies out
+        size_.head(units.size()) = units.cwiseMax(nothing * s_.largest_);
+        return true;
+    }
+
+    /// No passage has come: the motion has moved away from the section, or stands. False when that is the end.
+    bool looks_elsewhere(const Reach& reach) {
+        constexpr int most_looks = 40, most_longer = 24;
+        const bool rests = small_ > 0 && s_.question().drive.states.empty();
+        if (rests) s_.note_rest(run_, false);
+        if (rests || ++looks_ > most_looks) return false;
+        const Index widest = s_.widest(reach);
+        if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
+        if (looks_ <= most_longer) stretch_ *= 1.3;
+        seen_.clear();
+        times_.clear();
+        return true;
+    }
+
+    /// Angles and velocities as they are measured, states, what the controllers give, and how long the return took.
+    /// What controllers remember besides is not seen, so a motion must return more than once.
+    [[nodiscard]] VectorXd seen(double time) const {
+        const VectorXd y = s_.chart_.measured(vector_of(run_.carry->y));
+        std::vector<double> all(y.begin(), y.end());
+        for (const auto& controllers : run_.carry->controllers) {
+            for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
+        }
+        all.push_back(length_ > 0 ? 1 : time);
+        return vector_of(all);
+    }
+
+    /// How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
+    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
+        std::size_t past = 1;  // returns that the dead time reaches back to
+        while (past < times_.size() && times_.back() - times_[times_.size() - 1 - past] < delay_) ++past;
         const std::size_t span = std::max(m, past + 1) + 1;
-        if (seen.size() < back + m + span) return model::never;
+        if (seen_.size() < back + m + span) return model::never;
         double worst = 0;
-        for (std::size_t i = seen.size() - back - span; i < seen.size() - back; ++i) {
-            worst = std::max(worst, (seen[i] - seen[i - m]).cwiseQuotient(size).cwiseAbs().maxCoeff());
+        for (std::size_t i = seen_.size() - back - span; i < seen_.size() - back; ++i) {
+            worst = std::max(worst, (seen_[i] - seen_[i - m]).cwiseQuotient(size_).cwiseAbs().maxCoeff());
             if (worst > alike) break;
         }
         return worst;
-    };
-    const auto comes_back = [&](double within) -> std::size_t {
-        const auto fewest = static_cast<std::size_t>(first);
-        const std::size_t last = question().periods > 0 ? fewest : static_cast<std::size_t>(longest);
-        for (std::size_t m = fewest; m <= last; ++m) {
-            const double now = off(m, 0), before = off(m, 4 * m);
+    }
+
+    /// The fewest returns after which it comes back to this part of its size; 0: it does not.
+    [[nodiscard]] std::size_t comes_back(double within) const {
+        const auto periods = static_cast<std::size_t>(s_.question().periods);
+        const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
+                                                                               : length_ > 0 ? 2048
+                                                                                             : 16;
+        for (std::size_t m = first; m <= (periods > 0 ? first : longest); ++m) {
+            const double now = off(m, 0);
             if (!(now <= alike)) continue;
             // Differences that shrink by so much in a period of the motion add up to this.
-            const double kept = std::pow(now / before, 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
+            const double kept = std::pow(now / off(m, 4 * m), 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
             if (now > finest && left > within) continue;
             // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
-            for (std::size_t fewer = fewest; fewer < m; ++fewer) {
+            for (std::size_t fewer = first; fewer < m; ++fewer) {
                 if (off(fewer, 0) <= alike) return fewer;
             }
             return m;
         }
         return 0;
-    };
-    constexpr std::size_t least_returns = 16;
-    for (std::size_t until = least_returns; seen.size() < most; until += std::max(least_returns, until / 4)) {
-        until = std::min(until, most);
-        for (; seen.size() < until; ++facts_.maps) {
-            const auto k = static_cast<double>(seen.size());
-            run = runs_.go_on(carry, start + k * length, start + (k + 1) * length, motion::Grid::none());
-            facts_.outcome = run.outcome;
-            const Reach reach = reach_of(run, chart_, timeless ? 4 : 64);
-            constexpr double beyond = 1e50;
-            const double greatest = analysis::greatest(reach, 2 * n());
-            if (!(greatest < beyond)) facts_.outcome = model::Outcome::state_not_finite;
-            if (!model::is_whole(facts_.outcome)) {
-                if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
-                return;
-            }
-            carry = run.carry;
-            seen.push_back(seen_at(*carry));
-            largest_ = std::max(largest_, greatest);
-            const VectorXd now = units_of(reach);
-            size = seen.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
-            constexpr double nothing = 1e-12;  // of what it was: it dies out
-            size.head(now.size()) = now.cwiseMax(nothing * largest_);
-            sizes.push_back(greatest);
-            constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
-            small = greatest <= dead * largest_ ? small + 1 : 0;
-        }
-        const bool alone = timeless && question().drive.states.empty();
-        if (alone && small >= least_returns && run.motion_at_stop != model::Motion::stuck) {
-            note_rest(run, false);
-            return;
-        }
-        constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
-        std::size_t m = comes_back(settled);
-        if (m == 0 && seen.size() >= most) m = comes_back(alike);
-        if (m == 0) continue;
-        facts_.period = static_cast<double>(m) * length;
-        facts_.periods = timeless ? 1 : static_cast<int>(std::round(facts_.period / question().repeats.period));
-        facts_.residual = off(m, 0);
-        tell_settled(run);
-        return;
     }
-    // A motion that beats is as large in the first half as in the second.
-    const auto half = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    const double before = *std::max_element(sizes.begin(), half + 1), last = *std::max_element(half, sizes.end());
-    constexpr double clearly = 1.3;
-    if (last < clearly * before) return;
-    facts_.status = SteadyStatus::grows;
-    facts_.growth = (last - before) / static_cast<double>(sizes.end() - 1 - half);
-}
+
+    void tell(std::size_t m) {
+        SteadyMotion& facts = s_.facts_;
+        facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
+        facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
+        facts.residual = off(m, 0);
+        s_.tell_settled(run_);
+    }
+
+    /// A motion that beats is as large in the first half as in the second.
+    void judge_growth() {
+        const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+        const double before = *std::max_element(sizes_.begin(), half + 1);
+        const double last = *std::max_element(half, sizes_.end());
+        constexpr double clearly = 1.3;
+        if (last < clearly * before) return;
+        s_.facts_.status = SteadyStatus::grows;
+        s_.facts_.growth = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
+    }
+
+    ReturnSearch& s_;
+    double length_, delay_ = 0, stretch_;  // of a return, or 0; of the greatest dead time; of a run to a passage
+    bool timeless_;
+    double t_;
+    std::optional<model::WantedEvent> passage_;
+    int looks_ = 0;               // for another section
+    Runs::Run run_;               // the last one
+    std::vector<double> sizes_;   // of all runs
+    std::size_t small_ = 0;       // the last runs in which hardly anything moved
+    std::vector<VectorXd> seen_;  // at each return,
+    std::vector<double> times_;   // and when that was
+    VectorXd size_;               // of what is seen
+};
 
 // ---- without
 
@@ -687,8 +760,8 @@ void ReturnSearch::cycle() {
     facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
 }
 
-bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
-    // The angle that changes most beside its size, or a velocity where no angle is measured.
+/// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
+Index ReturnSearch::widest(const Reach& reach) const {
     const VectorXd range = reach.range();
     Index widest = -1;
     for (const Index from : {Index{0}, n()}) {
@@ -699,9 +772,13 @@ bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double len
         }
         if (widest >= 0) break;
     }
+    return widest;
+}
+
+bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
+    const Index widest = this->widest(reach);
     if (widest < 0) return false;
-    const Returns::Section section{widest, reach.low[widest] + section_at * range[widest]};
-    Returns map(runs_, chart_, question().repeats.start, 3 * length, section, units_of(reach), now.y);
+    Returns map(runs_, chart_, question().repeats.start, 3 * length, section(reach, widest), units_of(reach), now.y);
     const Returns::Return first = map.arrival(now);
     if (!first.finished) return false;
     ClosedSearch search(map, facts_.maps, 16);
@@ -751,6 +828,15 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
     facts_.multipliers = std::move(multipliers);
     note_family(facts_);
     return tells(map.moment(found.x, found.mode), map.start());
+}
+
+void ReturnSearch::search() {
+    facts_.period = question().repeats.period;
+    question().settles >= 0 ? Settling(*this).search() : question().repeats.period > 0 ? forced() : cycle();
+    if (!runs_.contradiction()) return;
+    facts_.contradiction = runs_.contradiction();
+    facts_.outcome = model::Outcome::not_a_function;
+    facts_.status = SteadyStatus::none;
 }
 
 }  // namespace dinal::analysis

@@ -18,7 +18,9 @@ struct RigQuestion {
     motion::engine::Drive drive;
     Drive repeats = {};  ///< period 0: nothing depends on the time
     int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
-    double settles = 0;  ///< not 0: controllers sample or wait, and all that drives the bodies repeats after this time
+    /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
+    /// none.
+    double settles = -1;
     double longest = model::never;  ///< stretch of its runs, time units
 };
 
@@ -53,7 +55,7 @@ public:
                           const std::optional<model::WantedEvent>& section = {});
     /// From where another run ended, with all that its controllers and delays remember; none: from the start.
     [[nodiscard]] Run go_on(std::shared_ptr<const motion::engine::Carry> before, double start, double end,
-                            const motion::Grid& rows);
+                            const motion::Grid& rows, const std::optional<model::WantedEvent>& section = {});
     [[nodiscard]] static Moment at_stop(const Run& run);
     /// The longest natural period of a body on the stiffness around it; 0 where there is none.
     [[nodiscard]] double natural_period() const;
@@ -183,9 +185,12 @@ private:
     std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
     [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
     void forced();
-    void settle();
-    [[nodiscard]] Eigen::VectorXd seen_at(const motion::engine::Carry& carry) const;
+    class Settling;
     void cycle();
+    [[nodiscard]] Eigen::Index widest(const Reach& reach) const;
+    [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
+        return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
+    }
     bool closes_from(const Moment& now, const Reach& reach, double length, int i);
     bool rests(const Runs::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
     void note_rest(const Runs::Run& run, bool stands);
@@ -193,8 +198,5 @@ private:
     class ClosedSearch;
     bool tells_closed(Returns& map, const Closed& found);
 };
-
-/// The longest dead time of a controller.
-double longest_delay(const model::Excitation& excitation);
 
 }  // namespace dinal::analysis
