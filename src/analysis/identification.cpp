@@ -2,13 +2,65 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <iterator>
+#include <numbers>
+#include <utility>
 
+#include "algebra/decompositions.hpp"
+#include "analysis/drive.hpp"
 #include "analysis/free_decay.hpp"
-#include "analysis/identification_search.hpp"
+#include "analysis/least_squares.hpp"
+#include "analysis/turning_points.hpp"
+#include "motion/integrators.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::analysis {
 namespace {
+
+using Parameters = std::array<double, unknown_count>;
+
+double& at(Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+double at(const Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+
+constexpr std::array<Unknown, unknown_count> all_unknowns{
+    Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
+
+/// It is not given, and the record may tell it: in a free decay I sets the unit of torque, and Re shows nowhere but
+/// where the mass rests.
+bool is_sought(const IdentifyQuestion& question, Unknown which) {
+    const auto is_given = [&](Unknown one) { return question.given[static_cast<std::size_t>(one)].has_value(); };
+    if (is_given(which)) return false;
+    if (question.M) return true;
+    return which != Unknown::Re && (which != Unknown::I || is_given(Unknown::k));
+}
+
+/// By so much of the sum of squares two fits may differ that are one.
+constexpr double same_fit = 1e-6;
+bool is_same(const LeastSquares& a, const LeastSquares& b) {
+    return std::fabs(a.sum - b.sum) <= same_fit * a.sum;
+}
+
+/// In standard deviations of noise: what is left after a fit that is so much more alike from sample to sample is looked
+/// at again.
+constexpr double suspected = 3;
+
+/// What is held so stays where it is.
+constexpr double firmly = 1e8;
+
+/// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
+struct Rest {
+    LeastSquares fit;
+    double breakaway = 0;  // Re/k; 0: Rd/k
+    std::optional<double> turn = {};
+    Covariance covariance = {};
+};
 
 double omega0_of(const Parameters& p) {
     return std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
@@ -20,304 +72,1062 @@ double dry_of(const Parameters& p) {
     return at(p, Unknown::Rd) / at(p, Unknown::k);
 }
 
-}  // namespace
+/// S' = slope S - lost
+std::pair<double, double> line_through(const std::vector<double>& swings) {
+    const auto n = static_cast<Eigen::Index>(swings.size() - 1);
+    Eigen::MatrixXd A(n, 2);
+    Eigen::VectorXd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        A.row(i) << swings[static_cast<std::size_t>(i)], -swings.front();
+        b[i] = swings[static_cast<std::size_t>(i) + 1];
+    }
+    const Eigen::VectorXd x = algebra::solve_least_squares(A, b);
+    return {x[0], x[1] * swings.front()};
+}
 
-text::Expected<Identified> Identification::identified() {
-    std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
-    for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
+/// The decay as the half-cycle map has it; none where nothing swings.
+struct Decay {
+    theory::Extreme first;
+    double extremes = 0;  // infinity when it swings for ever
+    double zeta = 0, shift = 0;
+
+    /// How far out the turn is, at which the mass may be made to rest; below 0 on the other side.
+    [[nodiscard]] double size_at(double turn) const {
+        const double theta = theory::HalfCycles(zeta, shift).after(turn, first.theta);
+        const bool below = (first.theta < 0) != (std::fmod(turn, 2) != 0);
+        return below ? -theta : theta;
+    }
+};
+
+std::optional<Decay> decay_of(const Parameters& p) {
+    const auto system = model::Oscillator::make({.inertia = at(p, Unknown::I),
+                                                 .stiffness = at(p, Unknown::k),
+                                                 .damping = at(p, Unknown::C),
+                                                 .kinetic_friction = at(p, Unknown::Rd)});
+    constexpr double swings = 0.99;
+    if (!system || system->damping_ratio() > swings) return {};
+    const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
+    return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
+}
+
+/// Fits from several starts, of which the best one is kept.
+class Identification {
+public:
+    Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
+        : question_(question), monitor_(monitor), measured_(question.theta.size()) {
+        std::copy(question.theta.begin(), question.theta.end(), measured_.data());
+        const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
+        range_ = *high - *low;
+        span_ = question.t.back() - question.t.front();
+        cut_ = cut_off(question.theta);
+        noise_ = noise_of(question.theta);
+        turns_ = turning_points(question.theta, std::clamp(6 * noise_, 0.04 * range_, 0.4 * range_));
+        choose_unknowns();
+    }
+
+    text::Expected<Identified> identified() {
+        std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
+        for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
+            for (const Parameters& start : starts) {
+                if (stopped_ || (best_ && (is_settled() || (agreed_ > 1 && !leaves_pattern(suspected))))) break;
+                try_from(start);
+            }
+        }
+        if (!best_) return text::Error{"no motion of such a system comes near this record"};
+        if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_let_go(starts);
+        if (!question_.M && !stopped_) try_rests();
+        if (question_.M) {
+            starts.insert(starts.begin(), filled_best());
+            try_let_go(starts);
+        }
+        if (question_.M && !stopped_) try_jumps();
+        if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
+        if (question_.M) tell_stops_from_cuts();
+        if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
+        if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
+        return result();
+    }
+
+private:
+    [[nodiscard]] bool is_given(Unknown which) const {
+        return question_.given[static_cast<std::size_t>(which)].has_value();
+    }
+    [[nodiscard]] double given(Unknown which, double otherwise) const {
+        return question_.given[static_cast<std::size_t>(which)].value_or(otherwise);
+    }
+
+    void choose_unknowns() {
+        std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
+                     [this](Unknown which) { return is_sought(question_, which); });
+        seeks_Re_ = is_sought(question_, Unknown::Re);
+    }
+
+    [[nodiscard]] Parameters filled(const Eigen::VectorXd& p) const {
+        Parameters all = base_;
+        for (std::size_t i = 0; i < unknowns_.size(); ++i) at(all, unknowns_[i]) = p[static_cast<Eigen::Index>(i)];
+        if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
+        return all;
+    }
+    /// What is fitted of these parameters. Of Re that is what it exceeds Rd by: below Rd nothing would depend on it.
+    [[nodiscard]] Eigen::VectorXd fitted_of(const Parameters& all) const {
+        Eigen::VectorXd p(count());
+        for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
+        if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, at(all, Unknown::Re) - at(all, Unknown::Rd));
+        return p;
+    }
+    [[nodiscard]] Eigen::Index place_of(Unknown which) const {
+        return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
+    }
+
+    /// Each swing has samples, and the first velocity is one that the samples show: beyond that, where a search may fly
+    /// to, runs have no end and fits no meaning.
+    [[nodiscard]] bool is_seen(const Parameters& p) const {
+        const double highest = highest_omega0();
+        constexpr double most = 10;  // ranges of the record from one sample to the next
+        const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
+        return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
+               (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * range_ * highest);
+    }
+
+    [[nodiscard]] double highest_omega0() const {
+        constexpr double a_sample = 2 * std::numbers::pi;
+        return a_sample * static_cast<double>(question_.t.size() - 1) / span_;
+    }
+    /// What the instrument shows of the motion with these parameters.
+    [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows) {
+        auto theta = moved(p, rows);
+        if (theta && cut_.at_low > 0) *theta = theta->cwiseMax(cut_.low);
+        if (theta && cut_.at_high > 0) *theta = theta->cwiseMin(cut_.high);
+        return theta;
+    }
+
+    [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows) {
+        ++runs_;
+        const auto system = system_of(p);
+        if (!system || !is_seen(p)) return {};
+        const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
+        if (!question_.M) {
+            stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
+            if (stopped_) return {};
+            std::optional<double> rests_at = rests_at_;
+            if (rests_at) *rests_at -= turns_before(p);
+            if (rests_at && *rests_at < 0) return {};
+            Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at);
+            decay.array() += at(p, Unknown::offset);
+            return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
+        }
+        const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
+        motion::Limits limits;
+        limits.dense = false;
+        const auto run =
+            motion::simulate(*system, *question_.M, initial, {times.front(), times.back()}, motion::Grid::at(times),
+                             motion::integrator_for(*system, *question_.M), monitor_, limits);
+        if (!run || static_cast<std::size_t>(run->size()) != rows) {
+            stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||
+                                            run->outcome == model::Outcome::excitation_not_finite));
+            return {};
+        }
+        return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
+    }
+
+    [[nodiscard]] std::optional<model::Oscillator> system_of(const Parameters& p) const {
+        model::OscillatorParameters parts;
+        parts.inertia = at(p, Unknown::I);
+        parts.stiffness = at(p, Unknown::k);
+        parts.damping = at(p, Unknown::C);
+        parts.kinetic_friction = at(p, Unknown::Rd);
+        const bool own_breakaway = is_given(Unknown::Re) || question_.M || breakaway_ > 0;
+        if (own_breakaway) {
+            const double Re = question_.M || is_given(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
+            parts.breakaway = std::max(Re, parts.kinetic_friction);
+        }
+        const auto system = model::Oscillator::make(parts);
+        return system ? std::optional(*system) : std::nullopt;
+    }
+
+    [[nodiscard]] FitScale scale_of(const Parameters& start) const {
+        FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
+                       Eigen::VectorXd::Zero(count())};
+        const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
+        constexpr double loosely = 3;
+        for (Eigen::Index i = 0; i < count(); ++i) {
+            const Unknown which = unknowns_[static_cast<std::size_t>(i)];
+            switch (which) {
+                case Unknown::I:
+                    scale.typical[i] = scale.least[i] = 1e-6 * at(start, Unknown::I);
+                    scale.whole[i] = at(start, which);
+                    break;
+                case Unknown::k:
+                    scale.typical[i] = scale.least[i] = 1e-6 * k;
+                    scale.whole[i] = k;
+                    break;
+                case Unknown::C:
+                    scale.typical[i] = 0.01 * k / omega;
+                    scale.least[i] = 0;
+                    scale.whole[i] = std::max(2 * k / omega, at(start, which));  // critical
+                    break;
+                case Unknown::Rd:
+                case Unknown::Re:
+                    scale.typical[i] = 0.01 * k * range_;
+                    scale.least[i] = 0;
+                    scale.whole[i] = question_.M ? std::max(k * range_, at(start, which)) : k * range_;
+                    break;
+                case Unknown::theta0:
+                case Unknown::offset:
+                    scale.typical[i] = 0.1 * range_;
+                    scale.hold[i] = noise_ / (loosely * range_);
+                    scale.whole[i] = range_;
+                    break;
+                case Unknown::velocity0:
+                    scale.typical[i] = 0.1 * range_ * omega;
+                    scale.whole[i] = std::max(range_ * omega, std::fabs(at(start, which)));
+                    break;
+            }
+        }
+        return scale;
+    }
+
+    /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
+    void try_from(const Parameters& start) {
+        base_ = start;
+        Eigen::VectorXd p = fitted_of(start);
+        const double period = 2 * std::numbers::pi * std::sqrt(at(start, Unknown::I) / at(start, Unknown::k));
+        const FitScale scale = scale_of(start);
+        const std::size_t least = unknowns_.size() + 4;
+        std::size_t done = least;
+        std::optional<LeastSquares> some;
+        for (const std::size_t rows : stages(period)) {
+            if (rows < done || rows >= question_.t.size()) continue;
+            some = fit(p, rows, scale, 12);
+            if (some) p = some->parameters;
+            done = rows + 1;
+        }
+        const std::optional<LeastSquares> all = fit(p, question_.t.size(), scale, 40);
+        if (all && best_ && std::fabs(all->sum - best_->sum) <= same_fit * best_->sum) ++agreed_;
+        keep_if_better(all, scale);
+        if (some && (!moving_ || (all && best_ && all->sum <= best_->sum))) moving_ = some->parameters;
+    }
+
+    /// A search may fly to a velocity that is gone between two samples: so it also begins with a mass that was let go.
+    void try_let_go(const std::vector<Parameters>& starts) {
+        if (is_given(Unknown::velocity0)) return;
+        const Eigen::Index place = place_of(Unknown::velocity0);
         for (const Parameters& start : starts) {
-            if (stopped_ || (best_ && (is_settled() || (agreed_ > 1 && !leaves_pattern(suspected))))) break;
-            try_from(start);
+            if (stopped_ || !((question_.M && &start == starts.data()) || leaves_pattern(suspected))) return;
+            base_ = start;
+            at(base_, Unknown::velocity0) = 0;
+            const FitScale scale = scale_of(base_);
+            FitScale held = scale;
+            held.hold[place] = firmly * range_ / scale.typical[place];
+            const auto let_go = fit(fitted_of(base_), question_.t.size(), held, 40);
+            const auto all = let_go ? fit(let_go->parameters, question_.t.size(), scale, 40) : std::nullopt;
+            if (all && all->sum < best_->sum) moving_ = all->parameters;
+            keep_if_better(all, scale);
         }
     }
-    if (!best_) return text::Error{"no motion of such a system comes near this record"};
-    if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_let_go(starts);
-    if (!question_.M && !stopped_) try_rests();
-    if (question_.M) {
-        starts.insert(starts.begin(), filled_best());
-        try_let_go(starts);
+
+    void keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale) {
+        if (all && question_.M) seen_.emplace_back(all->sum, filled(all->parameters));
+        if (!all || (best_ && !(all->sum < best_->sum))) return;
+        if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
+        best_ = all;
+        best_base_ = base_;
+        best_rest_.reset();
+        best_scale_ = scale;
+        best_breakaway_ = breakaway_;
     }
-    if (question_.M && !stopped_) try_jumps();
-    if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
-    if (question_.M) tell_stops_from_cuts();
-    if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
-    if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
-    return result();
-}
 
-bool is_sought(const IdentifyQuestion& question, Unknown which) {
-    const auto is_given = [&](Unknown one) { return question.given[static_cast<std::size_t>(one)].has_value(); };
-    if (is_given(which)) return false;
-    if (question.M) return true;
-    return which != Unknown::Re && (which != Unknown::I || is_given(Unknown::k));
-}
-
-void Identification::choose_unknowns() {
-    std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
-                 [this](Unknown which) { return is_sought(question_, which); });
-    seeks_Re_ = is_sought(question_, Unknown::Re);
-}
-
-std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, std::size_t rows) {
-    auto theta = moved(p, rows);
-    if (theta && cut_.at_low > 0) *theta = theta->cwiseMax(cut_.low);
-    if (theta && cut_.at_high > 0) *theta = theta->cwiseMin(cut_.high);
-    return theta;
-}
-
-std::optional<model::Oscillator> Identification::system_of(const Parameters& p) const {
-    model::OscillatorParameters parts;
-    parts.inertia = at(p, Unknown::I);
-    parts.stiffness = at(p, Unknown::k);
-    parts.damping = at(p, Unknown::C);
-    parts.kinetic_friction = at(p, Unknown::Rd);
-    const bool own_breakaway = is_given(Unknown::Re) || question_.M || breakaway_ > 0;
-    if (own_breakaway) {
-        const double Re = question_.M || is_given(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
-        parts.breakaway = std::max(Re, parts.kinetic_friction);
+    /// How many samples are fitted one after another; the last of a free decay end at its last turn, for behind it the
+    /// motion may end.
+    /// A swing cannot be taken for the next one where what came before is known already.
+    [[nodiscard]] std::vector<std::size_t> stages(double period) const {
+        std::vector<std::size_t> rows;
+        const double first = question_.t.front();
+        double length = 2.2 * period;
+        while (first + length < question_.t.back()) {
+            const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
+            rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
+            if (!question_.M) break;
+            length *= 2;
+        }
+        if (!question_.M && turns_.size() > left_out_) rows.push_back(turns_[turns_.size() - 1 - left_out_] + 1);
+        return rows;
     }
-    const auto system = model::Oscillator::make(parts);
-    return system ? std::optional(*system) : std::nullopt;
-}
 
-bool Identification::is_seen(const Parameters& p) const {
-    const double highest = highest_omega0();
-    constexpr double most = 10;  // ranges of the record from one sample to the next
-    const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
-    return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
-           (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * range_ * highest);
-}
-
-std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::size_t rows) {
-    ++runs_;
-    const auto system = system_of(p);
-    if (!system || !is_seen(p)) return {};
-    const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
-    if (!question_.M) {
-        stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
-        if (stopped_) return {};
-        std::optional<double> rests_at = rests_at_;
-        if (rests_at) *rests_at -= turns_before(p);
-        if (rests_at && *rests_at < 0) return {};
-        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at);
-        decay.array() += at(p, Unknown::offset);
-        return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
+    [[nodiscard]] std::optional<LeastSquares> fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
+                                                  int steps) {
+        const auto model = [this, rows](const Eigen::VectorXd& q) { return predicted(filled(q), rows); };
+        return least_squares(model, measured_.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
     }
-    const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
-    motion::Limits limits;
-    limits.dense = false;
-    const auto run =
-        motion::simulate(*system, *question_.M, initial, {times.front(), times.back()}, motion::Grid::at(times),
-                         motion::integrator_for(*system, *question_.M), monitor_, limits);
-    if (!run || static_cast<std::size_t>(run->size()) != rows) {
-        stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||
-                                        run->outcome == model::Outcome::excitation_not_finite));
-        return {};
-    }
-    return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
-}
 
-FitScale Identification::scale_of(const Parameters& start) const {
-    FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
-                   Eigen::VectorXd::Zero(count())};
-    const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
-    constexpr double loosely = 3;
-    for (Eigen::Index i = 0; i < count(); ++i) {
-        const Unknown which = unknowns_[static_cast<std::size_t>(i)];
-        switch (which) {
-            case Unknown::I:
-                scale.typical[i] = scale.least[i] = 1e-6 * at(start, Unknown::I);
-                scale.whole[i] = at(start, which);
-                break;
-            case Unknown::k:
-                scale.typical[i] = scale.least[i] = 1e-6 * k;
-                scale.whole[i] = k;
-                break;
-            case Unknown::C:
-                scale.typical[i] = 0.01 * k / omega;
-                scale.least[i] = 0;
-                scale.whole[i] = std::max(2 * k / omega, at(start, which));  // critical
-                break;
-            case Unknown::Rd:
-            case Unknown::Re:
-                scale.typical[i] = 0.01 * k * range_;
-                scale.least[i] = 0;
-                scale.whole[i] = question_.M ? std::max(k * range_, at(start, which)) : k * range_;
-                break;
-            case Unknown::theta0:
-            case Unknown::offset:
-                scale.typical[i] = 0.1 * range_;
-                scale.hold[i] = noise_ / (loosely * range_);
-                scale.whole[i] = range_;
-                break;
-            case Unknown::velocity0:
-                scale.typical[i] = 0.1 * range_ * omega;
-                scale.whole[i] = std::max(range_ * omega, std::fabs(at(start, which)));
-                break;
+    [[nodiscard]] double deviation() const {
+        const auto told = measured_.size() - static_cast<Eigen::Index>(cut_.at_low + cut_.at_high) - count();
+        return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, told)));
+    }
+    /// As good as the noise, which is known to a few parts of its root from a record of this length.
+    [[nodiscard]] bool is_settled() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
+    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
+
+    // ---- where to start: from the extremes of a free decay, or by the weak form of the driven equation
+
+    [[nodiscard]] Parameters common_start(double omega0, double zeta, double dry, double zero) const {
+        Parameters p{};
+        at(p, Unknown::I) =
+            given(Unknown::I, is_given(Unknown::k) && omega0 > 0 ? given(Unknown::k, 1) / (omega0 * omega0) : 1);
+        at(p, Unknown::k) = given(Unknown::k, at(p, Unknown::I) * omega0 * omega0);
+        at(p, Unknown::C) = given(Unknown::C, 2 * zeta * std::sqrt(at(p, Unknown::I) * at(p, Unknown::k)));
+        at(p, Unknown::Rd) = given(Unknown::Rd, dry * at(p, Unknown::k));
+        at(p, Unknown::Re) = given(Unknown::Re, at(p, Unknown::Rd));
+        at(p, Unknown::offset) = given(Unknown::offset, zero);
+        const double a_while = 0.15 / omega0;  // so long it is about straight
+        const auto bent = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
+        const Tangent tangent =
+            first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
+        at(p, Unknown::theta0) = given(Unknown::theta0, tangent.value - at(p, Unknown::offset));
+        // A slope that noise could have made is none: a mass that stands is mostly one that was let go.
+        const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
+        const double unsure = 3 * noise_ * std::sqrt(12 / samples) / a_while;
+        at(p, Unknown::velocity0) = given(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
+        return p;
+    }
+
+    /// The half-cycle map X' - zero = -q (X - zero) -+ (1 + q) dry gives the rest of what the turning points say.
+    [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const {
+        const double ratio = -std::log(q) / std::numbers::pi, zeta = ratio / std::hypot(1, ratio);
+        double zero = 0;
+        for (std::size_t i = 0; i + 1 < turns_.size(); ++i) {
+            const double a = question_.theta[turns_[i]], b = question_.theta[turns_[i + 1]];
+            zero += ((b + q * a) / (1 + q) - (a > b ? dry : -dry)) / static_cast<double>(turns_.size() - 1);
+        }
+        return common_start(omega1 / std::sqrt(1 - zeta * zeta), zeta, dry, zero);
+    }
+
+    [[nodiscard]] std::vector<Parameters> free_starts() const {
+        std::vector<Parameters> starts;
+        const std::size_t n = turns_.size();
+        if (n < 2) {
+            const double rest = question_.theta.back();
+            for (const double half : {0.5, 0.25, 1.0, 0.1, 2.0}) {
+                for (const double zeta : {0.05, 0.5}) {
+                    starts.push_back(common_start(std::numbers::pi / (half * span_), zeta, 0.1 * range_, rest));
+                }
+                starts.push_back(common_start(std::numbers::pi / (half * span_), 1.5, 0.02 * range_, rest));
+            }
+            return starts;
+        }
+        const double omega1 =
+            std::numbers::pi * static_cast<double>(n - 1) / (question_.t[turns_.back()] - question_.t[turns_.front()]);
+        std::vector<double> swings;
+        for (std::size_t i = 0; i + 1 < n; ++i) {
+            swings.push_back(std::fabs(question_.theta[turns_[i]] - question_.theta[turns_[i + 1]]));
+        }
+        const double steps = std::max(1.0, static_cast<double>(swings.size() - 1));
+        const double q = std::clamp(std::pow(swings.back() / swings.front(), 1 / steps), 0.02, 0.9999);
+        const double loss = std::max(0.0, (swings.front() - swings.back()) / (4 * steps));
+        if (swings.size() >= 3) {
+            const auto [slope, lost] = line_through(swings);
+            if (slope > 0.05 && slope < 1.02 && lost > -0.02 * range_) {
+                const double kept = std::min(slope, 0.9999);
+                starts.push_back(start_of(kept, std::max(0.0, lost / (2 * (1 + kept))), omega1));
+            }
+        }
+        starts.push_back(start_of(std::sqrt(q), loss / 2, omega1));
+        starts.push_back(start_of(0.995, swings.size() > 1 ? loss : 0.05 * range_, omega1));
+        starts.push_back(start_of(swings.size() > 1 ? q : 0.7, 1e-3 * range_, omega1));
+        return starts;
+    }
+
+    [[nodiscard]] std::vector<Parameters> forced_starts() const {
+        std::vector<Parameters> starts;
+        const Parameters weak = weak_form();
+        for (const double factor : {1.0, 1.3, 0.7, 2.0}) {
+            for (const double breakaway : {1.05, 1.4}) {
+                Parameters p = weak;
+                if (!is_given(Unknown::Rd)) at(p, Unknown::Rd) *= factor;
+                if (!is_given(Unknown::Re)) at(p, Unknown::Re) = breakaway * at(p, Unknown::Rd);
+                starts.push_back(p);
+                if (is_given(Unknown::Re)) break;
+            }
+        }
+        return starts;
+    }
+
+    [[nodiscard]] Parameters weak_form() const {
+        std::vector<std::array<double, 6>> rows;
+        std::vector<std::size_t> edges{0};
+        edges.insert(edges.end(), turns_.begin(), turns_.end());
+        edges.push_back(question_.t.size() - 1);
+        for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+            const std::size_t n = edges[i + 1] - edges[i];
+            const double rise = question_.theta[edges[i + 1]] - question_.theta[edges[i]];
+            if (n < 8 || std::fabs(rise) < 0.04 * range_) continue;
+            const std::size_t margin = n / 10;  // about a turn or a stop the sign of the velocity is not sure
+            const std::size_t begin = edges[i] + margin, end = edges[i + 1] - margin, third = (end - begin) / 3;
+            const double sign = rise > 0 ? 1 : -1;
+            add_window(begin, end, sign, rows);
+            if (third >= 6) {
+                add_window(begin, end - third, sign, rows);
+                add_window(begin + third, end, sign, rows);
+            }
+        }
+        // I, k, C, Rd and k offset; what is given goes to the other side.
+        const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
+        std::vector<std::size_t> columns;
+        for (std::size_t c = 0; c < 5; ++c) {
+            const bool known =
+                c < 4 ? is_given(order[c]) : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
+            if (!known) columns.push_back(c);
+        }
+        const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());
+        std::array<double, 5> x{};
+        for (std::size_t c = 0; c < 4; ++c) x[c] = given(order[c], 0);
+        if (n >= m && m > 0) {
+            Eigen::MatrixXd A(n, m);
+            Eigen::VectorXd b(n);
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const auto& row = rows[static_cast<std::size_t>(i)];
+                b[i] = row[5];
+                for (std::size_t c = 0; c < 5; ++c) b[i] -= row[c] * x[c];
+                for (Eigen::Index j = 0; j < m; ++j) A(i, j) = row[columns[static_cast<std::size_t>(j)]];
+            }
+            // Of one length each: which of them says nothing is not for the units to decide.
+            const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
+            const Eigen::VectorXd solved = algebra::solve_least_squares(A * lengths.cwiseInverse().asDiagonal(), b);
+            for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
+        }
+        const double omega = turns_.size() >= 2 ? std::numbers::pi * static_cast<double>(turns_.size() - 1) /
+                                                      (question_.t[turns_.back()] - question_.t[turns_.front()])
+                                                : 2 * std::numbers::pi / span_;
+        // Where noise or stops leave nothing, a system that could be.
+        double most = 0;
+        for (const double t : question_.t) most = std::max(most, std::fabs(question_.M->value(t)));
+        if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / range_;
+        if (!(x[0] > 0)) x[0] = x[1] / (omega * omega);
+        if (x[1] > x[0] * highest_omega0() * highest_omega0()) {
+            (is_given(Unknown::I) ? x[1] : x[0]) = is_given(Unknown::I) ? x[0] * omega * omega : x[1] / (omega * omega);
+        }
+        x[2] = std::max(x[2], 0.0);
+        x[3] = x[3] > 0 ? x[3] : is_given(Unknown::Rd) ? given(Unknown::Rd, 0) : 0.05 * most;
+        const double omega0 = std::sqrt(x[1] / x[0]);
+        Parameters p = common_start(omega0, 0, 0, x[4] / x[1]);
+        at(p, Unknown::I) = x[0];
+        at(p, Unknown::k) = x[1];
+        at(p, Unknown::C) = x[2];
+        at(p, Unknown::Rd) = x[3];
+        at(p, Unknown::Re) = given(Unknown::Re, x[3]);
+        return p;
+    }
+
+    /// On a stretch without a turn, with a bump w that is 0 with its first two slopes at both ends:
+    /// I int w'' theta - C int w' theta + k int w (theta - offset) + s Rd int w = int w M.
+    void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const {
+        const model::Excitation& M = *question_.M;
+        const bool asks_all = std::isfinite(M.most()) && !M.has_feedback();  // its jumps are known, and it costs little
+        const double a = question_.t[first], length = question_.t[last] - a;
+        std::array<double, 6> row{};
+        for (std::size_t i = first; i <= last; ++i) {
+            const double s = (question_.t[i] - a) / length, u = s * (1 - s), du = (1 - 2 * s) / length;
+            const double weight = (question_.t[std::min(i + 1, last)] - question_.t[i == first ? i : i - 1]) / 2;
+            const double w = u * u * u, w1 = 3 * u * u * du, w2 = 6 * u * du * du - 6 * u * u / (length * length);
+            const double theta = question_.theta[i];
+            row[0] += weight * w2 * theta;
+            row[1] += weight * w * theta;
+            row[2] -= weight * w1 * theta;
+            row[3] += weight * w * sign;
+            row[4] -= weight * w;
+            if (!asks_all) row[5] += weight * w * M.value(question_.t[i], {theta, 0});
+        }
+        if (asks_all) {
+            constexpr double pieces = 16;
+            row[5] = integral(M, a, a + length, length / pieces, [&](double t) {
+                const double s = (t - a) / length, u = s * (1 - s);
+                return u * u * u * M.value(t);
+            });
+        }
+        rows.push_back(row);
+    }
+
+    // ---- at which turn a free decay comes to rest
+    //
+    // Whether one more swing comes about depends on the parameters, and each number of swings is a valley of its own,
+    // whose walls the many samples at rest make steep. When the number is prescribed the place of rest is a smooth
+    // function of the parameters: so each number near the best one is fitted by itself, and counts when some Re >= Rd
+    // lets the mass move at the turn before and holds it at this one. The sum of squares is not all: a way to come to
+    // rest that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each
+    // counts by exp(-sum / 2 noise^2) times the volume that its errors leave open.
+
+    /// The last samples differ by no more than noise makes them.
+    [[nodiscard]] bool ends_at_rest() const {
+        const Eigen::Index n = measured_.size();
+        const auto tail = measured_.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
+        return tail.maxCoeff() - tail.minCoeff() <= 8 * noise_ + 1e-6 * range_;
+    }
+
+    void try_rests() {
+        if (!ends_at_rest()) return;
+        number_turns(filled_best());
+        try_rest_at(std::numeric_limits<double>::infinity());
+        const auto decay = decay_of(filled_best());
+        if (!decay) return;
+        // The last turn that stands out of the noise is the first where it may rest.
+        const double seen = std::max(0.0, static_cast<double>(turns_.size()) - 2);
+        const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 + turns_before(filled_best()) : seen;
+        // As far to both sides as the record leaves it open, and some turns more.
+        constexpr double open = 12;
+        constexpr int most_tries = 25;
+        try_rest_at(middle, true);
+        for (const double way : {1.0, -1.0}) {
+            int beyond = 0;
+            for (int tries = 1; tries <= most_tries && !stopped_; ++tries) {
+                const double turn = middle + way * tries;
+                if (turn < 0) break;
+                const double sum = try_rest_at(turn);
+                beyond = sum > best_->sum + open * deviation() * deviation() ? beyond + 1 : 0;
+                if (beyond > 1 && (way > 0 || turn < seen)) break;
+            }
         }
     }
-    return scale;
-}
 
-void Identification::try_from(const Parameters& start) {
-    base_ = start;
-    Eigen::VectorXd p = fitted_of(start);
-    const double period = 2 * std::numbers::pi * std::sqrt(at(start, Unknown::I) / at(start, Unknown::k));
-    const FitScale scale = scale_of(start);
-    const std::size_t least = unknowns_.size() + 4;
-    std::size_t done = least;
-    std::optional<LeastSquares> some;
-    for (const std::size_t rows : stages(period)) {
-        if (rows < done || rows >= question_.t.size()) continue;
-        some = fit(p, rows, scale, 12);
-        if (some) p = some->parameters;
-        done = rows + 1;
+    void number_turns(const Parameters& p) {
+        const double swift = at(p, Unknown::velocity0) * std::sqrt(at(p, Unknown::I) / at(p, Unknown::k));
+        starts_at_turn_ = std::fabs(swift) < std::fabs(at(p, Unknown::theta0));
     }
-    const std::optional<LeastSquares> all = fit(p, question_.t.size(), scale, 40);
-    if (all && best_ && std::fabs(all->sum - best_->sum) <= same_fit * best_->sum) ++agreed_;
-    keep_if_better(all, scale);
-    if (some && (!moving_ || (all && best_ && all->sum <= best_->sum))) moving_ = some->parameters;
-}
 
-/// A swing cannot be taken for the next one where what came before is known already.
-std::vector<std::size_t> Identification::stages(double period) const {
-    std::vector<std::size_t> rows;
-    const double first = question_.t.front();
-    double length = 2.2 * period;
-    while (first + length < question_.t.back()) {
-        const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
-        rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
-        if (!question_.M) break;
-        length *= 2;
+    /// Where the start is near a turn, that one has number 0, whether it is still to come or has just been: so no
+    /// number changes where the velocity of a mass that was let go is found to be a little more or a little less than
+    /// none.
+    [[nodiscard]] double turns_before(const Parameters& p) const {
+        return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
     }
-    if (!question_.M && turns_.size() > left_out_) rows.push_back(turns_[turns_.size() - 1 - left_out_] + 1);
-    return rows;
-}
 
-void Identification::keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale) {
-    if (all && question_.M) seen_.emplace_back(all->sum, filled(all->parameters));
-    if (!all || (best_ && !(all->sum < best_->sum))) return;
-    if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
-    best_ = all;
-    best_base_ = base_;
-    best_rest_.reset();
-    best_scale_ = scale;
-    best_breakaway_ = breakaway_;
-}
-
-std::optional<LeastSquares> Identification::fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
-                                                int steps) {
-    const auto model = [this, rows](const Eigen::VectorXd& q) { return predicted(filled(q), rows); };
-    return least_squares(model, measured_.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
-}
-
-/// The last samples differ by no more than noise makes them.
-bool Identification::ends_at_rest() const {
-    const Eigen::Index n = measured_.size();
-    const auto tail = measured_.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
-    return tail.maxCoeff() - tail.minCoeff() <= 8 * noise_ + 1e-6 * range_;
-}
-
-Identified Identification::result() {
-    Identified found;
-    const Covariance covariance = weigh_rests();
-    breakaway_ = best_breakaway_;
-    found.value = best_filled_ = filled_best();
-    if (!question_.M && !is_given(Unknown::Re)) {
-        at(found.value, Unknown::Re) = std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
-        found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
+    /// Fits with the mass at rest at this turn, or moving on where it is infinite; also from the best fit when it goes
+    /// on. Where no friction could do that, the fit goes on from there without that.
+    double try_rest_at(double turn, bool goes_on = false) {
+        rests_at_ = turn;
+        auto found = fit(moving_.value_or(best_->parameters), question_.t.size(), best_scale_, 30);
+        if (goes_on) {
+            const auto other = fit(best_->parameters, question_.t.size(), best_scale_, 30);
+            if (other && (!found || other->sum < found->sum)) found = other;
+        }
+        constexpr double few = 4, much = 0.02;  // with less noise the moving part leads to the right one
+        const bool is_open = turn <= few && noise_ > much * range_;
+        for (const Parameters& start : is_open ? shares_of_loss() : std::vector<Parameters>()) {
+            const auto other = fit(fitted_of(start), question_.t.size(), best_scale_, 30);
+            if (other && (!found || other->sum < found->sum)) found = other;
+        }
+        rests_at_.reset();
+        if (!found) return std::numeric_limits<double>::infinity();
+        const double sum = found->sum;
+        const std::optional<double> breakaway = holding(filled(found->parameters), turn);
+        breakaway_ = breakaway.value_or(0);
+        if (!breakaway) found = fit(found->parameters, question_.t.size(), best_scale_, 15);
+        if (!found) return std::numeric_limits<double>::infinity();
+        const Rest rest{*found, breakaway_, breakaway ? std::optional(turn) : std::nullopt, {}};
+        if (found->sum < best_->sum || is_same(*found, *best_)) {
+            keep_if_better(found, best_scale_);
+            best_rest_ = rest.turn;
+        }
+        breakaway_ = best_breakaway_;
+        const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
+        if (std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(rest);
+        return breakaway ? sum : std::numeric_limits<double>::infinity();
     }
-    found.noise = deviation();
-    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
-    for (Eigen::Index i = 0; i < count(); ++i) {
-        const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
-        found.fitted[which] = true;
-        found.silent[which] = covariance.silent[static_cast<std::size_t>(i)] || tells_nothing_[which];
-        for (Eigen::Index j = 0; j < count(); ++j) {
-            full(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) =
-                covariance.matrix(i, j);
+
+    /// Systems whose first half swing loses as much as that of the best fit, more or less of it by dry friction. A
+    /// record of a few swings that rests a turn sooner or later may be one of these, to which no slope leads from the
+    /// best fit.
+    [[nodiscard]] std::vector<Parameters> shares_of_loss() {
+        const Parameters best = filled_best();
+        const auto decay = decay_of(best);
+        if (!decay) return {};
+        const double whole = std::fabs(decay->first.theta), least = 0.05 * whole, most = 0.95 * whole;
+        const double lost = std::clamp(whole - decay->size_at(1), least, most);
+        const double omega0 = std::sqrt(at(best, Unknown::k) / at(best, Unknown::I));
+        std::vector<Parameters> starts;
+        for (const double dry : {0.2, 0.5, 0.8}) {
+            const double q = 1 - (1 - dry) * lost / whole, ratio = -std::log(q) / std::numbers::pi;
+            starts.push_back(
+                common_start(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q), at(best, Unknown::offset)));
+        }
+        return starts;
+    }
+
+    /// The Re/k that lets a free decay rest at this turn and not before; 0 when Rd does, none when nothing can.
+    [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const {
+        const auto decay = std::isfinite(turn) ? decay_of(p) : std::nullopt;
+        turn -= turns_before(p);
+        if (!decay || turn < 0) return {};
+        const double here = std::fabs(decay->size_at(turn)), least = std::max(decay->shift, here);
+        const double most = turn > 0 ? decay->size_at(turn - 1) : 3 * least;
+        if (!(least < most)) return {};
+        if (is_given(Unknown::Re)) {
+            const double holds = std::max(at(p, Unknown::Re) / at(p, Unknown::k), decay->shift);
+            return holds >= here && holds < most ? std::optional(0.0) : std::nullopt;
+        }
+        return here <= decay->shift ? 0 : (least + most) / 2;
+    }
+
+    [[nodiscard]] Parameters filled_best() {
+        base_ = best_base_;
+        return filled(best_->parameters);
+    }
+
+    // ---- what no slope leads to in a driven motion
+    //
+    // Re counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes about, lasts over
+    // a whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked at, and fits go
+    // on from wherever that is best. What the slopes there say of the errors is not all, then: each motion that was
+    // looked at and is about as near to the record shows how far off the parameters may be.
+
+    /// What no slope leads to, as long as it makes the fit better.
+    void try_jumps() {
+        constexpr int rounds = 3;
+        bool better = true;
+        for (int round = 0; round < rounds && better && !stopped_; ++round) {
+            better = try_other_beginnings();
+            better = (seeks_Re_ && try_other_breakaways()) || better;
+            better = (!stopped_ && try_beyond_steps()) || better;
         }
     }
-    if (seeks_Re_) {  // Rd and what Re exceeds it by
-        constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
-        full.row(Re) += full.row(Rd);
-        full.col(Re) += full.col(Rd);
-    }
-    for (const Unknown which : unknowns_) {
-        const auto i = static_cast<std::size_t>(which);
-        const auto place = static_cast<Eigen::Index>(which);
-        const double open = least_error([which](const Parameters& p) { return at(p, which); });
-        found.error[i] = found.silent[i] ? 0 : std::max(open, found.noise * std::sqrt(full(place, place)));
-    }
-    ratios(full, found);
-    judge(found);
-    if (found.is_noise) {  // the errors are those of a motion, and there may be none
-        found.error.fill(0);
-        found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
-        for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
-    }
-    const Eigen::VectorXd predicted_all = measured_ - best_->residual;
-    found.predicted.assign(predicted_all.begin(), predicted_all.end());
-    found.runs = runs_;
-    found.cut_low = cut_.at_low;
-    found.cut_high = cut_.at_high;
-    return found;
-}
 
-/// What noise leaves at a sample has nothing to do with what it leaves at the next one: in square the differences of
-/// neighbours are then twice as large, with a standard deviation of 2/sqrt(n).
-bool Identification::leaves_pattern(double deviations) const {
-    const Eigen::VectorXd& left = best_->residual;
-    const Eigen::Index n = left.size() - 1;
-    const double ratio = (left.tail(n) - left.head(n)).squaredNorm() / left.squaredNorm();
-    return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
-}
+    // ---- how a driven mass began
+    //
+    // A mass that M cannot move at first stays where it is at each small velocity, too: at 0 nothing depends on the
+    // velocity. So the beginning of the record is fitted from velocities of all sizes, and fits of all of it go on from
+    // there.
 
-/// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
-void Identification::judge(Identified& found) const {
-    const double all = (measured_.array() - measured_.mean()).square().sum(), left = best_->sum;
-    constexpr double by_search = 2;
-    const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
-    const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
-    found.is_noise = all - left < by_chance * found.noise * found.noise;
-    double step = range_;  // of an instrument that shows steps; without them next to none
-    for (Eigen::Index i = 1; i < measured_.size(); ++i) {
-        const double apart = std::fabs(measured_[i] - measured_[i - 1]);
-        if (apart > 0) step = std::min(step, apart);
+    /// Fits the first angle and velocity to the beginning of the record, the other parameters being as they are, from
+    /// velocities of both signs and all sizes, or where that is given from such angles. Goes on from the best ones
+    /// where they are better than the best fit is there. True when one of them is better.
+    [[nodiscard]] bool try_other_beginnings() {
+        std::vector<Unknown> first;
+        for (const Unknown which : {Unknown::velocity0, Unknown::theta0}) {
+            if (!is_given(which)) first.push_back(which);
+        }
+        if (first.empty()) return false;
+        const Parameters best = filled_best();
+        const double before = best_->sum;
+        const FitScale scale = scale_of(best);
+        const auto size = static_cast<Eigen::Index>(first.size());
+        FitScale of_first{Eigen::VectorXd(size), Eigen::VectorXd::Constant(size, -1e300), Eigen::VectorXd(size),
+                          Eigen::VectorXd::Zero(size)};
+        Eigen::VectorXd now(size);
+        for (Eigen::Index i = 0; i < size; ++i) {
+            const Unknown which = first[static_cast<std::size_t>(i)];
+            of_first.typical[i] = scale.typical[place_of(which)];
+            now[i] = at(best, which);
+        }
+        const auto with = [&](const Eigen::VectorXd& q) {
+            Parameters p = best;
+            for (Eigen::Index i = 0; i < size; ++i) at(p, first[static_cast<std::size_t>(i)]) = q[i];
+            return p;
+        };
+        const double half = std::numbers::pi * std::sqrt(at(best, Unknown::I) / at(best, Unknown::k));
+        const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + half);
+        constexpr std::ptrdiff_t least_rows = 8;
+        const auto rows = static_cast<std::size_t>(std::max(until - question_.t.begin(), least_rows));
+        const Prediction model = [&](const Eigen::VectorXd& q) { return predicted(with(q), rows); };
+        const auto head = static_cast<Eigen::Index>(rows);
+        const double whole = scale.whole[place_of(first.front())];
+        std::vector<LeastSquares> found;
+        for (const double part : {0.03, -0.03, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0}) {
+            Eigen::VectorXd q = now;
+            q[0] = part * whole + (first.front() == Unknown::theta0 ? now[0] : 0);
+            constexpr int steps = 10;
+            auto one = least_squares(model, measured_.head(head), q, of_first, steps);
+            if (one) found.push_back(std::move(*one));
+        }
+        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.sum < b.sum; });
+        const double told = best_->residual.head(head).squaredNorm();
+        constexpr std::size_t tries = 2;
+        for (std::size_t i = 0; i < std::min(tries, found.size()) && !stopped_; ++i) {
+            if (is_settled() && found[i].sum > told - noise_ * noise_) break;
+            if (i > 0 && is_same(found[i], found[i - 1])) continue;
+            base_ = with(found[i].parameters);
+            const FitScale from = scale_of(base_);
+            keep_if_better(fit(fitted_of(base_), question_.t.size(), from, 30), from);
+        }
+        return best_->sum < (1 - same_fit) * before;
     }
-    found.scatter = std::max(noise_, step);
-    constexpr double much = 5, part = 0.01;
-    constexpr double more = 1.25, little = 1e-4, sure = 5;
-    found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
-                           (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
-    if (question_.M && !question_.M->has_feedback()) {
-        std::vector<double> M;
-        for (const double t : question_.t) M.push_back(question_.M->value(t));
-        found.M_is_noisy = is_noisy(M);
-    }
-    Eigen::Index which = 0;
-    const double most = best_->residual.cwiseAbs().maxCoeff(&which);
-    if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);
-}
 
-void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {
-    const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
-    const double Rd = at(found.value, Unknown::Rd);
-    found.omega0 = omega0_of(found.value);
-    found.zeta = zeta_of(found.value);
-    found.Rd_over_k = dry_of(found.value);
-    using Value = double (*)(const Parameters&);
-    const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
-        if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
-        Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
-        by.head(4) << by_I, by_k, by_C, by_Rd;
-        return std::max(least_error(value), found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by))));
-    };
-    found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
-    found.zeta_error =
-        error(Unknown::C, zeta_of, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
-    found.Rd_over_k_error = error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k);
-}
+    /// Looks at Re from Rd to four times that, or to what holds the mass anywhere in the record, and goes on from the
+    /// two best. True when one of them is better.
+    [[nodiscard]] bool try_other_breakaways() {
+        const Parameters best = filled_best();
+        const double before = best_->sum, Rd = at(best, Unknown::Rd);
+        const double whole = std::max(4 * Rd, 0.5 * at(best, Unknown::k) * range_);
+        std::vector<std::pair<double, double>> sums;
+        constexpr int looks = 24;
+        for (int i = 0; i <= looks && !stopped_; ++i) {
+            Parameters p = best;
+            const double part = static_cast<double>(i) / looks;
+            at(p, Unknown::Re) = Rd + whole * part * part;
+            const auto theta = predicted(p, question_.t.size());
+            if (!theta) continue;
+            sums.emplace_back((measured_ - *theta).squaredNorm(), at(p, Unknown::Re));
+            seen_.emplace_back(sums.back().first, p);
+        }
+        std::sort(sums.begin(), sums.end());
+        constexpr std::size_t tries = 2;
+        for (std::size_t i = 0; i < std::min(tries, sums.size()) && !stopped_; ++i) {
+            Parameters p = best;
+            at(p, Unknown::Re) = sums[i].second;
+            base_ = p;
+            const FitScale scale = scale_of(p);
+            keep_if_better(fit(fitted_of(p), question_.t.size(), scale, 30), scale);
+        }
+        return best_->sum < (1 - same_fit) * before;
+    }
+
+    /// Small steps of the sum of squares stop a search by slopes in the midst of a valley; differences over as much as
+    /// the noise lead on.
+    [[nodiscard]] bool try_beyond_steps() {
+        const double noise = deviation(), before = best_->sum;
+        base_ = best_base_;
+        const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
+                                  best_->parameters, best_scale_, noise);
+        if (!J || count() == 0) return false;
+        const auto units = best_scale_.whole.asDiagonal();
+        const Eigen::VectorXd way = units * algebra::solve_least_squares(*J * units, best_->residual);
+        if (!way.allFinite()) return false;
+        for (const double part : {1.0, 0.5, 0.25}) {
+            const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);
+            const auto theta = stopped_ ? std::nullopt : predicted(filled(p), question_.t.size());
+            if (!theta || !((measured_ - *theta).squaredNorm() < before - 0.01 * noise * noise)) continue;
+            keep_if_better(fit(p, question_.t.size(), best_scale_, 30), best_scale_);
+            break;
+        }
+        return best_->sum < (1 - same_fit) * before;
+    }
+
+    // ---- another valley
+    //
+    // Dry and viscous friction take about the same from a motion of one size, and a mass that stands stops as long
+    // under many loads: the search may end in a valley beside the right one, or where nothing moves. There what is left
+    // shows.
+
+    /// Looks at systems of other natural frequencies, losses and shares of dry friction in them, and goes on from the
+    /// best.
+    void try_other_valleys() {
+        const double before = best_->sum;
+        std::vector<std::pair<double, Parameters>> looks;
+        const std::size_t rows = question_.t.size();
+        for (const Parameters& from : {filled_best(), weak_form()}) {
+            const double I = at(from, Unknown::I), k = at(from, Unknown::k);
+            for (const double faster : {0.6, 0.8, 1.0, 1.25, 1.6}) {
+                Parameters p = from;
+                if (!is_given(Unknown::I)) at(p, Unknown::I) = I / (faster * faster);
+                if (is_given(Unknown::I) && !is_given(Unknown::k)) at(p, Unknown::k) = k * faster * faster;
+                const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
+                const double speed =
+                    range_ * omega0 * std::numbers::pi / 8;  // the mean one of a swing over half the range
+                const double least = 0.02 * k * range_, most = k * range_;
+                const double lost = std::clamp(at(from, Unknown::C) * speed + at(from, Unknown::Rd), least, most);
+                for (const double more : {0.5, 1.0, 2.0}) {
+                    for (const double dry : {0.05, 0.35, 0.65, 0.95}) {
+                        for (const double breakaway : {1.05, 1.4}) {
+                            at(p, Unknown::Rd) = given(Unknown::Rd, dry * more * lost);
+                            at(p, Unknown::C) = given(Unknown::C, (1 - dry) * more * lost / speed);
+                            at(p, Unknown::Re) = given(Unknown::Re, breakaway * at(p, Unknown::Rd));
+                            const auto theta = stopped_ ? std::nullopt : predicted(p, rows);
+                            if (theta) looks.emplace_back((measured_ - *theta).squaredNorm(), p);
+                        }
+                    }
+                }
+            }
+        }
+        std::sort(looks.begin(), looks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        constexpr std::size_t tries = 8;
+        for (std::size_t i = 0; i < std::min(tries, looks.size()); ++i) {
+            if (!stopped_ && leaves_pattern(suspected)) try_from(looks[i].second);
+        }
+        if (best_->sum < (1 - same_fit) * before && !stopped_) try_jumps();
+    }
+
+    /// A motion that never stands says nothing about Re but that a greater one would have held it, and one that stands
+    /// at first nothing about its velocity. Where nothing depends on what Re exceeds Rd by, or on the velocity, about
+    /// 0, and 0 is as good as the noise can tell, no stop that another value makes is believed, nor what it does to
+    /// other parameters. But how sure those are is what the fit leaves open to which it was free.
+    void try_none(Unknown which, double little) {
+        const LeastSquares best = *best_;
+        base_ = best_base_;
+        const Eigen::Index place = place_of(which);
+        FitScale scale = best_scale_;
+        scale.hold[place] = firmly * range_ / scale.typical[place];
+        Eigen::VectorXd start = best.parameters;
+        start[place] = 0;
+        const auto without = fit(start, question_.t.size(), scale, 40);
+        if (!without) return;
+        seen_.emplace_back(without->sum, filled(without->parameters));
+        const double variance = deviation() * deviation(), rise = without->sum - best.sum;
+        constexpr double telling = 4;  // two standard errors
+        if (rise > telling * variance) return;
+        constexpr double same = 1e-8;
+        Eigen::VectorXd more = without->parameters;
+        more[place] = little * scale.typical[place];
+        const auto theta = predicted(filled(more), question_.t.size());
+        const bool is_flat = theta && (measured_ - *theta - without->residual).cwiseAbs().maxCoeff() <= same * range_;
+        if (rise > 0 && !is_flat) return;
+        if (!freest_) freest_ = best;
+        best_ = without;
+        best_->parameters[place] = 0;  // from which it was held but for roundings
+        tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
+        if (is_flat && which == Unknown::velocity0 && !is_given(Unknown::theta0)) see_short_beginnings();
+    }
+
+    /// A mass that stops before there are many samples began elsewhere, as each velocity has it: that is how sure the
+    /// first angle is.
+    void see_short_beginnings() {
+        const Parameters best = filled_best();
+        const FitScale scale = scale_of(best);
+        const double whole = scale.whole[place_of(Unknown::velocity0)];
+        FitScale of_angle{Eigen::VectorXd::Constant(1, scale.typical[place_of(Unknown::theta0)]),
+                          Eigen::VectorXd::Constant(1, -1e300), Eigen::VectorXd(1), Eigen::VectorXd::Zero(1)};
+        for (const double side : {1.0, -1.0}) {
+            double angle = at(best, Unknown::theta0);
+            for (const double part : {0.02, 0.04, 0.06, 0.09, 0.13, 0.2}) {
+                Parameters p = best;
+                at(p, Unknown::velocity0) = side * part * whole;
+                const Prediction model = [&](const Eigen::VectorXd& q) {
+                    at(p, Unknown::theta0) = q[0];
+                    return predicted(p, question_.t.size());
+                };
+                constexpr int steps = 4;
+                const auto found =
+                    least_squares(model, measured_, Eigen::VectorXd::Constant(1, angle), of_angle, steps);
+                if (!found) break;
+                at(p, Unknown::theta0) = angle = found->parameters[0];
+                seen_.emplace_back(found->sum, p);
+                constexpr double possible = 16;
+                if (found->sum > best_->sum + possible * deviation() * deviation()) break;
+            }
+        }
+    }
+
+    /// A record that stands at its least or greatest value may be cut off there, or show where the mass stood: then the
+    /// fit goes beyond it nowhere.
+    void tell_stops_from_cuts() {
+        if (cut_.at_low + cut_.at_high == 0) return;
+        const auto whole = moved(filled_best(), question_.t.size());
+        if (!whole) return;
+        const double beyond = 3 * deviation() + 1e-6 * range_;
+        if (whole->maxCoeff() < cut_.high + beyond) cut_.at_high = 0;
+        if (whole->minCoeff() > cut_.low - beyond) cut_.at_low = 0;
+        if (cut_.at_low + cut_.at_high > 0) return;
+        if (const auto uncut = fit(best_->parameters, question_.t.size(), best_scale_, 15)) best_ = uncut;
+    }
+
+    /// Were the sum of squares a parabola, a motion that is so far from the best fit, by so little worse, would show
+    /// the standard error.
+    [[nodiscard]] double least_error(const std::function<double(const Parameters&)>& value) const {
+        const double noise = deviation(), best = value(best_filled_);
+        constexpr double possible = 16;
+        double least = 0;
+        for (const auto& [sum, p] : seen_) {
+            const double rise = (sum - best_->sum) / (noise * noise);
+            if (rise < possible) least = std::max(least, std::fabs(value(p) - best) / std::sqrt(std::max(1.0, rise)));
+        }
+        return least;
+    }
+
+    // ---- how sure it is
+
+    // ---- how likely each of them is
+
+    /// The turn at which these parameters come to rest, or behind which nothing of the motion can be seen.
+    [[nodiscard]] std::optional<double> resting_turn(const Parameters& p, double noise) const {
+        const auto system = question_.M ? std::nullopt : system_of(p);
+        if (!system || !theory::Modes(system->damping_ratio()).swings()) return {};
+        const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
+        constexpr double unseen = 0.01;
+        const double shift = system->kinetic_friction() / system->stiffness();
+        const double last = theory::HalfCycles(system->damping_ratio(), shift)
+                                .until_within(std::max(shift, unseen * noise), motion.extreme(0).theta);
+        return std::min(motion.extremes() - 1, last) + turns_before(p);
+    }
+
+    /// Where a small change would add or take away a swing slopes by differences say nothing: the turn of rest is kept.
+    [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise) {
+        breakaway_ = rest.breakaway;
+        const Parameters p = filled(rest.fit.parameters);
+        rests_at_ = rest.turn ? rest.turn : resting_turn(p, noise);
+        const FitScale scale = scale_of(p);
+        const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
+                                  rest.fit.parameters, scale, noise);
+        rests_at_.reset();
+        return covariance_of(J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), scale.whole, noise);
+    }
+
+    /// Takes the likeliest of the ways in which the record may have come to rest; in units of noise squared, with what
+    /// is not sure because the others are possible, too.
+    [[nodiscard]] Covariance weigh_rests() {
+        base_ = best_base_;
+        const double noise = deviation(), least = best_->sum;
+        Rest best{freest_.value_or(*best_), best_breakaway_, best_rest_, {}};
+        best.covariance = covariance_at(best, noise);
+        if (freest_ && noise > 0) {
+            const Eigen::VectorXd apart = (freest_->parameters - best_->parameters) / noise;
+            best.covariance.matrix += apart * apart.transpose();
+            const Covariance held = covariance_at({*best_, best_breakaway_, best_rest_, {}}, noise);
+            best.covariance.matrix.diagonal() = best.covariance.matrix.diagonal().cwiseMax(held.matrix.diagonal());
+        }
+        if (rests_.empty() || !(noise > 0)) return best.covariance;
+        constexpr double unlikely = 40;
+        std::vector<Rest> ways{best};
+        for (Rest& rest : rests_) {
+            if (rest.fit.sum > least + unlikely * noise * noise || is_same(rest.fit, *best_)) continue;
+            rest.covariance = covariance_at(rest, noise);
+            ways.push_back(rest);
+        }
+        const auto evidence = [&](const Rest& rest) {
+            return (least - rest.fit.sum) / (2 * noise * noise) + rest.covariance.log_volume;
+        };
+        for (const Rest& rest : ways) best = evidence(rest) > evidence(best) ? rest : best;
+        best_ = best.fit;
+        best_breakaway_ = best.breakaway;
+        Covariance all{Eigen::MatrixXd::Zero(count(), count()), best.covariance.silent, 0};
+        double odds = 0;
+        for (const Rest& rest : ways) {
+            const double share = std::exp(evidence(rest) - evidence(best));
+            const Eigen::VectorXd apart = (rest.fit.parameters - best.fit.parameters) / noise;
+            all.matrix += share * (rest.covariance.matrix + apart * apart.transpose());
+            odds += share;
+        }
+        all.matrix /= odds;
+        return all;
+    }
+
+    [[nodiscard]] Identified result() {
+        Identified found;
+        const Covariance covariance = weigh_rests();
+        breakaway_ = best_breakaway_;
+        found.value = best_filled_ = filled_best();
+        if (!question_.M && !is_given(Unknown::Re)) {
+            at(found.value, Unknown::Re) =
+                std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
+            found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
+        }
+        found.noise = deviation();
+        Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
+        for (Eigen::Index i = 0; i < count(); ++i) {
+            const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
+            found.fitted[which] = true;
+            found.silent[which] = covariance.silent[static_cast<std::size_t>(i)] || tells_nothing_[which];
+            for (Eigen::Index j = 0; j < count(); ++j) {
+                full(static_cast<Eigen::Index>(which),
+                     static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) = covariance.matrix(i, j);
+            }
+        }
+        if (seeks_Re_) {  // Rd and what Re exceeds it by
+            constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
+            full.row(Re) += full.row(Rd);
+            full.col(Re) += full.col(Rd);
+        }
+        for (const Unknown which : unknowns_) {
+            const auto i = static_cast<std::size_t>(which);
+            const auto place = static_cast<Eigen::Index>(which);
+            const double open = least_error([which](const Parameters& p) { return at(p, which); });
+            found.error[i] = found.silent[i] ? 0 : std::max(open, found.noise * std::sqrt(full(place, place)));
+        }
+        ratios(full, found);
+        judge(found);
+        if (found.is_noise) {  // the errors are those of a motion, and there may be none
+            found.error.fill(0);
+            found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
+            for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
+        }
+        const Eigen::VectorXd predicted_all = measured_ - best_->residual;
+        found.predicted.assign(predicted_all.begin(), predicted_all.end());
+        found.runs = runs_;
+        found.cut_low = cut_.at_low;
+        found.cut_high = cut_.at_high;
+        return found;
+    }
+
+    /// What noise leaves at a sample has nothing to do with what it leaves at the next one: in square the differences
+    /// of neighbours are then twice as large, with a standard deviation of 2/sqrt(n).
+    [[nodiscard]] bool leaves_pattern(double deviations) const {
+        const Eigen::VectorXd& left = best_->residual;
+        const Eigen::Index n = left.size() - 1;
+        const double ratio = (left.tail(n) - left.head(n)).squaredNorm() / left.squaredNorm();
+        return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
+    }
+
+    /// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
+    void judge(Identified& found) const {
+        const double all = (measured_.array() - measured_.mean()).square().sum(), left = best_->sum;
+        constexpr double by_search = 2;
+        const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
+        const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
+        found.is_noise = all - left < by_chance * found.noise * found.noise;
+        double step = range_;  // of an instrument that shows steps; without them next to none
+        for (Eigen::Index i = 1; i < measured_.size(); ++i) {
+            const double apart = std::fabs(measured_[i] - measured_[i - 1]);
+            if (apart > 0) step = std::min(step, apart);
+        }
+        found.scatter = std::max(noise_, step);
+        constexpr double much = 5, part = 0.01;
+        constexpr double more = 1.25, little = 1e-4, sure = 5;
+        found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
+                               (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
+        if (question_.M && !question_.M->has_feedback()) {
+            std::vector<double> M;
+            for (const double t : question_.t) M.push_back(question_.M->value(t));
+            found.M_is_noisy = is_noisy(M);
+        }
+        Eigen::Index which = 0;
+        const double most = best_->residual.cwiseAbs().maxCoeff(&which);
+        if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);
+    }
+
+    /// omega0, zeta and Rd/k, with the errors that their parts have together.
+    void ratios(const Eigen::MatrixXd& covariance, Identified& found) const {
+        const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
+        const double Rd = at(found.value, Unknown::Rd);
+        found.omega0 = omega0_of(found.value);
+        found.zeta = zeta_of(found.value);
+        found.Rd_over_k = dry_of(found.value);
+        using Value = double (*)(const Parameters&);
+        const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
+            if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
+            Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
+            by.head(4) << by_I, by_k, by_C, by_Rd;
+            return std::max(least_error(value), found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by))));
+        };
+        found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
+        found.zeta_error =
+            error(Unknown::C, zeta_of, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
+        found.Rd_over_k_error = error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k);
+    }
+
+    const IdentifyQuestion& question_;
+    const motion::Monitor& monitor_;
+    Eigen::VectorXd measured_;
+    CutOff cut_;
+    double range_ = 0, span_ = 0, noise_ = 0;
+    std::vector<std::size_t> turns_;
+    std::vector<Unknown> unknowns_;
+    bool seeks_Re_ = false;
+    Parameters base_{}, best_base_{};
+    double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
+    std::optional<double> rests_at_ = {};        // the turn at which a free decay is made to rest
+    bool starts_at_turn_ = false;                // how turns are numbered
+    std::vector<Rest> rests_ = {};               // the best fit of each such turn
+    std::optional<double> best_rest_ = {};
+    std::optional<LeastSquares> best_;
+    std::optional<LeastSquares> freest_;  // before the best one was made to do without what tells nothing
+    std::array<bool, unknown_count> tells_nothing_{};
+    std::vector<std::pair<double, Parameters>> seen_;  // of a driven motion: sums of squares, and what has them
+    Parameters best_filled_{};
+    std::optional<Eigen::VectorXd> moving_;  // what the moving part of a free decay says by itself
+    FitScale best_scale_;
+    std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them
+    int runs_ = 0;
+    int agreed_ = 0;  // other fits that came to the best one: what is given may leave nothing nearer to the record
+    bool stopped_ = false;
+};
+
+}  // namespace
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {
     const std::size_t n = question.t.size();
