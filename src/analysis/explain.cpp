@@ -1,9 +1,547 @@
 #include "analysis/explain.hpp"
 
-#include "analysis/story.hpp"
-#include "text/characters.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "analysis/phase_lag.hpp"
+#include "analysis/prose.hpp"
+#include "analysis/recurrence.hpp"
+#include "model/forcing.hpp"
+#include "model/laws/coulomb.hpp"
+#include "model/laws/stribeck.hpp"
+#include "model/sticking.hpp"
+#include "motion/belt_slope.hpp"
 
 namespace dinal::analysis {
+namespace {
+
+constexpr std::size_t most_stops = 5;  // told one by one; of more, these:
+constexpr std::size_t first_stops = 2, last_stops = 2;
+constexpr std::size_t most_turns = 4;
+
+/// The story of a run while it is being told, sentence by sentence, paragraph by paragraph.
+class Story : protected Prose {
+public:
+    /// All of it must outlive the story.
+    Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
+          motion::MethodView method, const model::Extras& extras)
+        : run_(trajectory),
+          system_(system),
+          excitation_(excitation),
+          own_rule_(method.own_rule()),
+          stretches_(stretches(trajectory)),
+          swings_(analysis::half_cycles(trajectory)),
+          events_(trajectory.events.begin(), trajectory.events.end()),
+          extras_(extras),
+          on_base_(!extras.base.components().empty()),
+          on_belt_(!extras.belt.components().empty()),
+          steady_belt_(extras.belt.constant_from() <= trajectory.t_start),
+          T0_(system.has_spring() ? system.natural_period() : 1),
+          constant_from_(excitation.has_feedback() || on_base_ || on_belt_ ? model::never
+                                                                           : excitation.constant_from()) {
+        for (const Stretch& s : stretches_) {
+            if (s.stuck) stuck_ += s.lasts();
+            if (s.stuck && s.begun_by) stops_.push_back(&s);
+        }
+        if ((stretches_.size() == 1 && stuck_ > 0) || (on_belt_ && run_.course == nullptr))
+            return;  // no turns are known
+        const auto before = [](const model::Event& event, double t) { return event.t < t; };
+        for (const Stretch& s : swings_) {
+            half_cycles_ += s.stuck ? 0 : 1;
+            if (!on_belt_ || !s.ended_by) continue;
+            const double near = 1e-9 * T0_;
+            const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
+            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // else that is it
+        }
+        std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
+    }
+
+    std::string told() {
+        tell_setting();
+        tell_start();
+        tell_counts();
+        tell_turns();
+        tell_stops();
+        tell_end();
+        return std::move(text_);
+    }
+
+private:
+    [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
+    /// Where a stretch ended.
+    [[nodiscard]] static std::string place(const Stretch& s) {
+        return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
+    }
+    /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
+    [[nodiscard]] bool at_limit(double torque, const model::Event& event) const {
+        const double Re = limit(torque);
+        const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta) +
+                             std::fabs(system_.spring().torque(event.theta));
+        const double late = std::numeric_limits<double>::epsilon() * std::fabs(event.t) / T0_;
+        return std::fabs(std::fabs(torque) - Re) <= (1e-9 + 64 * late) * known;
+    }
+
+    /// M - k theta, less what another spring pulls back with, and with what the support and a belt do to a mass at
+    /// rest.
+    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
+    [[nodiscard]] double pull_at(double theta, double M, double t) const {
+        return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
+    }
+    /// -I a - I vb' - C vb, from the right.
+    [[nodiscard]] double around(double t) const {
+        double torque = on_base_ ? -system_.inertia() * extras_.base.value_after(t) : 0;
+        if (!on_belt_) return torque;
+        const double rate = motion::belt_slope(extras_.belt, t, motion::belt_stretch * T0_).rate;
+        torque -= system_.damping() * motion::belt_from(extras_.belt, t) + system_.inertia() * rate;
+        return torque;
+    }
+
+    /// Re, against a pull this way.
+    [[nodiscard]] double limit(double pull) const {
+        return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
+    }
+    /// "|M - k theta| = 0.155 <= Re = 0.167"
+    [[nodiscard]] std::string reason(double pull) const {
+        return fmt::format("|{}| = {}", pull_name(), text::against_limit(std::fabs(pull), limit(pull)));
+    }
+    [[nodiscard]] std::string pull_name() const {
+        std::string name = "M";
+        if (on_base_) name += " - I a";
+        if (on_belt_ && !steady_belt_) name += " - I vb'";
+        if (on_belt_ && system_.damping() > 0) name += " - C vb";
+        if (system_.spring().none() || system_.has_spring()) name += " - k theta";
+        return name + (system_.spring().none() ? "" : " - spring");
+    }
+    /// At a wall, which carries what pulls against it.
+    [[nodiscard]] bool at_wall(double theta) const {
+        const auto& walls = system_.walls();
+        return walls && (theta == walls->lower || theta == walls->upper);
+    }
+    void tell_surroundings() {
+        if (on_base_)
+            say("The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.");
+        if (!on_belt_) return;
+        if (steady_belt_) {
+            say("The mass rubs on a belt that moves with velocity vb = {:.5g}.",
+                motion::belt_from(extras_.belt, run_.t_start));
+        } else {
+            say("The mass rubs on a belt of velocity vb.");
+        }
+    }
+
+    void tell_walls() {
+        const auto& walls = system_.walls();
+        if (!walls) return;
+        const bool both = std::isfinite(walls->lower) && std::isfinite(walls->upper);
+        say("{} at theta = {}", both ? "There are walls" : "There is a wall",
+            both ? fmt::format("{:.5g} and {:.5g}", walls->lower, walls->upper)
+                 : fmt::format("{:.5g}", std::isfinite(walls->lower) ? walls->lower : walls->upper));
+        if (walls->restitution == 0) {
+            add(", where an impact stops the mass.");
+        } else {
+            add("; an impact keeps {} of the speed.", text::percent(walls->restitution));
+        }
+    }
+
+    void tell_impacts() {
+        std::size_t impacts = 0;
+        const model::Event *first = nullptr, *hardest = nullptr;
+        for (const model::Event& event : run_.events) {
+            if (event.kind != model::EventKind::impact) continue;
+            ++impacts;
+            if (first == nullptr) first = &event;
+            if (hardest == nullptr || std::fabs(event.velocity) > std::fabs(hardest->velocity)) hardest = &event;
+        }
+        if (impacts == 0) return;
+        say("It hit {} {}, first at t = {}",
+            std::isfinite(system_.walls()->lower) && std::isfinite(system_.walls()->upper) ? "the walls" : "the wall",
+            text::counted(impacts, "time"), at(first->t));
+        add("; the hardest impact had velocity {:.5g}, at t = {}.", hardest->velocity, at(hardest->t));
+    }
+
+    [[nodiscard]] std::string slip_from_wall(const model::Event& event) const {
+        const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
+        if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
+        return fmt::format("{} pulled it off the wall {} with more than Re = {:.5g}", pull_name(), way,
+                           system_.friction().holding(*way == 'b' ? model::Motion::backward : model::Motion::forward));
+    }
+
+    /// M never changes.
+    [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
+
+    // ---- how it began and went on
+
+    void tell_setting() {
+        if (system_.has_linear_spring()) {
+            say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(),
+                model::name(system_.regime()));
+        } else if (system_.has_spring()) {
+            say("The system has a second spring besides k theta (T0 = {:.5g} and zeta = {:.4g} are for k alone)", T0_,
+                system_.damping_ratio());
+        } else {
+            say("The system is a block {}", system_.spring().none() ? "without a spring" : "on a nonlinear spring");
+            if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
+        }
+        tell_friction();
+        if (!system_.units().usual()) say("Units: {}.", system_.units().in_words());
+        const double period = model::period_from(excitation_, run_.t_start);
+        if (excitation_.components().empty()) {
+            say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
+        } else if (excitation_.has_feedback()) {
+            say("M is a feedback: it depends on the motion.");
+        } else if (free()) {
+            say("M is constant{}", system_.has_linear_spring() ? ": the motion is free, about theta = M/k." : ".");
+        } else if (period > 0) {
+            say("M has the period {:.5g}", period);
+            if (system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
+            add(".");
+        } else if (constant_from_ < run_.t_stop) {
+            say("M is constant from t = {} on.", at(constant_from_));
+        }
+        tell_surroundings();
+        if (run_.gap > 0) {
+            say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
+                text::number_text(run_.gap, T0_));
+        }
+        if (run_.noise > 0) {
+            say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
+        }
+        if (run_.jumps_often()) {
+            say("M jumps {} times along the motion. Each jump was located, which takes at least six evaluations of M: "
+                "fine steps, as of an encoder, make a run slow.",
+                run_.jumps);
+        }
+        if (own_rule_) say("{}", own_rule_->setting);
+        end_paragraph();
+    }
+
+    void tell_friction() {
+        const model::Friction& law = system_.friction();
+        const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
+        const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
+        const auto Re = [&](model::Motion way) { return law.holding(way); };
+        using enum model::Motion;
+        if (law.none()) {
+            add(" and no dry friction.");
+        } else if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {
+            add(" and dry friction: Rd = {:.5g} while sliding forward and {:.5g} backward; breakaway takes Re = {:.5g} "
+                "forward and {:.5g} backward.",
+                Rd(forward), Rd(backward), Re(forward), Re(backward));
+        } else if (Rd(forward) == Re(forward)) {
+            add(" and dry friction Rd = Re = {:.5g}.", Rd(forward));
+        } else {
+            add(" and dry friction: Rd = {:.5g} while sliding, Re = {:.5g} to break away.", Rd(forward), Re(forward));
+        }
+        if (law.depends_on_speed()) {
+            say("{}", stribeck ? "Friction falls from Re at rest to Rd at high speed."
+                               : "These values hold near speed zero: friction depends on the speed.");
+        }
+        tell_walls();
+    }
+
+    void tell_start() {
+        const model::State& y = run_.initial;
+        const Stretch& first = stretches_.front();
+        say("The mass started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta,
+            y.velocity);
+        const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
+        const bool stands = first.stuck || motion::belt_from(extras_.belt, run_.t_start) == 0;
+        const bool told =
+            y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
+        if (first.stuck) add(" and stuck {}", on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
+        if (told && first.stuck && at_wall(y.theta)) {
+            add(" at the wall");
+        } else if (told) {
+            const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
+            add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
+        }
+        if (first.stuck && first.ended_by) {
+            add("{} until t = {}, when {}.", told ? "," : "", at(first.to), slip(*first.ended_by, told));
+        } else {
+            add(".");
+        }
+        if (first.stuck && !first.ended_by) {
+            say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was sampled " : "",
+                at(run_.t_stop));
+            tell_stillness();
+        }
+        end_paragraph();
+    }
+
+    void tell_counts() {
+        if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
+        if (run_.events.empty() && swings_.size() == 1) {
+            const model::State &begin = run_.initial, &end = run_.state_at_stop;
+            const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
+            say("{}", stayed ? "It stayed there: M and the spring are in balance."
+                             : "It moved in one direction all the time.");
+            return;
+        }
+        const auto turns = static_cast<std::size_t>(std::count_if(swings_.begin(), swings_.end(), [](const Stretch& s) {
+            return s.ended_by && s.ended_by->kind == model::EventKind::turn;
+        }));
+        say("It made {} with {} and {}", text::counted(half_cycles_, "half cycle"), text::counted(turns, "turn"),
+            text::counted(stops_.size(), "stop"));
+        if (stuck_ > 0) {
+            const double all = run_.t_stop - run_.t_start;
+            add("; it was stuck for {} of {} {} ({})", at(stuck_), at(all), system_.units().times(),
+                text::percent(stuck_ / all));
+        }
+        add(".");
+        tell_impacts();
+    }
+
+    void tell_turns() {
+        std::string places;
+        std::size_t n = 0;
+        for (const Stretch& s : stretches_) {
+            if (!s.ended_by || s.ended_by->kind != model::EventKind::turn) continue;
+            if (n < most_turns) places += fmt::format("{}{} (t = {})", n == 0 ? "" : ", ", place(s), at(s.to));
+            ++n;
+        }
+        if (n > 0)
+            say("{} at theta = {}{}", on_belt_ ? "The sliding reversed" : "It turned", places,
+                n > most_turns ? " ..." : ".");
+        tell_decay();
+        end_paragraph();
+    }
+
+    /// What the closed forms say about a free motion, as far as it has turned.
+    void tell_decay() {
+        const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
+        const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
+        if (!free() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
+        decay_told_ = true;
+        const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
+        const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
+        if (zeta >= 1) {
+            say("With zeta >= 1 it turns at most once and then creeps.");
+        } else if (zeta == 0 && step == 0) {
+            say("Without damping and friction every swing is as wide as the first.");
+        } else if (zeta == 0) {
+            say("Each extreme is 2 Rd/k = {:.5g} smaller than the one before: under dry friction the amplitude falls "
+                "linearly, so the motion ends.",
+                step);
+        } else if (step == 0) {
+            say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) times the one before: under viscous damping the "
+                "amplitude falls exponentially, {}.",
+                factor, system_.friction().none() ? "so the motion never quite ends" : "until friction holds the mass");
+        } else {
+            say("Half a cycle takes an extreme X to qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
+                "and Rd/k = {:.5g}: viscous damping removes a fraction of the amplitude, dry friction a fixed amount, "
+                "which ends the motion.",
+                factor, step / 2);
+        }
+    }
+
+    void tell_stops() {
+        const std::size_t n = stops_.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            if (n > most_stops && i == first_stops) {
+                i = n - last_stops;
+                say("... {} more ...", i - first_stops);
+                end_paragraph();
+            }
+            tell_stop(*stops_[i]);
+        }
+    }
+
+    void tell_stop(const Stretch& stop) {
+        const model::Event& begun = *stop.begun_by;
+        if (at_wall(begun.theta)) {
+            say("It came to rest at the wall, theta = {:.5g}, at t = {}", begun.theta, at(begun.t));
+        } else {
+            say("It {} at t = {} at theta = {} because {}", on_belt_ ? "stuck to the belt" : "stopped", at(begun.t),
+                place(*(&stop - 1)), reason(pull(begun)));
+        }
+        if (stop.ended_by) {
+            add("; it stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
+        } else if (constant_from_ <= run_.t_stop) {
+            add(".");
+            say("M is constant from {} on, so it stays at rest.",
+                constant_from_ <= begun.t ? "then" : "t = " + at(constant_from_));
+        } else {
+            add(", and was still stuck when the run ended at t = {}.", at(run_.t_stop));
+            tell_stillness();
+        }
+        end_paragraph();
+    }
+
+    /// Why it slipped and which way; after a sentence about |M - k theta| it is "this torque".
+    [[nodiscard]] std::string slip(const model::Event& event, bool told) const {
+        if (at_wall(event.theta)) return slip_from_wall(event);
+        if (on_belt_) {
+            const double vb = motion::belt_from(extras_.belt, event.t), slides = event.velocity - vb;
+            constexpr double clearly = 1e-6;
+            if (std::fabs(slides) > clearly * (std::fabs(vb) + std::fabs(event.velocity))) {
+                return fmt::format("vb jumped to {:.5g} and it slipped {}", vb, slides < 0 ? "backward" : "forward");
+            }
+        }
+        const double torque = pull(event);
+        std::string why = fmt::format("{} jumped so that {},", on_base_ || on_belt_ ? "the pull" : "M", reason(torque));
+        if (own_rule_) {
+            why = fmt::format("{} {}", own_rule_->release, reason(torque));
+        } else if (at_limit(torque, event)) {
+            why = fmt::format("{} exceeded Re", told ? "this torque" : fmt::format("|{}|", pull_name()));
+        }
+        return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
+    }
+
+    // ---- what became of it
+
+    void tell_end() {
+        const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
+        const bool failed = !model::is_whole(run_.outcome);
+        if (half_cycles_ > 0 && !over) {
+            if (const auto motion = recurrence(events_)) {
+                tell_recurrence(*motion);
+            } else if (!decay_told_) {
+                tell_trend();
+            }
+        }
+        if (failed) {
+            tell_outcome();
+        } else if (const Stretch& last = stretches_.back(); !last.stuck) {
+            say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop), place(last),
+                last.end.velocity);
+        }
+        end_paragraph();
+    }
+
+    /// Stuck at the end: why it stays, if that is known.
+    void tell_stillness() {
+        still_ = run_.outcome == model::Outcome::at_rest;
+        if (!still_) return;
+        if (on_base_ || on_belt_) {
+            say("It stays at rest.");
+            return;
+        }
+        if (constant_from_ <= run_.t_stop) {
+            say("M is constant{}, so it stays at rest.",
+                free() ? "" : fmt::format(" from t = {} on", at(constant_from_)));
+        } else if (std::isfinite(excitation_.most()) && held_at_most()) {
+            say("|M| never exceeds {:.5g}, which is too little to move it: it stays at rest.", excitation_.most());
+        } else {
+            say("A whole period of M did not move it, so it stays at rest.");
+        }
+    }
+
+    [[nodiscard]] bool held_at_most() const {
+        return model::held_against(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
+    }
+
+    void tell_recurrence(const Recurrence& motion) {
+        tell_period(motion);
+        if (motion.drift != 0) {
+            say("It advances by {:.5g} in each period: stick-slip.", motion.drift);
+        } else {
+            say("The amplitude is {:.5g} about theta = {}.", motion.amplitude,
+                text::number_text(motion.centre, 1e7 * motion.amplitude));
+        }
+        // A motion that repeats itself under an M of unknown period tells that period.
+        const double known = model::period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
+        if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
+            if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
+                say("The fundamental of theta {} that of M by {:.3f} rad.", *lag < 0 ? "leads" : "lags behind",
+                    std::fabs(*lag));
+            }
+        }
+        if (motion.stops == 0) {
+            if (!system_.friction().none()) say("It does not stop.");
+        } else {
+            say("It stops {} in each period and is stuck for {} of the time.",
+                motion.stops == 1   ? "once"
+                : motion.stops == 2 ? "twice"
+                                    : fmt::format("{} times", motion.stops),
+                text::percent(motion.stuck));
+        }
+        end_paragraph();
+    }
+
+    void tell_period(const Recurrence& motion) {
+        const double period = model::period_from(excitation_, motion.since);
+        const double ratio = period > 0 ? motion.period / period : 0, whole = std::round(ratio);
+        std::string of =
+            fmt::format("{:.5g} {}", motion.period / T0_, system_.has_spring() ? "T0" : system_.units().times());
+        if (whole >= 1 && std::fabs(ratio - whole) <= 1e-3 * ratio) {
+            of = whole == 1 ? "the period of M" : fmt::format("{} periods of M", whole);
+        }
+        if (!motion.steady) {
+            say("The motion is settling: it nearly repeats itself every {} ({}), and the last two periods differ by {} "
+                "of the amplitude.",
+                at(motion.period), of, text::percent(motion.change));
+            return;
+        }
+        const bool always = motion.since == events_.front().t;
+        say("{} steady: it repeats itself every {} ({}).",
+            always ? "The motion is" : fmt::format("From t = {} on the motion is", at(motion.since)), at(motion.period),
+            of);
+        if (period == 0 && excitation_.has_feedback()) say("This is a limit cycle if M depends on the motion alone.");
+    }
+
+    void tell_trend() {
+        const double period = model::period_from(excitation_, stretches_.back().from);
+        const Swings last = swings(swings_, period);
+        if (last.trend == Trend::unknown) {
+            if (!free() && run_.events.size() > 1)
+                say("The run is too short to tell whether the motion becomes steady.");
+            end_paragraph();
+            return;
+        }
+        const auto& [a, b, c] = last.amplitudes;
+        // The period of a base is not known here, so a beat may look like growth.
+        const bool grows = last.trend == Trend::growing && !on_base_, shrinks = last.trend == Trend::shrinking;
+        say("The motion {}: amplitudes of {:.5g}, {:.5g} and {:.5g} in the last three {}",
+            grows     ? "grows"
+            : shrinks ? "decays"
+                      : "is not periodic so far",
+            a, b, c, period > 0 ? "periods of M" : fmt::format("spans of {}", at(last.span)));
+        tell_step(last);
+        add(".");
+        end_paragraph();
+    }
+
+    /// By how much the amplitude changes each time, when that has a rule.
+    void tell_step(const Swings& last) {
+        if (last.trend == Trend::irregular) return;
+        const auto& [a, b, c] = last.amplitudes;
+        constexpr double rule = 1e-3;
+        const char* more = c > b ? "more" : "less";
+        if (std::fabs((c - b) - (b - a)) <= rule * std::fabs(c - b)) {
+            add(", {:.5g} {} each time", std::fabs(c - b), more);
+        } else if (std::fabs(c / b - b / a) <= rule * std::fabs(c / b - 1)) {
+            add(", {:.5g} times as much each time", c / b);
+        }
+    }
+
+    void tell_outcome() {
+        if (run_.outcome == model::Outcome::interrupted) {
+            say("The run was interrupted at t = {}: the text covers the time until then.", at(run_.t_stop));
+        } else {
+            say("The run stopped early, at t = {}: {}.", at(run_.t_stop), motion::outcome_text(run_));
+        }
+    }
+
+    const motion::Trajectory& run_;
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
+    std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
+    std::vector<Stretch> stretches_, swings_;  // the same but on a belt: against the belt, and of theta
+    std::vector<model::Event> events_;         // with the extremes of theta on a belt
+    std::vector<const Stretch*> stops_;
+    const model::Extras& extras_;
+    bool on_base_, on_belt_, steady_belt_;
+    double T0_, constant_from_;
+    double stuck_ = 0;
+    std::size_t half_cycles_ = 0;
+    bool decay_told_ = false;  // by its closed form
+    bool still_ = false;       // for good, under a periodic M
+};
+
+}  // namespace
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
                     const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras) {
