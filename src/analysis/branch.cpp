@@ -107,6 +107,554 @@ private:
     int periods_;
 };
 
+class BranchWalk {
+public:
+    /// `values` of the parameter increase, two at least; all must outlive it.
+    BranchWalk(Circuit& circuit, std::span<const double> values)
+        : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
+
+    /// From the first place of the circuit at this parameter towards greater ones (way = 1) or smaller ones (-1).
+    BranchPath walk(double parameter, double way) {
+        const auto first = begun(parameter);
+        if (!first) return path_;
+        return followed(*first, tangent(*first, way * across()));
+    }
+
+    /// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
+    BranchPath walk_aside(double parameter) {
+        const auto first = begun(parameter);
+        if (!first) return path_;
+        // A disturbance that comes back to itself.
+        const Eigen::Index n = units_.size();
+        const Slopes slopes = scaled(first->slopes).leftCols(n);
+        Vector aside = Vector::Zero(n + 1);
+        aside.head(n) = algebra::most_shortened(slopes);
+        constexpr double away = 1e-2;
+        const Vector guess = scaled(*first) + away * aside;
+        const auto there = spot_at(guess);  // of the branch itself the slopes say nothing of the other one
+        auto next = there ? correct(guess, aside, there->slopes) : std::nullopt;
+        if (!next) {
+            path_.end = WalkEnd::lost;
+            return path_;
+        }
+        tell(*next);
+        add(*next, BranchKind::point);
+        return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
+    }
+
+    /// From a limit cycle on to greater ones.
+    BranchPath walk_up(double parameter) {
+        const auto first = begun(parameter);
+        if (!first) return path_;
+        // The velocity at the section grows with the cycle.
+        const double away = first->x[0] < 0 ? -1 : 1;
+        return followed(*first, tangent(*first, away * Vector::Unit(units_.size() + 1, 0)));
+    }
+
+private:
+    using Vector = Eigen::VectorXd;
+    using Slopes = Eigen::MatrixXd;  // of what a fixed point misses, by x and p
+
+    /// A fixed point with the slopes there.
+    struct Spot {
+        Vector x = {};
+        double p = 0;
+        Circuit::Lap lap = {};
+        Slopes slopes = {};
+        SteadyMotion motion = {};
+        [[nodiscard]] Slopes derivative() const {
+            return slopes.leftCols(x.size()) + Slopes::Identity(x.size(), x.size());
+        }
+    };
+    using Test = std::function<double(const Spot&)>;
+    struct Special {
+        Spot spot;
+        BranchKind kind;
+    };
+    /// A point before the present one.
+    struct Passed {
+        Vector x = {}, slope = {};  // by p
+        double p = 0;
+    };
+    /// The last point at which a test function was more than rounding.
+    struct Anchor {
+        Spot spot;
+        double value = 0;
+    };
+
+    [[nodiscard]] Vector scaled(const Spot& spot) const {
+        Vector y(spot.x.size() + 1);
+        y << spot.x.cwiseQuotient(units_), spot.p / range_;
+        return y;
+    }
+    /// Slopes as the scaled unknowns and the scaled miss have them.
+    [[nodiscard]] Slopes scaled(const Slopes& slopes) const {
+        Vector columns(units_.size() + 1);
+        columns << units_, range_;
+        return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
+    }
+
+    /// The way on along the curve, of length 1, not against `before`.
+    [[nodiscard]] Vector tangent(const Spot& spot, const Vector& before) const {
+        Slopes slopes = scaled(spot.slopes);
+        for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
+        const algebra::FreeDirection free = algebra::free_direction(slopes);
+        const Eigen::Index n = slopes.rows();
+        // Where the mass may rest anywhere there is a surface of fixed points: stay where it is.
+        if (!(std::fabs(free.last_pivot) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
+        const Vector& t = free.direction;
+        return t * (t.dot(before) < 0 ? -1 : 1);
+    }
+
+    [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
+
+    BranchPath followed(Spot now, Vector ahead) {
+        const Spot first = now;
+        const Vector first_ahead = ahead;
+        double longest = first_step;
+        const double smallest = units_.maxCoeff();
+        int creeps = 0;
+        bool recentred = false;
+        std::optional<Passed> passed;
+        orientation_ = orientation(now.slopes, ahead);
+        specials_before(now, ahead);  // anchors
+        const std::size_t most_points = 2000 + 20 * values_.size();
+        path_.end = WalkEnd::lost;
+        const Eigen::Index n = now.x.size();
+        while (path_.points.size() < most_points) {
+            rescale(now, ahead);
+            if (greatest_.maxCoeff() > boundless * smallest) {
+                path_.end = WalkEnd::vanished;
+                return path_;
+            }
+            const double target = next_value(now.p, ahead[n]);
+            const double left = std::fabs(target - now.p) / range_;
+            if (left * range_ <= slack_) {
+                path_.end = WalkEnd::range;
+                return path_;
+            }
+            const bool reaches = left <= longest * std::fabs(ahead[n]);
+            const double step = reaches ? left / std::fabs(ahead[n]) : longest;
+            reach_ = step;
+            Vector guess = scaled(now) + step * ahead;
+            if (reaches) {
+                if (passed) curve_on(guess, *passed, now, ahead, target);
+                guess[n] = target / range_;
+            }
+            rough_ = true;
+            auto spot = correct(guess, reaches ? across() : ahead, now.slopes);
+            rough_ = false;
+            if (circuit_.stopped()) {
+                path_.end = WalkEnd::stopped;
+                return path_;
+            }
+            const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(n + 1);
+            const Vector on = spot ? tangent(*spot, moved) : ahead;
+            const bool close = spot && moved.norm() <= 2 * step && moved.dot(ahead) > straight / 2 * moved.norm();
+            if (!close || on.dot(ahead) <= straight) {
+                const bool corner = close && step < corner_step;
+                const bool stalls = step / 2 <= shortest_step || creeps > most_creeps;
+                if ((corner || stalls) && round_corner(now, ahead, step)) {
+                    longest = first_step, creeps = 0;
+                    passed.reset();
+                    continue;
+                }
+                if (stalls) return path_;
+                longest = step / 2;
+                if (!corner) continue;
+            }
+            if (step > corner_step) orientation_ = orientation(spot->slopes, on);
+            creeps = step < creeping ? creeps + 1 : 0;
+            longest = std::min(longest_step, 1.5 * longest);
+            tell(*spot);
+            if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
+            std::vector<Special> specials = specials_before(*spot, ahead);
+            // Where a branch begins at a Hopf point it is upright, and its slope is rounding.
+            if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright) {
+                const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
+                if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
+                    const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
+                        return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
+                    });
+                    specials.insert(after, {std::move(*fold), BranchKind::fold});
+                }
+            }
+            bool inside = true;
+            const Spot* from = &now;
+            for (const Special& special : specials) {
+                if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // it is at the present point, to rounding
+                    add(special.spot, special.kind);
+                    continue;
+                }
+                inside = inside && add_way(*from, special.spot, special.kind);
+                from = &special.spot;
+            }
+            if (!inside || !add_way(*from, *spot, BranchKind::point)) {
+                path_.end = WalkEnd::range;
+                return path_;
+            }
+            if (!recentred && path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
+                on.dot(first_ahead) > straight) {
+                path_.end = WalkEnd::closed;
+                return path_;
+            }
+            if (circuit_.cycles() &&
+                circuit_.units(spot->x, spot->lap, spot->motion).cwiseQuotient(greatest_).maxCoeff() < vanishes) {
+                path_.end = WalkEnd::vanished;
+                return path_;
+            }
+            passed = Passed{now.x, slope_by_p(ahead), now.p};
+            ahead = on;
+            if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
+                recentred = true;
+                passed.reset();
+                anchors_.clear();
+                now.x = places->front();
+                const Vector before = scaled(now);
+                spot->x = places->back();
+                spot->lap = circuit_.lap(spot->x, spot->p);
+                if (!spot->lap.finished) return path_;
+                differentiate(*spot);
+                if (spot->slopes.size() == 0) return path_;
+                ahead = tangent(*spot, scaled(*spot) - before);
+                specials_before(*spot, ahead);
+            }
+            now = std::move(*spot);
+        }
+        return path_;
+    }
+
+    [[nodiscard]] Vector slope_by_p(const Vector& tangent) const {
+        const Eigen::Index n = units_.size();
+        return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
+    }
+
+    /// A better guess at this parameter: on the cubic through two points and their slopes, unless it bends away.
+    void curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead, double target) const {
+        const double length = now.p - before.p, t = 1 + (target - now.p) / length;
+        constexpr double farthest = 3, bent = 0.3;
+        if (!(t > 1 && t < farthest)) return;
+        const Vector x = (1 + t * t * (2 * t - 3)) * before.x + t * (1 - t) * (1 - t) * length * before.slope +
+                         t * t * (3 - 2 * t) * now.x + t * t * (t - 1) * length * slope_by_p(ahead);
+        const Eigen::Index n = units_.size();
+        const Vector moved = x.cwiseQuotient(units_) - guess.head(n);
+        if (moved.norm() < bent * (t - 1) * std::fabs(length) / range_) guess.head(n) += moved;
+    }
+
+    std::optional<Spot> begun(double parameter) {
+        path_ = {};
+        anchors_.clear();
+        greatest_ = {};
+        reach_ = 1;
+        Spot spot{.x = circuit_.first(), .p = parameter};
+        spot.lap = circuit_.lap(spot.x, spot.p);
+        if (spot.lap.finished && !circuit_.stopped()) {
+            const Eigen::Index n = spot.x.size();
+            units_ = Vector::Ones(n);
+            spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, Slopes::Zero(n, n));
+            units_ = circuit_.units(spot.x, spot.lap, spot.motion);
+            constexpr double astray = 1e-5;
+            if ((spot.lap.to - spot.x).cwiseQuotient(units_).norm() < astray) differentiate(spot);
+        }
+        if (spot.slopes.size() > 0 && !circuit_.stopped()) {
+            tell(spot);
+            return spot;
+        }
+        path_.end = circuit_.stopped() ? WalkEnd::stopped : WalkEnd::lost;
+        return {};
+    }
+
+    void differentiate(Spot& spot) {
+        const Eigen::Index n = spot.x.size();
+        bool good = true;
+        const auto slope = [&](double h, const auto& moved) -> Vector {
+            const auto at = [&](double step) -> Vector {
+                const auto [x, p] = moved(step);
+                const Circuit::Lap lap = circuit_.lap(x, p);
+                good = good && lap.finished;
+                return good ? Vector(lap.to - x) : Vector::Zero(n);
+            };
+            Vector central = (at(h) - at(-h)) / (2 * h);
+            if (!sharp_) return central;
+            return (4 * central - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
+        };
+        spot.slopes.resize(n, n + 1);
+        if (spot.lap.derivative) {
+            spot.slopes.leftCols(n) = *spot.lap.derivative - Slopes::Identity(n, n);
+        } else {
+            const double h = sharp_ ? 3e-4 : std::clamp(reach_ / 4, 1e-8, circuit_.difference());
+            for (Eigen::Index i = 0; i < n; ++i) {
+                spot.slopes.col(i) = slope(h * units_[i], [&](double step) {
+                    return std::pair(Vector(spot.x + step * Vector::Unit(n, i)), spot.p);
+                });
+            }
+        }
+        // At an end of the range the question is asked inside only.
+        const double h = std::clamp(reach_ / 4, 1e-8, 1e-6) * range_,
+                     p = std::clamp(spot.p, values_.front() + h, values_.back() - h);
+        if (rough_) {
+            const double inside = spot.p + h > values_.back() ? -h : h;
+            const Circuit::Lap lap = circuit_.lap(spot.x, spot.p + inside);
+            good = good && lap.finished;
+            if (good) spot.slopes.col(n) = (lap.to - spot.lap.to) / inside;
+        } else {
+            const bool sharp = std::exchange(sharp_, false);
+            spot.slopes.col(n) = slope(h, [&](double step) { return std::pair(spot.x, p + step); });
+            sharp_ = sharp;
+        }
+        if (!good) spot.slopes.resize(0, 0);
+    }
+
+    /// The point of the curve nearest to a guess, in the plane through the guess across `normal`.
+    std::optional<Spot> correct(const Vector& guess, const Vector& normal, Slopes slopes) {
+        constexpr int most_steps = 12;
+        const Eigen::Index n = units_.size();
+        slopes = scaled(slopes);
+        Vector y = guess, last;
+        bool renewed = false;
+        for (int i = 0; i <= most_steps; ++i) {
+            const double p = y[n] * range_;
+            if (!y.allFinite() || p < values_.front() - slack_ || p > values_.back() + slack_) return {};
+            Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = value_near(p)};
+            spot.lap = circuit_.lap(spot.x, spot.p);
+            if (!spot.lap.finished || circuit_.stopped()) return {};
+            const Vector off = (spot.lap.to - spot.x).cwiseQuotient(units_);
+            // Broyden's update: the slopes that explain what the last step has left.
+            if (i > 0 && !renewed) slopes += off * last.transpose() / std::max(last.squaredNorm(), 1e-300);
+            renewed = false;
+            if (off.norm() <= closes || (i > 3 && off.norm() <= nearly_closes)) {
+                differentiate(spot);
+                return spot.slopes.size() > 0 && !circuit_.stopped() ? std::optional(spot) : std::nullopt;
+            }
+            if (i == 4) {
+                differentiate(spot);
+                if (spot.slopes.size() == 0) return {};
+                slopes = scaled(spot.slopes);
+                renewed = true;
+            }
+            Slopes all(n + 1, n + 1);
+            all << slopes, normal.transpose();
+            Vector rest(n + 1);
+            rest << -off, normal.dot(guess - y);
+            last = algebra::solve_by_singular_values(all, rest, 1e-10);
+            y += last;
+            if ((y - guess).norm() > 0.5) return {};
+        }
+        return {};
+    }
+
+    void tell(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
+    std::optional<Spot> at_value(const Spot& a, const Spot& b, double p) {
+        const double part = (p - a.p) / (b.p - a.p);
+        Vector guess = (1 - part) * scaled(a) + part * scaled(b);
+        guess[units_.size()] = p / range_;
+        auto spot = correct(guess, across(), part < 0.5 ? a.slopes : b.slopes);
+        if (spot) tell(*spot);
+        return spot;
+    }
+
+    /// Between two points with a function of other signs: where it is zero.
+    std::optional<Spot> zero_between(const Spot& a, const Spot& b, double f_a, double f_b, const Test& f) {
+        const Vector begin = scaled(a), way = scaled(b) - begin;
+        double low = 0, high = 1, f_low = f_a, f_high = f_b;
+        std::optional<Spot> best;
+        int side = 0;
+        for (int i = 0; i < 40 && high - low > 1e-9; ++i) {
+            const double at = (low * f_high - high * f_low) / (f_high - f_low);
+            auto spot = correct(begin + at * way, way.normalized(), at < 0.5 ? a.slopes : b.slopes);
+            if (!spot) break;
+            const double value = f(*spot);
+            best = std::move(spot);
+            if (std::fabs(value) < least_slope * std::max({std::fabs(f_a), std::fabs(f_b), 1e-3})) break;
+            // Illinois: an end that stays counts half.
+            if (value * f_high > 0) {
+                high = at, f_high = value;
+                if (side == 1) f_low /= 2;
+                side = 1;
+            } else {
+                low = at, f_low = value;
+                if (side == -1) f_high /= 2;
+                side = -1;
+            }
+        }
+        if (best) tell(*best);
+        return best;
+    }
+
+    /// On which side of the branch a tangent is, which stays the same along it, also round corners.
+    [[nodiscard]] double orientation(const Slopes& slopes, const Vector& tangent) const {
+        const Eigen::Index n = units_.size();
+        Slopes all(n + 1, n + 1);
+        all << scaled(slopes), tangent.transpose();
+        return algebra::determinant(all);
+    }
+
+    /// Near a corner of the branch, as where the motion begins to stop: the point on its other side.
+    std::optional<Spot> beyond_corner(const Spot& now, const Vector& ahead) {
+        constexpr double beyond = 1e-3, near = 1e-5;
+        reach_ = beyond;
+        const auto there = spot_at(scaled(now) + beyond * ahead);
+        if (!there) return {};
+        Vector way = tangent(*there, ahead);
+        if (orientation(there->slopes, way) * orientation_ < 0) way = -way;
+        reach_ = near / 10;
+        auto spot = correct(scaled(now) + near * way, way, there->slopes);
+        const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(units_.size() + 1);
+        if (!spot || !(moved.dot(way) > straight * moved.norm()) || moved.norm() > 2 * near) return {};
+        return spot;
+    }
+
+    /// Goes there, from a point that is not much farther away than this.
+    bool round_corner(Spot& now, Vector& ahead, double distance) {
+        Spot before = now;
+        reach_ = distance / 10;
+        differentiate(before);
+        if (before.slopes.size() == 0) return false;
+        const Vector here = tangent(before, ahead);
+        auto beyond = beyond_corner(before, here);
+        if (!beyond) return false;
+        tell(*beyond);
+        if (becomes_symmetric(now.motion, beyond->motion)) return false;
+        const Vector beside = tangent(*beyond, scaled(*beyond) - scaled(before));
+        const Eigen::Index n = units_.size();
+        if (beside[n] * here[n] < 0) {
+            if (const auto fold = corner_between(before, here, *beyond, beside)) add(*fold, BranchKind::fold);
+        }
+        add(*beyond, BranchKind::point);
+        anchors_.clear();
+        specials_before(*beyond, beside);
+        now = std::move(*beyond);
+        ahead = beside;
+        return true;
+    }
+
+    /// Where the tangents at two points meet, one on either side of a corner.
+    std::optional<Spot> corner_between(const Spot& a, const Vector& on_a, const Spot& b, const Vector& on_b) {
+        Slopes ways(units_.size() + 1, 2);
+        ways << on_a, on_b;
+        const Vector parts = algebra::solve_least_squares(ways, scaled(b) - scaled(a));
+        auto corner = spot_at(scaled(a) + parts[0] * on_a);
+        if (corner) tell(*corner);
+        return corner;
+    }
+
+    /// A place that need not be on the branch, with its slopes.
+    std::optional<Spot> spot_at(const Vector& y) {
+        const Eigen::Index n = units_.size();
+        Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = y[n] * range_};
+        if (!(spot.p >= values_.front() && spot.p <= values_.back())) return {};
+        spot.lap = circuit_.lap(spot.x, spot.p);
+        if (spot.lap.finished) differentiate(spot);
+        return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
+    }
+
+    /// The zeros of the test functions before this point, in their order.
+    std::vector<Special> specials_before(const Spot& spot, const Vector& ahead) {
+        struct Kind {
+            double (*test)(const Eigen::MatrixXd&);
+            BranchKind kind;
+        };
+        const BranchKind of_minus_one = circuit_.is_half() ? BranchKind::pitchfork : BranchKind::doubling;
+        const BranchKind of_pair = circuit_.stands() ? BranchKind::hopf : BranchKind::torus;
+        const std::array<Kind, 2> kinds{{{doubling_test, of_minus_one}, {pair_test, of_pair}}};
+        anchors_.resize(kinds.size());
+        std::vector<Special> found;
+        for (std::size_t i = 0; i < kinds.size(); ++i) {
+            const Kind kind = kinds[i];
+            const Test f = [kind](const Spot& at) { return kind.test(at.derivative()); };
+            const double value = f(spot);
+            constexpr double rounding = 1e-7;
+            if (!(std::fabs(value) > rounding)) continue;
+            const std::optional<Anchor> from = std::exchange(anchors_[i], Anchor{spot, value});
+            if (!from || from->value * value > 0 || (i == 1 && spot.x.size() < 2)) continue;
+            sharp_ = true;
+            auto zero = zero_between(from->spot, spot, from->value, value, f);
+            sharp_ = false;
+            // At a corner it jumps from one sign to the other.
+            if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(value), std::fabs(from->value))) continue;
+            if (i == 1 && !has_complex_pair(zero->derivative())) continue;
+            found.push_back({std::move(*zero), kind.kind});
+        }
+        const Vector here = scaled(spot);
+        std::sort(found.begin(), found.end(), [&](const Special& a, const Special& b) {
+            return ahead.dot(scaled(a.spot) - here) < ahead.dot(scaled(b.spot) - here);
+        });
+        return found;
+    }
+
+    /// The next one asked for, or the end of the range.
+    [[nodiscard]] double next_value(double p, double way) const {
+        if (way > 0) {
+            const auto next = std::upper_bound(values_.begin(), values_.end(), p + slack_);
+            return next == values_.end() ? values_.back() : *next;
+        }
+        const auto next = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+        return next == values_.begin() ? values_.front() : *(next - 1);
+    }
+
+    /// Adds the points at the values between two points and, unless it lies beyond the range, the second one; whether
+    /// the branch goes on inside it.
+    bool add_way(const Spot& a, const Spot& b, BranchKind kind) {
+        const double way = b.p - a.p;
+        double p = next_value(a.p, way);
+        while ((b.p - p) * way > slack_ * std::fabs(way)) {
+            if (std::fabs(p - a.p) <= slack_) break;  // the end of the range
+            if (const auto between = at_value(a, b, p)) add(*between, BranchKind::point);
+            if (p == values_.front() || p == values_.back()) break;
+            p = next_value(p, way);
+        }
+        add(b, kind);
+        return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
+    }
+
+    void add(const Spot& spot, BranchKind kind) {
+        const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
+        // The points between are for the eye: few do.
+        std::vector<BranchPoint>& points = path_.points;
+        const auto is_between = [](const BranchPoint& point) {
+            return !point.asked && point.kind == BranchKind::point;
+        };
+        if (points.size() > 1 && is_between(points.back())) {
+            const BranchPoint& before = points[points.size() - 2];
+            const double way = std::hypot((spot.p - before.parameter) / range_,
+                                          (spot.motion.amplitude - before.motion.amplitude) / greatest_.maxCoeff());
+            if (way < first_step && spot.motion.stable == before.motion.stable) points.pop_back();
+        }
+        points.push_back({spot.p, spot.motion, asked, kind});
+    }
+
+    /// Units follow the motion, but not to where it dies.
+    void rescale(const Spot& spot, Vector& ahead) {
+        Vector units = circuit_.units(spot.x, spot.lap, spot.motion);
+        if (greatest_.size() == 0) greatest_ = units;
+        units = units.cwiseMax(dying * greatest_);
+        greatest_ = greatest_.cwiseMax(units);
+        const auto ratio = units.cwiseQuotient(units_).array();
+        if (ratio.maxCoeff() <= 1.2 && ratio.minCoeff() >= 1 / 1.2) return;
+        const Eigen::Index n = units.size();
+        ahead.head(n) = ahead.head(n).cwiseProduct(units_).cwiseQuotient(units).eval();
+        units_ = units;
+        ahead = tangent(spot, ahead);
+    }
+
+    /// The one asked for that this is, but for rounding; else itself.
+    [[nodiscard]] double value_near(double p) const {
+        const auto near = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+        return near != values_.end() && *near <= p + slack_ ? *near : p;
+    }
+
+    Circuit& circuit_;
+    std::span<const double> values_;
+    double range_, slack_;
+    Vector units_, greatest_;
+    bool sharp_ = false;      // differences of a higher order
+    bool rough_ = false;      // a one-sided difference by p will do: it only says where the next guess is
+    double orientation_ = 0;  // of the walk
+    double reach_ = 1;        // of the present step: differences stay on its side of a corner
+    std::vector<std::optional<Anchor>> anchors_;
+    BranchPath path_;
+};
+
 }  // namespace
 
 std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
@@ -114,477 +662,16 @@ std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, cons
     return std::make_unique<PeriodCircuit>(family, p, motion, periods, monitor);
 }
 
-BranchWalk::Slopes BranchWalk::scaled(const Slopes& slopes) const {
-    Vector columns(units_.size() + 1);
-    columns << units_, range_;
-    return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
+BranchPath walk(Circuit& circuit, std::span<const double> values, double parameter, double way) {
+    return BranchWalk(circuit, values).walk(parameter, way);
 }
 
-void BranchWalk::differentiate(Spot& spot) {
-    const Eigen::Index n = spot.x.size();
-    bool good = true;
-    const auto slope = [&](double h, const auto& moved) -> Vector {
-        const auto at = [&](double step) -> Vector {
-            const auto [x, p] = moved(step);
-            const Circuit::Lap lap = circuit_.lap(x, p);
-            good = good && lap.finished;
-            return good ? Vector(lap.to - x) : Vector::Zero(n);
-        };
-        Vector central = (at(h) - at(-h)) / (2 * h);
-        if (!sharp_) return central;
-        return (4 * central - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
-    };
-    spot.slopes.resize(n, n + 1);
-    if (spot.lap.derivative) {
-        spot.slopes.leftCols(n) = *spot.lap.derivative - Slopes::Identity(n, n);
-    } else {
-        const double h = sharp_ ? 3e-4 : std::clamp(reach_ / 4, 1e-8, circuit_.difference());
-        for (Eigen::Index i = 0; i < n; ++i) {
-            spot.slopes.col(i) = slope(h * units_[i], [&](double step) {
-                return std::pair(Vector(spot.x + step * Vector::Unit(n, i)), spot.p);
-            });
-        }
-    }
-    // At an end of the range the question is asked inside only.
-    const double h = std::clamp(reach_ / 4, 1e-8, 1e-6) * range_,
-                 p = std::clamp(spot.p, values_.front() + h, values_.back() - h);
-    if (rough_) {
-        const double inside = spot.p + h > values_.back() ? -h : h;
-        const Circuit::Lap lap = circuit_.lap(spot.x, spot.p + inside);
-        good = good && lap.finished;
-        if (good) spot.slopes.col(n) = (lap.to - spot.lap.to) / inside;
-    } else {
-        const bool sharp = std::exchange(sharp_, false);
-        spot.slopes.col(n) = slope(h, [&](double step) { return std::pair(spot.x, p + step); });
-        sharp_ = sharp;
-    }
-    if (!good) spot.slopes.resize(0, 0);
+BranchPath walk_aside(Circuit& circuit, std::span<const double> values, double parameter) {
+    return BranchWalk(circuit, values).walk_aside(parameter);
 }
 
-BranchWalk::Vector BranchWalk::tangent(const Spot& spot, const Vector& before) const {
-    Slopes slopes = scaled(spot.slopes);
-    for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
-    const algebra::FreeDirection free = algebra::free_direction(slopes);
-    const Eigen::Index n = slopes.rows();
-    // Where the mass may rest anywhere there is a surface of fixed points: stay where it is.
-    if (!(std::fabs(free.last_pivot) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
-    const Vector& t = free.direction;
-    return t * (t.dot(before) < 0 ? -1 : 1);
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::correct(const Vector& guess, const Vector& normal, Slopes slopes) {
-    constexpr int most_steps = 12;
-    const Eigen::Index n = units_.size();
-    slopes = scaled(slopes);
-    Vector y = guess, last;
-    bool renewed = false;
-    for (int i = 0; i <= most_steps; ++i) {
-        const double p = y[n] * range_;
-        if (!y.allFinite() || p < values_.front() - slack_ || p > values_.back() + slack_) return {};
-        Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = value_near(p)};
-        spot.lap = circuit_.lap(spot.x, spot.p);
-        if (!spot.lap.finished || circuit_.stopped()) return {};
-        const Vector off = (spot.lap.to - spot.x).cwiseQuotient(units_);
-        // Broyden's update: the slopes that explain what the last step has left.
-        if (i > 0 && !renewed) slopes += off * last.transpose() / std::max(last.squaredNorm(), 1e-300);
-        renewed = false;
-        if (off.norm() <= closes || (i > 3 && off.norm() <= nearly_closes)) {
-            differentiate(spot);
-            return spot.slopes.size() > 0 && !circuit_.stopped() ? std::optional(spot) : std::nullopt;
-        }
-        if (i == 4) {
-            differentiate(spot);
-            if (spot.slopes.size() == 0) return {};
-            slopes = scaled(spot.slopes);
-            renewed = true;
-        }
-        Slopes all(n + 1, n + 1);
-        all << slopes, normal.transpose();
-        Vector rest(n + 1);
-        rest << -off, normal.dot(guess - y);
-        last = algebra::solve_by_singular_values(all, rest, 1e-10);
-        y += last;
-        if ((y - guess).norm() > 0.5) return {};
-    }
-    return {};
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::at_value(const Spot& a, const Spot& b, double p) {
-    const double part = (p - a.p) / (b.p - a.p);
-    Vector guess = (1 - part) * scaled(a) + part * scaled(b);
-    guess[units_.size()] = p / range_;
-    auto spot = correct(guess, across(), part < 0.5 ? a.slopes : b.slopes);
-    if (spot) tell(*spot);
-    return spot;
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::zero_between(const Spot& a, const Spot& b, double f_a, double f_b,
-                                                         const Test& f) {
-    const Vector begin = scaled(a), way = scaled(b) - begin;
-    double low = 0, high = 1, f_low = f_a, f_high = f_b;
-    std::optional<Spot> best;
-    int side = 0;
-    for (int i = 0; i < 40 && high - low > 1e-9; ++i) {
-        const double at = (low * f_high - high * f_low) / (f_high - f_low);
-        auto spot = correct(begin + at * way, way.normalized(), at < 0.5 ? a.slopes : b.slopes);
-        if (!spot) break;
-        const double value = f(*spot);
-        best = std::move(spot);
-        if (std::fabs(value) < least_slope * std::max({std::fabs(f_a), std::fabs(f_b), 1e-3})) break;
-        // Illinois: an end that stays counts half.
-        if (value * f_high > 0) {
-            high = at, f_high = value;
-            if (side == 1) f_low /= 2;
-            side = 1;
-        } else {
-            low = at, f_low = value;
-            if (side == -1) f_high /= 2;
-            side = -1;
-        }
-    }
-    if (best) tell(*best);
-    return best;
-}
-
-double BranchWalk::orientation(const Slopes& slopes, const Vector& tangent) const {
-    const Eigen::Index n = units_.size();
-    Slopes all(n + 1, n + 1);
-    all << scaled(slopes), tangent.transpose();
-    return algebra::determinant(all);
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::spot_at(const Vector& y) {
-    const Eigen::Index n = units_.size();
-    Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = y[n] * range_};
-    if (!(spot.p >= values_.front() && spot.p <= values_.back())) return {};
-    spot.lap = circuit_.lap(spot.x, spot.p);
-    if (spot.lap.finished) differentiate(spot);
-    return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::beyond_corner(const Spot& now, const Vector& ahead) {
-    constexpr double beyond = 1e-3, near = 1e-5;
-    reach_ = beyond;
-    const auto there = spot_at(scaled(now) + beyond * ahead);
-    if (!there) return {};
-    Vector way = tangent(*there, ahead);
-    if (orientation(there->slopes, way) * orientation_ < 0) way = -way;
-    reach_ = near / 10;
-    auto spot = correct(scaled(now) + near * way, way, there->slopes);
-    const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(units_.size() + 1);
-    if (!spot || !(moved.dot(way) > straight * moved.norm()) || moved.norm() > 2 * near) return {};
-    return spot;
-}
-
-bool BranchWalk::round_corner(Spot& now, Vector& ahead, double distance) {
-    Spot before = now;
-    reach_ = distance / 10;
-    differentiate(before);
-    if (before.slopes.size() == 0) return false;
-    const Vector here = tangent(before, ahead);
-    auto beyond = beyond_corner(before, here);
-    if (!beyond) return false;
-    tell(*beyond);
-    if (becomes_symmetric(now.motion, beyond->motion)) return false;
-    const Vector beside = tangent(*beyond, scaled(*beyond) - scaled(before));
-    const Eigen::Index n = units_.size();
-    if (beside[n] * here[n] < 0) {
-        if (const auto fold = corner_between(before, here, *beyond, beside)) add(*fold, BranchKind::fold);
-    }
-    add(*beyond, BranchKind::point);
-    anchors_.clear();
-    specials_before(*beyond, beside);
-    now = std::move(*beyond);
-    ahead = beside;
-    return true;
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::corner_between(const Spot& a, const Vector& on_a, const Spot& b,
-                                                           const Vector& on_b) {
-    Slopes ways(units_.size() + 1, 2);
-    ways << on_a, on_b;
-    const Vector parts = algebra::solve_least_squares(ways, scaled(b) - scaled(a));
-    auto corner = spot_at(scaled(a) + parts[0] * on_a);
-    if (corner) tell(*corner);
-    return corner;
-}
-
-std::vector<BranchWalk::Special> BranchWalk::specials_before(const Spot& spot, const Vector& ahead) {
-    struct Kind {
-        double (*test)(const Eigen::MatrixXd&);
-        BranchKind kind;
-    };
-    const BranchKind of_minus_one = circuit_.is_half() ? BranchKind::pitchfork : BranchKind::doubling;
-    const BranchKind of_pair = circuit_.stands() ? BranchKind::hopf : BranchKind::torus;
-    const std::array<Kind, 2> kinds{{{doubling_test, of_minus_one}, {pair_test, of_pair}}};
-    anchors_.resize(kinds.size());
-    std::vector<Special> found;
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-        const Kind kind = kinds[i];
-        const Test f = [kind](const Spot& at) { return kind.test(at.derivative()); };
-        const double value = f(spot);
-        constexpr double rounding = 1e-7;
-        if (!(std::fabs(value) > rounding)) continue;
-        const std::optional<Anchor> from = std::exchange(anchors_[i], Anchor{spot, value});
-        if (!from || from->value * value > 0 || (i == 1 && spot.x.size() < 2)) continue;
-        sharp_ = true;
-        auto zero = zero_between(from->spot, spot, from->value, value, f);
-        sharp_ = false;
-        // At a corner it jumps from one sign to the other.
-        if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(value), std::fabs(from->value))) continue;
-        if (i == 1 && !has_complex_pair(zero->derivative())) continue;
-        found.push_back({std::move(*zero), kind.kind});
-    }
-    const Vector here = scaled(spot);
-    std::sort(found.begin(), found.end(), [&](const Special& a, const Special& b) {
-        return ahead.dot(scaled(a.spot) - here) < ahead.dot(scaled(b.spot) - here);
-    });
-    return found;
-}
-
-double BranchWalk::next_value(double p, double way) const {
-    if (way > 0) {
-        const auto next = std::upper_bound(values_.begin(), values_.end(), p + slack_);
-        return next == values_.end() ? values_.back() : *next;
-    }
-    const auto next = std::lower_bound(values_.begin(), values_.end(), p - slack_);
-    return next == values_.begin() ? values_.front() : *(next - 1);
-}
-
-double BranchWalk::value_near(double p) const {
-    const auto near = std::lower_bound(values_.begin(), values_.end(), p - slack_);
-    return near != values_.end() && *near <= p + slack_ ? *near : p;
-}
-
-void BranchWalk::add(const Spot& spot, BranchKind kind) {
-    const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
-    // The points between are for the eye: few do.
-    std::vector<BranchPoint>& points = path_.points;
-    const auto is_between = [](const BranchPoint& point) { return !point.asked && point.kind == BranchKind::point; };
-    if (points.size() > 1 && is_between(points.back())) {
-        const BranchPoint& before = points[points.size() - 2];
-        const double way = std::hypot((spot.p - before.parameter) / range_,
-                                      (spot.motion.amplitude - before.motion.amplitude) / greatest_.maxCoeff());
-        if (way < first_step && spot.motion.stable == before.motion.stable) points.pop_back();
-    }
-    points.push_back({spot.p, spot.motion, asked, kind});
-}
-
-bool BranchWalk::add_way(const Spot& a, const Spot& b, BranchKind kind) {
-    const double way = b.p - a.p;
-    double p = next_value(a.p, way);
-    while ((b.p - p) * way > slack_ * std::fabs(way)) {
-        if (std::fabs(p - a.p) <= slack_) break;  // the end of the range
-        if (const auto between = at_value(a, b, p)) add(*between, BranchKind::point);
-        if (p == values_.front() || p == values_.back()) break;
-        p = next_value(p, way);
-    }
-    add(b, kind);
-    return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
-}
-
-void BranchWalk::rescale(const Spot& spot, Vector& ahead) {
-    Vector units = circuit_.units(spot.x, spot.lap, spot.motion);
-    if (greatest_.size() == 0) greatest_ = units;
-    units = units.cwiseMax(dying * greatest_);
-    greatest_ = greatest_.cwiseMax(units);
-    const auto ratio = units.cwiseQuotient(units_).array();
-    if (ratio.maxCoeff() <= 1.2 && ratio.minCoeff() >= 1 / 1.2) return;
-    const Eigen::Index n = units.size();
-    ahead.head(n) = ahead.head(n).cwiseProduct(units_).cwiseQuotient(units).eval();
-    units_ = units;
-    ahead = tangent(spot, ahead);
-}
-
-std::optional<BranchWalk::Spot> BranchWalk::begun(double parameter) {
-    path_ = {};
-    anchors_.clear();
-    greatest_ = {};
-    reach_ = 1;
-    Spot spot{.x = circuit_.first(), .p = parameter};
-    spot.lap = circuit_.lap(spot.x, spot.p);
-    if (spot.lap.finished && !circuit_.stopped()) {
-        const Eigen::Index n = spot.x.size();
-        units_ = Vector::Ones(n);
-        spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, Slopes::Zero(n, n));
-        units_ = circuit_.units(spot.x, spot.lap, spot.motion);
-        constexpr double astray = 1e-5;
-        if ((spot.lap.to - spot.x).cwiseQuotient(units_).norm() < astray) differentiate(spot);
-    }
-    if (spot.slopes.size() > 0 && !circuit_.stopped()) {
-        tell(spot);
-        return spot;
-    }
-    path_.end = circuit_.stopped() ? WalkEnd::stopped : WalkEnd::lost;
-    return {};
-}
-
-BranchPath BranchWalk::walk(double parameter, double way) {
-    const auto first = begun(parameter);
-    if (!first) return path_;
-    return followed(*first, tangent(*first, way * across()));
-}
-
-BranchPath BranchWalk::walk_aside(double parameter) {
-    const auto first = begun(parameter);
-    if (!first) return path_;
-    // A disturbance that comes back to itself.
-    const Eigen::Index n = units_.size();
-    const Slopes slopes = scaled(first->slopes).leftCols(n);
-    Vector aside = Vector::Zero(n + 1);
-    aside.head(n) = algebra::most_shortened(slopes);
-    constexpr double away = 1e-2;
-    const Vector guess = scaled(*first) + away * aside;
-    const auto there = spot_at(guess);  // of the branch itself the slopes say nothing of the other one
-    auto next = there ? correct(guess, aside, there->slopes) : std::nullopt;
-    if (!next) {
-        path_.end = WalkEnd::lost;
-        return path_;
-    }
-    tell(*next);
-    add(*next, BranchKind::point);
-    return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
-}
-
-BranchPath BranchWalk::walk_up(double parameter) {
-    const auto first = begun(parameter);
-    if (!first) return path_;
-    // The velocity at the section grows with the cycle.
-    const double away = first->x[0] < 0 ? -1 : 1;
-    return followed(*first, tangent(*first, away * Vector::Unit(units_.size() + 1, 0)));
-}
-
-BranchWalk::Vector BranchWalk::slope_by_p(const Vector& tangent) const {
-    const Eigen::Index n = units_.size();
-    return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
-}
-
-void BranchWalk::curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead,
-                          double target) const {
-    const double length = now.p - before.p, t = 1 + (target - now.p) / length;
-    constexpr double farthest = 3, bent = 0.3;
-    if (!(t > 1 && t < farthest)) return;
-    const Vector x = (1 + t * t * (2 * t - 3)) * before.x + t * (1 - t) * (1 - t) * length * before.slope +
-                     t * t * (3 - 2 * t) * now.x + t * t * (t - 1) * length * slope_by_p(ahead);
-    const Eigen::Index n = units_.size();
-    const Vector moved = x.cwiseQuotient(units_) - guess.head(n);
-    if (moved.norm() < bent * (t - 1) * std::fabs(length) / range_) guess.head(n) += moved;
-}
-
-BranchPath BranchWalk::followed(Spot now, Vector ahead) {
-    const Spot first = now;
-    const Vector first_ahead = ahead;
-    double longest = first_step;
-    const double smallest = units_.maxCoeff();
-    int creeps = 0;
-    bool recentred = false;
-    std::optional<Passed> passed;
-    orientation_ = orientation(now.slopes, ahead);
-    specials_before(now, ahead);  // anchors
-    const std::size_t most_points = 2000 + 20 * values_.size();
-    path_.end = WalkEnd::lost;
-    const Eigen::Index n = now.x.size();
-    while (path_.points.size() < most_points) {
-        rescale(now, ahead);
-        if (greatest_.maxCoeff() > boundless * smallest) {
-            path_.end = WalkEnd::vanished;
-            return path_;
-        }
-        const double target = next_value(now.p, ahead[n]);
-        const double left = std::fabs(target - now.p) / range_;
-        if (left * range_ <= slack_) {
-            path_.end = WalkEnd::range;
-            return path_;
-        }
-        const bool reaches = left <= longest * std::fabs(ahead[n]);
-        const double step = reaches ? left / std::fabs(ahead[n]) : longest;
-        reach_ = step;
-        Vector guess = scaled(now) + step * ahead;
-        if (reaches) {
-            if (passed) curve_on(guess, *passed, now, ahead, target);
-            guess[n] = target / range_;
-        }
-        rough_ = true;
-        auto spot = correct(guess, reaches ? across() : ahead, now.slopes);
-        rough_ = false;
-        if (circuit_.stopped()) {
-            path_.end = WalkEnd::stopped;
-            return path_;
-        }
-        const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(n + 1);
-        const Vector on = spot ? tangent(*spot, moved) : ahead;
-        const bool close = spot && moved.norm() <= 2 * step && moved.dot(ahead) > straight / 2 * moved.norm();
-        if (!close || on.dot(ahead) <= straight) {
-            const bool corner = close && step < corner_step;
-            const bool stalls = step / 2 <= shortest_step || creeps > most_creeps;
-            if ((corner || stalls) && round_corner(now, ahead, step)) {
-                longest = first_step, creeps = 0;
-                passed.reset();
-                continue;
-            }
-            if (stalls) return path_;
-            longest = step / 2;
-            if (!corner) continue;
-        }
-        if (step > corner_step) orientation_ = orientation(spot->slopes, on);
-        creeps = step < creeping ? creeps + 1 : 0;
-        longest = std::min(longest_step, 1.5 * longest);
-        tell(*spot);
-        if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
-        std::vector<Special> specials = specials_before(*spot, ahead);
-        // Where a branch begins at a Hopf point it is upright, and its slope is rounding.
-        if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright) {
-            const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
-            if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
-                const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
-                    return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
-                });
-                specials.insert(after, {std::move(*fold), BranchKind::fold});
-            }
-        }
-        bool inside = true;
-        const Spot* from = &now;
-        for (const Special& special : specials) {
-            if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // it is at the present point, to rounding
-                add(special.spot, special.kind);
-                continue;
-            }
-            inside = inside && add_way(*from, special.spot, special.kind);
-            from = &special.spot;
-        }
-        if (!inside || !add_way(*from, *spot, BranchKind::point)) {
-            path_.end = WalkEnd::range;
-            return path_;
-        }
-        if (!recentred && path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
-            on.dot(first_ahead) > straight) {
-            path_.end = WalkEnd::closed;
-            return path_;
-        }
-        if (circuit_.cycles() &&
-            circuit_.units(spot->x, spot->lap, spot->motion).cwiseQuotient(greatest_).maxCoeff() < vanishes) {
-            path_.end = WalkEnd::vanished;
-            return path_;
-        }
-        passed = Passed{now.x, slope_by_p(ahead), now.p};
-        ahead = on;
-        if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
-            recentred = true;
-            passed.reset();
-            anchors_.clear();
-            now.x = places->front();
-            const Vector before = scaled(now);
-            spot->x = places->back();
-            spot->lap = circuit_.lap(spot->x, spot->p);
-            if (!spot->lap.finished) return path_;
-            differentiate(*spot);
-            if (spot->slopes.size() == 0) return path_;
-            ahead = tangent(*spot, scaled(*spot) - before);
-            specials_before(*spot, ahead);
-        }
-        now = std::move(*spot);
-    }
-    return path_;
+BranchPath walk_up(Circuit& circuit, std::span<const double> values, double parameter) {
+    return BranchWalk(circuit, values).walk_up(parameter);
 }
 
 }  // namespace dinal::analysis

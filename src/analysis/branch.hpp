@@ -116,106 +116,12 @@ struct BranchPath {
     WalkEnd end = WalkEnd::range;
 };
 
-class BranchWalk {
-public:
-    /// `values` of the parameter increase, two at least; all must outlive it.
-    BranchWalk(Circuit& circuit, std::span<const double> values)
-        : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
-
-    /// From the first place of the circuit at this parameter towards greater ones (way = 1) or smaller ones (-1).
-    BranchPath walk(double parameter, double way);
-    /// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
-    BranchPath walk_aside(double parameter);
-    /// From a limit cycle on to greater ones.
-    BranchPath walk_up(double parameter);
-
-private:
-    using Vector = Eigen::VectorXd;
-    using Slopes = Eigen::MatrixXd;  // of what a fixed point misses, by x and p
-
-    /// A fixed point with the slopes there.
-    struct Spot {
-        Vector x = {};
-        double p = 0;
-        Circuit::Lap lap = {};
-        Slopes slopes = {};
-        SteadyMotion motion = {};
-        [[nodiscard]] Slopes derivative() const {
-            return slopes.leftCols(x.size()) + Slopes::Identity(x.size(), x.size());
-        }
-    };
-    using Test = std::function<double(const Spot&)>;
-    struct Special {
-        Spot spot;
-        BranchKind kind;
-    };
-    /// A point before the present one.
-    struct Passed {
-        Vector x = {}, slope = {};  // by p
-        double p = 0;
-    };
-    /// The last point at which a test function was more than rounding.
-    struct Anchor {
-        Spot spot;
-        double value = 0;
-    };
-
-    [[nodiscard]] Vector scaled(const Spot& spot) const {
-        Vector y(spot.x.size() + 1);
-        y << spot.x.cwiseQuotient(units_), spot.p / range_;
-        return y;
-    }
-    /// Slopes as the scaled unknowns and the scaled miss have them.
-    [[nodiscard]] Slopes scaled(const Slopes& slopes) const;
-    /// The way on along the curve, of length 1, not against `before`.
-    [[nodiscard]] Vector tangent(const Spot& spot, const Vector& before) const;
-    [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
-
-    BranchPath followed(Spot now, Vector ahead);
-    [[nodiscard]] Vector slope_by_p(const Vector& tangent) const;
-    /// A better guess at this parameter: on the cubic through two points and their slopes, unless it bends away.
-    void curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead, double target) const;
-    std::optional<Spot> begun(double parameter);
-    void differentiate(Spot& spot);
-    /// The point of the curve nearest to a guess, in the plane through the guess across `normal`.
-    std::optional<Spot> correct(const Vector& guess, const Vector& normal, Slopes slopes);
-    void tell(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
-    std::optional<Spot> at_value(const Spot& a, const Spot& b, double p);
-    /// Between two points with a function of other signs: where it is zero.
-    std::optional<Spot> zero_between(const Spot& a, const Spot& b, double f_a, double f_b, const Test& f);
-    /// On which side of the branch a tangent is, which stays the same along it, also round corners.
-    [[nodiscard]] double orientation(const Slopes& slopes, const Vector& tangent) const;
-    /// Near a corner of the branch, as where the motion begins to stop: the point on its other side.
-    std::optional<Spot> beyond_corner(const Spot& now, const Vector& ahead);
-    /// Goes there, from a point that is not much farther away than this.
-    bool round_corner(Spot& now, Vector& ahead, double distance);
-    /// Where the tangents at two points meet, one on either side of a corner.
-    std::optional<Spot> corner_between(const Spot& a, const Vector& on_a, const Spot& b, const Vector& on_b);
-    /// A place that need not be on the branch, with its slopes.
-    std::optional<Spot> spot_at(const Vector& y);
-    /// The zeros of the test functions before this point, in their order.
-    std::vector<Special> specials_before(const Spot& spot, const Vector& ahead);
-    /// The next one asked for, or the end of the range.
-    [[nodiscard]] double next_value(double p, double way) const;
-    /// Adds the points at the values between two points and, unless it lies beyond the range, the second one; whether
-    /// the branch goes on inside it.
-    bool add_way(const Spot& a, const Spot& b, BranchKind kind);
-    void add(const Spot& spot, BranchKind kind);
-    /// Units follow the motion, but not to where it dies.
-    void rescale(const Spot& spot, Vector& ahead);
-    /// The one asked for that this is, but for rounding; else itself.
-    [[nodiscard]] double value_near(double p) const;
-
-    Circuit& circuit_;
-    std::span<const double> values_;
-    double range_, slack_;
-    Vector units_, greatest_;
-    bool sharp_ = false;      // differences of a higher order
-    bool rough_ = false;      // a one-sided difference by p will do: it only says where the next guess is
-    double orientation_ = 0;  // of the walk
-    double reach_ = 1;        // of the present step: differences stay on its side of a corner
-    std::vector<std::optional<Anchor>> anchors_;
-    BranchPath path_;
-};
+/// From the first place of the circuit at this parameter towards greater ones (way = 1) or smaller ones (-1). `values`
+/// of the parameter increase, two at least.
+BranchPath walk(Circuit& circuit, std::span<const double> values, double parameter, double way);
+/// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
+BranchPath walk_aside(Circuit& circuit, std::span<const double> values, double parameter);
+/// From a limit cycle on to greater ones.
+BranchPath walk_up(Circuit& circuit, std::span<const double> values, double parameter);
 
 }  // namespace dinal::analysis

@@ -131,11 +131,11 @@ private:
                 if (point.kind == BranchKind::hopf && !ends_at(point)) {
                     const auto circuit =
                         circuit_of_first_cycles(question_.family, point.parameter, point.motion, monitor_);
-                    if (circuit) add_born(point, *circuit, BranchWalk(*circuit, sorted_).walk_up(point.parameter));
+                    if (circuit) add_born(point, *circuit, walk_up(*circuit, sorted_, point.parameter));
                 }
                 if (point.kind == BranchKind::doubling && question_.doubled) {
                     const auto circuit = circuit_of(point.parameter, point.motion, 2 * point.motion.periods);
-                    if (circuit) add_born(point, *circuit, BranchWalk(*circuit, sorted_).walk_aside(point.parameter));
+                    if (circuit) add_born(point, *circuit, walk_aside(*circuit, sorted_, point.parameter));
                 }
             }
         }
@@ -178,18 +178,17 @@ private:
     /// The branch through this motion, both ways unless it begins here.
     std::vector<BranchPoint>& add_branch(Circuit& circuit, double p, const SteadyMotion& motion, bool both) {
         walked_ = true;
-        BranchWalk walk(circuit, sorted_);
         std::vector<BranchPoint> branch;
         WalkEnd back_end = WalkEnd::range;
         if (both) {
-            BranchPath back = walk.walk(p, -way_);
+            BranchPath back = walk(circuit, sorted_, p, -way_);
             see(circuit);
             back_end = back.end;
             branch.assign(back.points.rbegin(), back.points.rend());
         }
         branch.push_back({p, motion, true});
         if (back_end != WalkEnd::closed && !stopped()) {
-            BranchPath on = walk.walk(p, way_);
+            BranchPath on = walk(circuit, sorted_, p, way_);
             see(circuit);
             branch.insert(branch.end(), on.points.begin(), on.points.end());
             if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
