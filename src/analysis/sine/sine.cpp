@@ -114,7 +114,7 @@ private:
     [[nodiscard]] double zero_between(double from, double to, double x) const {
         constexpr int most_steps = 60;
         constexpr double nearly = 1e-6;  // from there the next step leaves about rounding
-        const auto newton = [this](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
+        const auto newton = [](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
         for (int i = 0; i < most_steps; ++i) {
             const Sliding now = at(x);
             (way_ * now.motion.dy > 0 ? from : to) = x;
