@@ -58,6 +58,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
     const model::Excitation breaking = question.excitation + question.extras.belt + question.extras.base;
+    const std::vector<double> jumps = run.course == nullptr ? std::vector<double>() : run.course->jumps();
     Moments sum;
     for (const Stretch& s : stretches(run)) {
         if (!(s.lasts() > 0)) continue;
@@ -69,7 +70,13 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
             }
             return Moments{off, off * std::polar(1.0, -omega * (t - drive.start))};
         };
-        sum = sum + integral(breaking, s.from, s.to, std::min({own, drive.period, s.lasts()}) / 12, moments_at);
+        const double longest = std::min({own, drive.period, s.lasts()}) / 12;
+        auto jump = std::upper_bound(jumps.begin(), jumps.end(), s.from);
+        for (double from = s.from; from < s.to;) {
+            const double to = jump == jumps.end() ? s.to : std::min(*jump++, s.to);
+            sum = sum + integral(breaking, from, to, longest, moments_at);
+            from = to;
+        }
     }
     return Fundamental{motion.symmetric ? 0 : middle + sum.theta / length, sum.wave * (2 / length)};
 }

@@ -40,6 +40,14 @@ public:
         return (after - 1)->course->states_at(t);
     }
     [[nodiscard]] double whole_until() const override { return whole_until_; }
+    [[nodiscard]] std::vector<double> jumps() const override {
+        std::vector<double> all;
+        for (const Part& part : parts_) {
+            const std::vector<double> own = part.course->jumps();
+            all.insert(all.end(), own.begin(), own.end());
+        }
+        return all;
+    }
     void legs(const std::function<void(const Leg&)>& told) const override {
         for (const Part& part : parts_) part.course->legs(told);
     }

@@ -55,6 +55,8 @@ public:
     /// Up to this time the motion is kept whole: at() need not ask M again, and legs() tells it. `never` when that is
     /// all of the run; an integrator that only keeps where to begin again has no such time.
     [[nodiscard]] virtual double whole_until() const { return -model::never; }
+    /// When the motion may have jumped that is kept: at users' acts, and where functions of it did.
+    [[nodiscard]] virtual std::vector<double> jumps() const { return {}; }
     /// In order and without gaps.
     virtual void legs(const std::function<void(const Leg&)>& /*told*/) const {}
     /// What it takes of the memory for the motion between the rows.

@@ -53,6 +53,21 @@ test("where there is no motion, or too much of it, the answer says so", function
     assert(nondimensional{ friction_ratio = 0.1 }:steady{ M = harmonic(0.5) }:explain():find("one%s+of%s+a%s+family"))
 end)
 
+test("the mean of a motion that is kicked is that of its impulses", function()
+    local I, k, factor = 5, 7, 0.7
+    local s = system { I = I, k = k, C = 0.2 }:steady { M = excitation.harmonic { omega = 0.9 }, events = {
+        { when = function(t, theta) return theta - 0.05 end, act = function(t, theta, velocity) return theta, factor * velocity end },
+    } }
+    local impulses = 0
+    for _, e in ipairs(of_kind(s.run, "user")) do impulses = impulses + I * (factor - 1) * e.velocity end
+    near(s.mean, impulses / (k * s.period), 1e-13) -- of the equation over a period the rest vanishes
+    local rig = system { bodies = { a = { I = I, k = k, C = 0.2 }, b = { I = 1, k = 9, C = 0.3 } } }
+    local same = rig:steady { M = { a = excitation.harmonic { omega = 0.9 } }, events = {
+        { when = function(t, theta) return theta.a - 0.05 end, act = function(t, theta, velocity) velocity.a = factor * velocity.a end },
+    } }
+    near(same.a.mean, s.mean, 1e-13)
+end)
+
 test("a Lua function needs a period, which must be true; native sums know theirs", function()
     local f = function(t) return math.sin(2*math.pi*1.35*t) end
     near(sliding:steady{ M = f, period = 1 / 1.35 }.amplitude, 0.860792180, 1e-9)

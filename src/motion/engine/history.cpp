@@ -129,6 +129,12 @@ std::vector<double> History::at(double t, Side side) const {
     return y;
 }
 
+std::vector<double> History::ends() const {
+    std::vector<double> times;
+    for (const Kept& kept : list_) times.push_back(kept.start.later(kept.length).hi);
+    return times;
+}
+
 void History::legs(const std::function<void(const JointLeg&)>& told) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= for_good_; ++i) {

@@ -76,6 +76,8 @@ public:
     /// It was kept up to this time; `never` when that is all of the run.
     [[nodiscard]] double whole_until() const { return whole_until_; }
     [[nodiscard]] bool empty() const { return list_.empty(); }
+    /// When each stretch ended that is kept.
+    [[nodiscard]] std::vector<double> ends() const;
     /// In order and without gaps.
     void legs(const std::function<void(const JointLeg&)>& told) const;
 
