@@ -187,7 +187,7 @@ void CallState::push_states(std::span<const double> states) const {
 
 int CallState::push_motion(const model::State& state, std::span<const double> states) const {
     const std::size_t bodies = bodies_.size();
-    if (bodies > 0 && states.size() == 2 * bodies + names_.size()) {
+    if (has_bodies(states)) {
         push_table(theta_table_, bodies_, states.first(bodies));
         push_table(velocity_table_, bodies_, states.subspan(bodies, bodies));
         states = states.subspan(2 * bodies);
@@ -285,13 +285,14 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     const bool numbers = lua_type(L, -2) == LUA_TNUMBER && lua_type(L, -1) == LUA_TNUMBER;
     const model::State next =
         nothing ? state : model::State{.theta = lua_tonumber(L, -2), .velocity = lua_tonumber(L, -1)};
-    const bool good = (nothing || numbers) && std::isfinite(next.theta) && std::isfinite(next.velocity);
+    const bool of_bodies = call->has_bodies(states);  // whose angles and velocities are fields
+    const bool good = nothing || (numbers && !of_bodies && std::isfinite(next.theta) && std::isfinite(next.velocity));
     std::string wrong;
     if (!good) {
-        wrong = fmt::format(
-            "{} returned {} and {} at t = {:.14g}; it must return theta and velocity as finite numbers, "
-            "or nothing",
-            name_, describe(L, -2), describe(L, -1), t);
+        wrong =
+            fmt::format("{} returned {} and {} at t = {:.14g}; it must {}", name_, describe(L, -2), describe(L, -1), t,
+                        of_bodies ? "change the fields of theta and velocity, and return nothing"
+                                  : "return theta and velocity as finite numbers, or nothing");
     }
     lua_settop(L, top);
     if (good && call->read_motion(states)) {

@@ -44,6 +44,10 @@ private:
     friend class LuaAction;
     friend class LuaMemory;
     void keep_error_on_top();
+    /// Angles and velocities of several bodies stand before the states.
+    [[nodiscard]] bool has_bodies(std::span<const double> states) const {
+        return !bodies_.empty() && states.size() == 2 * bodies_.size() + names_.size();
+    }
     /// Pushes theta, velocity and, where there are some, the states; returns how many that are.
     int push_motion(const model::State& state, std::span<const double> states) const;
     void push_states(std::span<const double> states) const;

@@ -321,4 +321,13 @@ test("a body that creeps beside one that swings changes nothing of its motion or
     end
 end)
 
+test("an act of a rig changes the fields of its tables", function()
+    local rig = system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 9 } } }
+    raises(function()
+        rig:simulate { velocity0 = { a = 1 }, t_end = 5, events = { {
+            when = function(t, theta) return theta.a - 0.5 end, act = function(t, theta, velocity) return theta, velocity end,
+        } } }
+    end, "must change the fields of theta and velocity, and return nothing")
+end)
+
 finish()
