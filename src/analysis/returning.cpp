@@ -447,9 +447,9 @@ double sampling_period(const model::Excitation& excitation) {
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     RigQuestion assembly = as_assembly(question);
     const bool delays = model::has_memory<model::DelayedController>(question.excitation);
-    const bool samples = model::has_memory<model::SampledController>(question.excitation);
+    const bool sampled = model::has_memory<model::SampledController>(question.excitation);
     // A relay in a motion that returns through a section is a part of the section's state.
-    if (delays || samples || (!question.is_timeless() && model::has_memory(question.excitation))) {
+    if (delays || sampled || (!question.is_timeless() && model::has_memory(question.excitation))) {
         assembly.settles = question.is_timeless() ? sampling_period(question.excitation) : question.drive.period;
     }
     return OneBodySearch(question, assembly, monitor).found();
@@ -462,9 +462,9 @@ bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const m
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
     const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});
-    constexpr double same = 1e-8;
-    return step.finished && length_of(step.to - start) <= same * size &&
-           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= same * size;
+    constexpr double alike = 1e-8;
+    return step.finished && length_of(step.to - start) <= alike * size &&
+           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
 }
 
 }  // namespace dinal::analysis
