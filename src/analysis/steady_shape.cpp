@@ -58,7 +58,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
     const model::Excitation breaking = question.excitation + question.extras.belt + question.extras.base;
-    const std::vector<double> jumps = run.course == nullptr ? std::vector<double>() : run.course->jumps();
+    const std::vector<double> ends = run.course == nullptr ? std::vector<double>() : run.course->piece_ends();
     Moments sum;
     for (const Stretch& s : stretches(run)) {
         if (!(s.lasts() > 0)) continue;
@@ -71,9 +71,9 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
             return Moments{off, off * std::polar(1.0, -omega * (t - drive.start))};
         };
         const double longest = std::min({own, drive.period, s.lasts()}) / 12;
-        auto jump = std::upper_bound(jumps.begin(), jumps.end(), s.from);
+        auto end = std::upper_bound(ends.begin(), ends.end(), s.from);
         for (double from = s.from; from < s.to;) {
-            const double to = jump == jumps.end() ? s.to : std::min(*jump++, s.to);
+            const double to = end == ends.end() ? s.to : std::min(*end++, s.to);
             sum = sum + integral(breaking, from, to, longest, moments_at);
             from = to;
         }

@@ -421,7 +421,7 @@ public:
     [[nodiscard]] double whole_until() const override {
         return run_->legs != nullptr && run_->legs->whole_until() == model::never ? model::never : -model::never;
     }
-    [[nodiscard]] std::vector<double> jumps() const override { return run_->run.history->ends(); }
+    [[nodiscard]] std::vector<double> piece_ends() const override { return run_->run.history->ends(); }
     void legs(const std::function<void(const motion::Leg&)>& told) const override {
         run_->legs->legs([&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
     }

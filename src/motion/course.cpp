@@ -40,10 +40,10 @@ public:
         return (after - 1)->course->states_at(t);
     }
     [[nodiscard]] double whole_until() const override { return whole_until_; }
-    [[nodiscard]] std::vector<double> jumps() const override {
+    [[nodiscard]] std::vector<double> piece_ends() const override {
         std::vector<double> all;
         for (const Part& part : parts_) {
-            const std::vector<double> own = part.course->jumps();
+            const std::vector<double> own = part.course->piece_ends();
             all.insert(all.end(), own.begin(), own.end());
         }
         return all;

@@ -55,8 +55,9 @@ public:
     /// Up to this time the motion is kept whole: at() need not ask M again, and legs() tells it. `never` when that is
     /// all of the run; an integrator that only keeps where to begin again has no such time.
     [[nodiscard]] virtual double whole_until() const { return -model::never; }
-    /// When the motion may have jumped that is kept: at users' acts, and where functions of it did.
-    [[nodiscard]] virtual std::vector<double> jumps() const { return {}; }
+    /// Times between which the kept motion is smooth, in order: acts and conditions on the motion are among them. Empty
+    /// if the events and the breaks of M are all such times.
+    [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }
     /// In order and without gaps.
     virtual void legs(const std::function<void(const Leg&)>& /*told*/) const {}
     /// What it takes of the memory for the motion between the rows.

@@ -282,7 +282,7 @@ std::string nil_option_now(lua_State* L) {
     thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep come here, too
     lua_Debug frame{};
     if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return "";
-    // Of a function on one line the statement goes on outside, where other variables are known.
+    // A function on one line ends before its statement does, and behind its end other variables are visible.
     if (frame.linedefined == frame.currentline || !seen.emplace(frame.source, frame.currentline).second) return "";
     const auto source = errors::source_of_frame(L, frame);
     if (!source) return "";

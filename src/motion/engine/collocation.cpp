@@ -750,8 +750,11 @@ void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame)
     }
 }
 
-/// By how much a stretch with such a series may be longer and be resolved as well. What falls below `allowed` at a low
-/// degree does so because its coefficients fall fast, or at the last by what is left there.
+namespace {
+
+/// Returns the factor by which a stretch with this series may be longer and still be resolved. The coefficients fall by
+/// some factor per degree until all that follow are below `allowed`, and a longer stretch divides this factor. If the
+/// last coefficients promise more, they decide.
 double longer_by(const Series& series, double allowed) {
     std::size_t d = cheb::degree;
     while (d > 1 && std::fabs(series[d - 1]) <= allowed) --d;
@@ -760,6 +763,8 @@ double longer_by(const Series& series, double allowed) {
         size > allowed ? std::pow(size / allowed, 1.0 / static_cast<double>(d) - 1.0 / cheb::degree) : model::never;
     return std::max(by_decay, std::pow(allowed / tail, 1.0 / cheb::degree));
 }
+
+}  // namespace
 
 /// The last coefficients of what drives each value, against what that value is and how it changes.
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
@@ -972,7 +977,7 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
         if (!found || !(*found <= s.end) || s.start.until(*found) < 1e-6 * s.h) return;
         if (!first || *found < *first) first = *found;
     };
-    // What depends on the motion, too, is asked at one state: what jumps there does so by the time.
+    // Functions of the motion are evaluated at one fixed state, so that only jumps in time are found.
     const auto of_motion = [&](const Signal& signal, double t, Side side) {
         return signal.samples_the_motion() ? signal.of_motion({t, side, begin}) : 0;
     };

@@ -66,7 +66,7 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
-    /// By how much the next one may be longer than one that was resolved.
+    /// The factor by which the next stretch may be longer than the last one, which was resolved.
     [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved, nor a longer one, and the load of a body is as rough on far shorter stretches, at
     /// one place as at another. From now on it need not be smoother than that.

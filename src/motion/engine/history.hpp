@@ -62,7 +62,7 @@ public:
           before_(std::move(before)),
           most_(most) {}
 
-    /// For good, as long as the memory lasts. What is later than `past` is there in any case.
+    /// Keeps a stretch for good while the memory lasts. Stretches later than the time `past` are kept in any case.
     void add(Kept kept, bool for_good, double past);
     /// What took no time: what a user did to the motion, an impact.
     void add_jump(double t, std::size_t joint, const Work& work) { jumps_.push_back({list_.size(), t, joint, work}); }
@@ -95,7 +95,7 @@ private:
     std::size_t most_, bytes_ = 0;
     double whole_until_ = std::numeric_limits<double>::infinity();
     std::vector<Kept> list_;
-    std::size_t for_good_ = 0;  ///< so many of the list, its first
+    std::size_t for_good_ = 0;  ///< so many of the list are kept for good, the first ones
     std::vector<Jump> jumps_;
 };
 

@@ -44,7 +44,7 @@ public:
         return {y.begin() + 2, y.end()};
     }
     [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
-    [[nodiscard]] std::vector<double> jumps() const override { return history_->ends(); }
+    [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
     void legs(const std::function<void(const Leg&)>& told) const override {
         history_->legs([&](const JointLeg& leg) { told(OneBodyLeg(leg)); });
     }

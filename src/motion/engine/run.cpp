@@ -38,8 +38,8 @@ constexpr double at_once = 1e-9;       // events that follow each other within i
 constexpr int most_at_once = 200, most_short = 400, most_attempts = 20000;
 constexpr int most_attempts_sampled = 3000;  // where a function of the motion is asked that may do anything
 constexpr double short_part = 1e-3;          // shorter than this part of the longest stretch is short
-constexpr double by_little = 16;
-constexpr int some_stretches = 12;
+constexpr double slightly = 16;  // times the tolerance: such an error limits the length of the next stretches
+constexpr int limited_stretches = 12;
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double most_blunt = 1e-9;   // of the torques: what passes its limit by more is no rounding
 constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
@@ -274,8 +274,8 @@ private:
     double attempts_since_ = 0, last_event_ = -model::never, last_full_at_ = -model::never, born_ = 0;
     double shortest_delay_ = model::never, longest_delay_ = 0;
     std::pair<std::size_t, int> last_hit_{0, 0};  ///< the joint and its wall
-    double enough_ = 0;                           ///< half a length, where a longer one was not resolved by little
-    int wait_ = 0;                                ///< for so many stretches none is longer
+    double short_enough_ = 0;                     ///< half the length that replaced one with a slightly too large error
+    int limited_for_ = 0;                         ///< so many of the next stretches are not longer than that
     int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
     std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
@@ -1228,7 +1228,7 @@ void Engine::again(Collocation::Attempt attempt) {
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
-    if (unresolved <= by_little && h_ > short_part * longest_) enough_ = h_, wait_ = some_stretches;
+    if (unresolved <= slightly && h_ > short_part * longest_) short_enough_ = h_, limited_for_ = limited_stretches;
 }
 
 bool Engine::a_belt_jumps_at(double t) const {
@@ -1409,7 +1409,7 @@ bool Engine::advance() {
                                   ? longest_
                                   : segment_.h * std::clamp(0.9 * solver_->growth(), least, samples_ ? 2.0 : 8.0);
         h_ = std::min(longest_ / 2, std::max(h_, longer));
-        if (wait_ > 0 && --wait_ > 0) h_ = std::min(h_, enough_);
+        if (limited_for_ > 0 && --limited_for_ > 0) h_ = std::min(h_, short_enough_);
     }
     Ending ending;
     watch(ending);

@@ -75,7 +75,7 @@ public:
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
-    /// Of what is not a part of an excitation.
+    /// The next time at which a rate or a law changes its formula.
     [[nodiscard]] double next_break(double t) const {
         return law_ && law_->alone ? model::never : function_->next_break(t);
     }
