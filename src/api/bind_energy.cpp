@@ -5,6 +5,7 @@
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/data.hpp"
 #include "api/run.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"

@@ -8,6 +8,7 @@
 #include "analysis/rig_story.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
+#include "api/data.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/vector.hpp"
