@@ -357,11 +357,12 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
                       .owner = piece.owner};
     start(t, state, states);
     std::vector<std::uint64_t> of = sources();
+    std::vector<std::uint64_t> jumps_with = of;  // what a staircase depends on, too
     double* const r = registers_.data();
     for (std::size_t at = 0; steps_[at].op < Op::give;) {
         const Step& s = steps_[at];
         const double a = r[s.a], b = r[s.b];
-        const std::uint64_t both = of[s.a] | of[s.b];
+        const std::uint64_t both = of[s.a] | of[s.b], all = jumps_with[s.a] | jumps_with[s.b];
         const bool compares = is_comparison(s.op);
         double result = 0;
         if (!compares && s.op != Op::jump && !operate(s.op, a, b, result)) break;
@@ -370,13 +371,13 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
             // What has jumped along with another condition is not where it was.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
-            if ((both & again) == 0 && before == before && is_beside) decision = before;
+            if ((all & again) == 0 && before == before && is_beside) decision = before;
             if (std::fabs(decision) < whole_numbers) {
                 made.decisions[at] = decision;
                 const int conditions = conditions_of(s.op, decision);
                 const double below = compares ? 1 - decision : s.op == Op::abs ? -decision : decision - 1;
-                if (conditions > 0) made.conditions.push_back({at, below, both});
-                if (conditions > 1) made.conditions.push_back({at, decision + 1, both});
+                if (conditions > 0) made.conditions.push_back({at, below, all});
+                if (conditions > 1) made.conditions.push_back({at, decision + 1, all});
                 if (!compares) result = result_on(s.op, a, b, decision);
             }
         }
@@ -388,6 +389,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
         } else {
             r[s.to] = result;
             of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
+            jumps_with[s.to] = all;
             ++at;
         }
     }

@@ -86,6 +86,36 @@ test("a jump that drives the motion back from both sides ends the run with a sen
     end
 end)
 
+test("functions that are equal make the same motion, however their conditions are written", function()
+    local pairs_of_functions = {
+        -- at a turn, 10 + velocity has lost the digits of what sets off
+        { function(_, _, velocity) return -0.2 * math.floor((10 + velocity) / 0.5) end,
+            function(_, _, velocity) return -0.2 * math.floor(velocity / 0.5) - 4 end },
+        -- the square root has no value beyond theta = 0, if |theta| is taken to be theta there
+        { function(_, theta) return math.min(0.4, math.abs(theta) ^ 0.5) end,
+            function(_, theta) return math.abs(theta) > 0.16 and 0.4 or math.abs(theta) ^ 0.5 end },
+        { function(_, _, velocity) return 0.1 * ((math.abs(velocity) ^ 0.5 - 2) // 0.9) end,
+            function(_, _, velocity)
+                local speed = math.abs(velocity)
+                return speed < 0.04 and -0.3 or speed < 1.21 and -0.2 or -0.1
+            end },
+        -- what |...| is taken of jumps with the velocity
+        { function(_, theta, velocity) return math.abs((velocity // -1.3) ^ 2 - theta - 0.3) end,
+            function(_, theta, velocity) return velocity > 0 and 0.7 - theta or math.abs(theta + 0.3) end },
+    }
+    for i, pair in ipairs(pairs_of_functions) do
+        local ends = {}
+        for k, M in ipairs(pair) do
+            local run = system { I = 1, k = 4, C = 0.05, Rd = 0.1, Re = 0.15 }:simulate {
+                M = M, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
+            }
+            equal(run.status, "end", i)
+            ends[k] = run
+        end
+        near(ends[1].theta[#ends[1].theta], ends[2].theta[#ends[2].theta], 1e-10, i)
+    end
+end)
+
 test("digits that somebody cuts off are noise, not conditions", function()
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
     near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)

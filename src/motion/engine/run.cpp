@@ -265,6 +265,7 @@ private:
     int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
     int small_in_a_row_ = 0;  ///< jumps at conditions
     double greatest_crossed_ = 0;
+    std::vector<double> soon_;   ///< what moves, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
     Segment segment_;
     std::vector<double> breaks_;  ///< found, and still ahead
@@ -1933,8 +1934,12 @@ void Engine::watch_relays(Ending& ending) {
 
 /// A velocity that a contact holds, or that is about to leave 0, is exact: when that begins, conditions of it are
 /// decided by what it is. Other decisions stay, for rounding would turn over what has just passed zero.
+/// One that leaves is taken a little later: a condition may lose the first digits, as floor(10 + velocity) does.
 void Engine::decide_conditions(const Moment& at, const Mode& mode) {
     if (!has_pieces_) return;
+    constexpr double little_later = 1e-9;
+    std::vector<double>& y = soon_;
+    y.assign(at.y.begin(), at.y.end());
     std::uint64_t again = has_jumped_ ? ~std::uint64_t{0} : 0;
     standing_.resize(n());
     for (std::size_t i = 0; i < n(); ++i) {
@@ -1944,9 +1949,14 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
         const std::size_t bit = problem_.system.named ? n() + i : 1;
         if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
         standing_[i] = now;
+        double& v = y[n() + i];
+        if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
+            const double speed = little_later * pace_ * torque_size(i) / problem_.system.bodies[i].inertia;
+            v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
+        }
     }
     mechanics_.let_laws_act(mode);
-    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide(at, again); });
+    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide({at.t, at.side, y}, again); });
     has_jumped_ = false;
 }
 
@@ -1955,7 +1965,39 @@ void Engine::watch_conditions(Ending& ending) {
     const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
     const double before = ending.x - (at_standstill ? beside_standstill : 0);
     std::vector<std::tuple<double, Piecewise*, std::size_t>> crossings;
+    double earliest = std::min(1.0, before);
     std::vector<double> y, margins;
+    // Up to `last`; false if it has not a value everywhere.
+    const auto watch = [&](Piecewise& function, std::size_t c, Nodes values, double rounded, double last) {
+        const auto exact = [&](double x) {
+            const double at = last == 1 ? x : -1 + (x + 1) * (last + 1) / 2;
+            segment_.state(at, y);
+            function.margins({segment_.time(at), Side::at, y}, margins);
+            return margins[c];
+        };
+        if (last != 1) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
+        if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return false;
+        // What M drives back may be on the wrong side already, by no more than rounding.
+        const double beyond = std::max(64 * rounding * greatest(values), 16 * rounded);
+        const auto* const clear =
+            std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
+        const bool is_back = values[0] < -rounded && clear != values.end() && *clear < 0;
+        Half half = 1;
+        auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
+        if (x && last != 1) x = -1 + (*x + 1) * (last + 1) / 2;
+        if (x && *x < before) {
+            crossings.emplace_back(*x, &function, c);
+            earliest = std::min(earliest, *x);
+        }
+        return true;
+    };
+    struct Unknown {
+        Piecewise* function;
+        std::size_t condition;
+        Nodes values;
+        double rounded;
+    };
+    std::vector<Unknown> not_finite;
     mechanics_.for_each_piecewise(now_.hi, [&](Piecewise& function) {
         const std::size_t count = function.conditions().size();
         if (count == 0) return;
@@ -1974,25 +2016,27 @@ void Engine::watch_conditions(Ending& ending) {
             y[k] = y_[k];
         }
         for (std::size_t c = 0; c < count; ++c) {
-            const auto exact = [&](double x) {
-                segment_.state(x, y);
-                function.margins({segment_.time(x), Side::at, y}, margins);
-                return margins[c];
-            };
-            if (!std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) continue;
-            // What M drives back may be on the wrong side already, by no more than rounding.
-            const double beyond = std::max(64 * rounding * greatest(values[c]), 16 * rounded[c]);
-            const auto* const clear =
-                std::find_if(values[c].begin(), values[c].end(), [beyond](double v) { return std::fabs(v) > beyond; });
-            const bool is_back = values[c][0] < -rounded[c] && clear != values[c].end() && *clear < 0;
-            Half half = 1;
-            const auto x = is_back ? std::optional(-1.0) : Watched(values[c], exact, rounded[c]).leaves(half, -1);
-            if (x && *x < before) crossings.emplace_back(*x, &function, c);
+            if (std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) {
+                watch(function, c, values[c], rounded[c], 1);
+            } else {
+                not_finite.push_back({&function, c, values[c], rounded[c]});
+            }
         }
     });
+    // The formula of a piece may have no value beyond its end, as the square root of what was |theta|: such a condition
+    // is watched up to the end of the piece by the others, or as far as it has a value.
+    const double end_of_others = earliest;
+    for (const Unknown& u : not_finite) {
+        const auto* const bad =
+            std::find_if(u.values.begin(), u.values.end(), [](double v) { return !std::isfinite(v); });
+        if (bad == u.values.begin()) continue;
+        const double known = cheb::nodes[static_cast<std::size_t>(bad - u.values.begin()) - 1];
+        constexpr double short_of = 1e-12;
+        const double last = end_of_others - short_of;
+        if (!(last > -1) || watch(*u.function, u.condition, u.values, u.rounded, last) || known >= last) continue;
+        watch(*u.function, u.condition, u.values, u.rounded, known);
+    }
     if (crossings.empty()) return;
-    double earliest = 1;
-    for (const auto& [x, function, condition] : crossings) earliest = std::min(earliest, x);
     ending = {earliest, By::condition};
     for (const auto& [x, function, condition] : crossings) {
         if (x <= earliest + one_instant) ending.conditions.emplace_back(function, condition);
