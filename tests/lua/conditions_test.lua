@@ -116,6 +116,40 @@ test("functions that are equal make the same motion, however their conditions ar
     end
 end)
 
+test("a condition of |theta| is found on both sides of theta = 0, for a rate and between bodies", function()
+    local function visits(theta) return math.abs(theta) ^ 0.5 > 0.172 end
+    local function equal_ones(theta) return math.abs(theta) > 0.172 ^ 2 end
+    local one, two = {}, {}
+    for i, fast in ipairs { visits, equal_ones } do
+        local run = system { I = 1, k = 4, C = 0.02, Rd = 0.1, Re = 0.15 }:simulate {
+            M = function(_, _, _, state) return state.z end, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
+            states = { z = { start = 0.1, rate = function(_, theta) return fast(theta) and 0.1 or 3 end } },
+        }
+        one[i] = run.theta[#run.theta]
+        local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.1, Re = 0.15 }, b = { I = 0.5 } }, links = { ab = { "a", "b", k = 3, C = 0.1 } } }
+        local M = function(_, theta, velocity) return fast(theta.b - theta.a / 2) and -velocity.b or -0.2 end
+        local both = rig:simulate { M = { b = M }, theta0 = { a = 0.3, b = 0.1 }, velocity0 = { a = 0.1, b = -0.2 }, t_end = 4 }
+        two[i] = both.a.theta[#both.a.theta]
+    end
+    near(one[1], one[2], 1e-11)
+    near(two[1], two[2], 1e-11)
+end)
+
+test("what jumps along with a condition, or only touches its limit there, does not chatter", function()
+    -- the velocity of b passes 0, where |velocity| > 0 is false for no time
+    local ends = {}
+    for i, M in ipairs {
+        function(_, _, velocity) return math.abs(velocity.b) > 0 and 0.1 or 0.5 end,
+        function(_, _, _) return 0.1 end,
+    } do
+        local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.1, Re = 0.15 }, b = { I = 0.5 } }, links = { ab = { "a", "b", k = 3, C = 0.1 } } }
+        local run = rig:simulate { M = { b = M }, theta0 = { a = 0.3, b = 0.1 }, velocity0 = { a = 0.1, b = -0.2 }, t_end = 4 }
+        equal(run.status, "end")
+        ends[i] = run.b.theta[#run.b.theta]
+    end
+    near(ends[1], ends[2], 1e-12)
+end)
+
 test("digits that somebody cuts off are noise, not conditions", function()
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
     near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)

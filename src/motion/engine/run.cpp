@@ -1967,15 +1967,20 @@ void Engine::watch_conditions(Ending& ending) {
     std::vector<std::tuple<double, Piecewise*, std::size_t>> crossings;
     double earliest = std::min(1.0, before);
     std::vector<double> y, margins;
-    // Up to `last`; false if it has not a value everywhere.
-    const auto watch = [&](Piecewise& function, std::size_t c, Nodes values, double rounded, double last) {
+    struct Part {
+        double first = -1, last = 1;
+        [[nodiscard]] double place(double x) const { return first + (x + 1) * (last - first) / 2; }
+    };
+    // False if it has not a value everywhere in this part.
+    const auto watch = [&](Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
+        const bool whole = part.first == -1 && part.last == 1;
         const auto exact = [&](double x) {
-            const double at = last == 1 ? x : -1 + (x + 1) * (last + 1) / 2;
+            const double at = whole ? x : part.place(x);
             segment_.state(at, y);
             function.margins({segment_.time(at), Side::at, y}, margins);
             return margins[c];
         };
-        if (last != 1) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
+        if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
         if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return false;
         // What M drives back may be on the wrong side already, by no more than rounding.
         const double beyond = std::max(64 * rounding * greatest(values), 16 * rounded);
@@ -1984,7 +1989,7 @@ void Engine::watch_conditions(Ending& ending) {
         const bool is_back = values[0] < -rounded && clear != values.end() && *clear < 0;
         Half half = 1;
         auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
-        if (x && last != 1) x = -1 + (*x + 1) * (last + 1) / 2;
+        if (x && !whole) x = part.place(*x);
         if (x && *x < before) {
             crossings.emplace_back(*x, &function, c);
             earliest = std::min(earliest, *x);
@@ -2012,34 +2017,49 @@ void Engine::watch_conditions(Ending& ending) {
         for (std::size_t k = 0; k < asking_.told; ++k) {
             y[k] = y_[k] * (1 + 4 * rounding);
             function.margins({segment_.times[0], segment_.side(0), y}, margins);
-            for (std::size_t c = 0; c < count; ++c) rounded[c] += std::fabs(margins[c] - values[c][0]);
+            for (std::size_t c = 0; c < count; ++c) {
+                const double change = std::fabs(margins[c] - values[c][0]);
+                if (std::isfinite(change)) rounded[c] += change;
+            }
             y[k] = y_[k];
         }
         for (std::size_t c = 0; c < count; ++c) {
             if (std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) {
-                watch(function, c, values[c], rounded[c], 1);
+                watch(function, c, values[c], rounded[c], {});
             } else {
                 not_finite.push_back({&function, c, values[c], rounded[c]});
             }
         }
     });
-    // The formula of a piece may have no value beyond its end, as the square root of what was |theta|: such a condition
-    // is watched up to the end of the piece by the others, or as far as it has a value.
+    // The formula of a piece may have no value beyond its ends, as the square root of what was |theta|: such a
+    // condition is watched between the ends of the piece by the others, or as far as it has a value.
     const double end_of_others = earliest;
     for (const Unknown& u : not_finite) {
-        const auto* const bad =
-            std::find_if(u.values.begin(), u.values.end(), [](double v) { return !std::isfinite(v); });
-        if (bad == u.values.begin()) continue;
+        constexpr double within = 1e-12;
+        const auto is_known = [](double v) { return std::isfinite(v); };
+        const auto* const begin = u.values.begin() + (is_known(u.values[0]) ? 0 : 1);
+        const auto* const bad = std::find_if_not(begin, u.values.end(), is_known);
+        if (bad == begin) continue;
+        const double first = begin == u.values.begin() ? -1 : -1 + within;
         const double known = cheb::nodes[static_cast<std::size_t>(bad - u.values.begin()) - 1];
-        constexpr double short_of = 1e-12;
-        const double last = end_of_others - short_of;
-        if (!(last > -1) || watch(*u.function, u.condition, u.values, u.rounded, last) || known >= last) continue;
-        watch(*u.function, u.condition, u.values, u.rounded, known);
+        const double last = std::min(end_of_others - within, 1.0);
+        if (!(last > first)) continue;
+        if (watch(*u.function, u.condition, u.values, u.rounded, {first, last}) || known >= last) continue;
+        watch(*u.function, u.condition, u.values, u.rounded, {first, known});
     }
     if (crossings.empty()) return;
     ending = {earliest, By::condition};
+    // Of a function the first step only: what follows from it, as |v| > 0 from the sign of v, may not change at all.
+    std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
     for (const auto& [x, function, condition] : crossings) {
-        if (x <= earliest + one_instant) ending.conditions.emplace_back(function, condition);
+        if (x > earliest + one_instant) continue;
+        const auto same =
+            std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });
+        if (same == first.end()) {
+            first.emplace_back(function, condition);
+        } else {
+            same->second = std::min(same->second, condition);
+        }
     }
 }
 
