@@ -160,6 +160,38 @@ test("a jump of velocity comes back through a delay, whatever the step of rk4", 
     end
 end)
 
+test("a jump of velocity by an act comes back through a delay, also at the end of a step", function()
+    -- M is -v(t - by), and v is 1 before the run: pieces whose M is a line
+    local by, t1, thrown = 0.7, 0.5, -1
+    local x, v = 0, 1
+    local function piece(M, slope, t) x, v = x + v * t + M * t ^ 2 / 2 + slope * t ^ 3 / 6, v + M * t + slope * t ^ 2 / 2 end
+    piece(-1, 0, t1)
+    v = thrown
+    piece(-1, 0, by - t1)
+    piece(-1, 1, t1)
+    piece(-thrown, 1, by - t1)
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.125 }, integrator.rk4 { h = 0.1 } } do
+        local run = system { I = 1, k = 0 }:simulate {
+            M = excitation.delayed(function(_, _, v) return -v end, { by = by }), velocity0 = 1, t_end = 2 * by, dt = 1, integrator = method,
+            events = { { when = function(t) return t - t1 end, act = function(_, theta) return theta, thrown end } },
+        }
+        near(run.theta[#run], x, 1e-14)
+        near(run.velocity[#run], v, 1e-14)
+    end
+end)
+
+test("a hundred and fifty acts at nearly one instant are no chatter", function()
+    local kicks, apart = 150, 2 ^ -31
+    local events = {}
+    for i = 1, kicks do
+        events[i] = { when = function(t) return t - 0.25 - i * apart end, act = function(_, theta, v) return theta, v + 1 end }
+    end
+    local run = system { I = 1, k = 0 }:simulate { t_end = 1, dt = 1, events = events }
+    equal(#run.events, kicks)
+    equal(run.velocity[#run], kicks + 0.0)
+    near(run.theta[#run], 0.75 * kicks - apart * kicks * (kicks + 1) / 2, 1e-13)
+end)
+
 test("an event is told at the passages of its direction only, however much faster than the motion they come", function()
     local sys = system { I = 1, k = 1, C = 0.05, Rd = 0.1, Re = 0.2 }
     for _, omega in ipairs { 0.5, 1, 2, 3, 4, 5, 6, 8, 10, 13, 25, 100 } do

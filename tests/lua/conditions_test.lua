@@ -26,6 +26,26 @@ test("short visits beyond a condition are not missed", function()
     end
 end)
 
+test("short visits beyond a condition in the rate of a state are not missed", function()
+    for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do
+        local run = system { I = 1, k = 1 }:simulate {
+            velocity0 = 1, t_end = 4, states = { z = { rate = function(_, theta) return theta > 1 - beyond and 100 or 0 end } },
+        }
+        near(run.z[#run], 200 * math.acos(1 - beyond), 1e-9)  -- theta = sin t
+    end
+end)
+
+test("a few small jumps in a row are jumps, and no noise", function()
+    local small = 1e-6
+    for _, d in ipairs { 1 / 2, 1 / 16 } do
+        local run = system { I = 1, k = 0 }:simulate { M = function(_, theta) return 1 + small * math.floor(theta / d) end, velocity0 = 1, t_end = 1 }
+        local x, v = run:at(1)
+        local n = math.floor(x / d)
+        near(v ^ 2 / 2, 0.5 + x + small * (n * x - d * n * (n + 1) / 2), 1e-14)
+        says(run, "are located")
+    end
+end)
+
 test("read and sampled functions make the same motion", function()
     math.randomseed(3)
     local r = math.random

@@ -45,4 +45,17 @@ test("a stiff state, the lag of an actuator, costs no accuracy", function()
     near(run.states.u, run.t:sin()/2, 1e-10)
 end)
 
+test("after a beginning that is over in a moment the run goes on as if it had not been", function()
+    for _, lag in ipairs { 1e-3, 1e-6, 1e-9 } do
+        local calls = 0
+        local run = system{ I = 1, k = 0 }:simulate{ t_end = 3, dt = 3, M = function(_, _, _, z) return z.u end,
+            states = { u = { start = 2, rate = unread(function(t, _, _, z) calls = calls + 1 return (math.cos(t) - z.u)/lag - math.sin(t) end) } } }
+        -- u = cos t + exp(-t/lag)
+        near(run.u[2], math.cos(3), 1e-14)
+        near(run.velocity[2], math.sin(3) + lag, 1e-14)
+        near(run.theta[2], 1 - math.cos(3) + 3*lag - lag^2, 1e-14)
+        assert(calls < 6000, calls)
+    end
+end)
+
 finish()

@@ -85,6 +85,18 @@ test("dead times and sampled controllers have the cycles that long runs come to"
     near(run.theta[2001], run.theta[1001], 1e-9)
 end)
 
+test("two controllers that sample have a cycle of whole common intervals, and of as few as a long run returns after", function()
+    local sys, common = system{ I = 1, k = 4, C = 0.1, Rd = 0.02 }, 0.75
+    local function both()
+        return excitation.sampled(function(_, theta) return theta > 0 and -0.5 or 0.5 end, { every = 0.375 })
+            + excitation.sampled(function(_, _, velocity) return -0.2 * velocity end, { every = 0.25 })
+    end
+    local run = sys:simulate{ M = both(), theta0 = 0.5, t_end = 1200, times = vector.linspace(1200 - 20 * common, 1200, 21) }
+    local fewest = 1
+    while math.abs(run.theta[21 - fewest] - run.theta[21]) > 1e-9 do fewest = fewest + 1 end
+    equal(sys:steady{ M = both(), theta0 = 0.5 }.period, fewest * common)
+end)
+
 test("a motion that a sampled controller lets die out ends at rest, where the springs balance", function()
     local sys = system{ I = 1.23, k = 5.58, C = 0.64, spring = spring.polynomial{ [3] = 0.88 } }
     for _, aim in ipairs{ 0, 1 } do

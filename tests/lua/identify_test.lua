@@ -44,6 +44,20 @@ test("what is given has no error, and a misspelt field is told", function()
     raises(function() return fit.error end, "a fit has no field 'error'; did you mean 'std_error'?")
 end)
 
+test("errors are those of the least squares of a sine: in whole periods its parts are orthogonal", function()
+    local omega, n, t_end = 2*math.pi, 2000, 20
+    local swings = system{ I = 1, k = omega^2 }
+    local run = swings:simulate{ theta0 = 1, t_end = t_end*(1 - 1/n), dt = t_end/n }
+    local known = { data = record(run, 5, 0.01), I = 1, C = 0, Rd = 0, Re = 0 }
+    local fit = identify(merged(known, { k = swings.k }))
+    near(fit.std_error.offset, fit.noise/n^0.5, 0.01*fit.std_error.offset)
+    near(fit.std_error.theta0, fit.noise*(2/n)^0.5, 0.01*fit.std_error.theta0)
+    near(fit.std_error.velocity0, omega*fit.noise*(2/n)^0.5, 0.01*fit.std_error.velocity0)
+    fit = identify(known)  -- the bound of Rife and Boorstyn for a frequency whose phase is unknown
+    near(fit.std_error.omega0, fit.noise/t_end*(24/n)^0.5, 0.01*fit.std_error.omega0)
+    near(fit.std_error.k, 2*omega*fit.std_error.omega0, 1e-3*fit.std_error.k)
+end)
+
 test("a record that is cut off is fitted as one, and said to be", function()
     local run = system{ I = 1, k = 30, C = 0.1, Rd = 1.2 }:simulate{ theta0 = 1, t_end = 6, dt = 1/30 }
     local seen = noisy(run, 5, 0.01):map(function(x) return math.max(-0.4, math.min(0.4, x)) end)

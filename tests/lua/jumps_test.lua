@@ -52,6 +52,24 @@ test("a belt that sets off along a wall takes a mass from it, by sliding or by s
     end
 end)
 
+test("a belt that sets off from rest takes the mass along until spring, inertia and load need Re", function()
+    local I, k, Rd, Re, rate = 2, 3, 2.6, 4, 1.25 -- Rd alone, with a load of -0.25, would give less than I rate
+    for _, case in ipairs {
+        { 0, function(t) return rate * t end }, { 0, excitation.ramp { slope = rate } }, { 0.5, excitation.ramp { slope = rate, at = 0.5 } },
+    } do
+        local start, belt = table.unpack(case)
+        for _, M in ipairs { 0, -0.25 } do
+            for _, walls in ipairs { {}, { lower = 0 } } do
+                local run = system { I = I, k = k, Rd = Rd, Re = Re, walls = walls }:simulate { M = M, belt = belt, t_end = 2, dt = 2 }
+                local slip = run.events[#run.events] -- the only one, or behind that which takes it from the wall
+                equal(slip.kind, "slip")
+                -- I rate + k rate s^2/2 - M = Re, a time s after the belt set off
+                near(slip.t, start + math.sqrt(2 * (Re - I * rate + M) / (k * rate)), 1e-12)
+            end
+        end
+    end
+end)
+
 test("what happens at the time of a row is in the row, and in the motion at that time", function()
     for _, stop in ipairs { true, false } do
         local run = system { I = 1, k = 0 }:simulate {

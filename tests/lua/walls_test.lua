@@ -53,6 +53,13 @@ test("a ball comes to rest in finite time; its energy adds up; the file repeats 
     has(picture, "impact")
 end)
 
+test("bounces are told until those that are left take 1e-7 of the motion so far", function()
+    local run = system { I = 1, k = 0, walls = { lower = 0, restitution = 0.9 } }:simulate { M = -2, theta0 = 1, t_end = 60, dt = 60 }
+    -- It falls for 1; the n-th bounce takes 2*0.9^n, what is left with it 20*0.9^n, all of it 1 + 18.
+    equal(#of_kind(run, "impact"), math.ceil(math.log(19e-7 / 20, 0.9)))
+    near(run.events[#run.events].t, 19, 1e-10)
+end)
+
 test("a steady motion between walls, and a response", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.05, walls = { lower = -0.5, upper = 0.5, restitution = 0.6 } }
     local s = sys:steady { M = excitation.harmonic { amplitude = 0.6, omega = 1.2 } }
