@@ -206,14 +206,6 @@ TEST_CASE("viscous damping alone ends a motion that breakaway can hold", "[expla
     CHECK_THAT(text, !Contains("never quite ends"));
 }
 
-TEST_CASE("a run of 1989 says that its events are those of its steps", "[explain]") {
-    const std::string text =
-        story(nondimensional(0, 0.836), harmonic(1, 2 * pi), {1, 0}, {0, 20}, Dinal1989{.h = 0.01});
-    CHECK_THAT(text, Contains("The run was integrated as in 1989, in steps of h = 0.01"));
-    CHECK_THAT(text, Contains("until the listing released it at |M - k theta|"));
-    CHECK_THAT(text, !Contains("M jumped"));
-}
-
 TEST_CASE("the story does not need dense output, rows, or units of a certain size", "[explain]") {
     const Oscillator system = nondimensional(0, 0.836);
     const auto bare =
@@ -228,17 +220,6 @@ TEST_CASE("the story does not need dense output, rows, or units of a certain siz
         CHECK_THAT(told(run, s.oscillator, s.excitation, Spectral{}),
                    Contains("the period of M") && Contains("twice in each period and is stuck for 35 %"));
     }
-}
-
-TEST_CASE("rows alone tell what rows can", "[explain]") {
-    Trajectory loaded = must_run(nondimensional(0, 0.167), {}, {0, 2 * pi}, {0, 5}, Grid::every(0.01), Spectral{});
-    loaded.computed = false;
-    loaded.own_names = column_names();
-    loaded.events = {};
-    const std::string text = explain_rows(loaded);
-    CHECK_THAT(text, Contains("read from a file") && Contains("501 rows") && Contains("changes sign 3 times"));
-    loaded.own_names = {"a", "b", "c", "d", "e", "f"};
-    CHECK_THAT(explain_rows(loaded), Contains("501 rows of a, b"));
 }
 
 TEST_CASE("the period of a sum is the shortest that all terms share", "[explain]") {

@@ -12,7 +12,6 @@
 #include "model/sticking.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
-#include "support/stribeck.hpp"
 #include "support/within.hpp"
 
 namespace dinal::laws_test {
@@ -43,7 +42,6 @@ const std::vector<LawCase>& law_cases() {
     static const std::vector<LawCase> cases = {
         {"coulomb", Coulomb{0.25, 0.6}},
         {"asymmetric", AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}}},
-        {"a stranger's", truth::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}},
         {"stribeck", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}},
         {"tustin", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4, .shape = 1}},
         {"table", model::laws::Tabulated{.speed = {0, 0.5, 2}, .torque = {0.45, 0.2, 0.35}, .breakaway = 0.6}},
@@ -90,34 +88,6 @@ TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[la
     }
 }
 
-TEST_CASE("a block without a spring slides, sticks and keeps its place", "[laws][sliding]") {
-    // v = v0 - Rd/I t until it stops after v0^2 I/(2 Rd); a ramp s t then lets it go at Re/s.
-    const Oscillator block = system_of({.inertia = 2, .stiffness = 0, .kinetic_friction = 0.3, .breakaway = 0.4});
-    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}}) {
-        const Excitation ramp = Excitation::make(Ramp{.slope = 0.1, .at = 20}).value();
-        const Trajectory run = must_run(block, ramp, {5, 1.5}, {0, 30}, Grid::every(1), integrator);
-        REQUIRE(run.events.size() == 2);
-        CHECK(run.events[0].kind == EventKind::stick);
-        CHECK(run.events[0].t == within(10, 1e-12));
-        CHECK(run.events[0].theta == within(12.5, 1e-12));
-        CHECK(run.events[1].kind == EventKind::slip);
-        CHECK(run.events[1].t == within(24, 1e-12));
-        // Then 2 theta'' = 0.1 (t - 20) - 0.3.
-        const double s = 6;
-        CHECK(run.state_at_stop.theta == within(12.5 + (0.1 * s * s * s / 6 + 0.1 * s * s / 2) / 2, 1e-11));
-        CHECK(analysis::explain(run, block, ramp, integrator).find("a block without a spring") != std::string::npos);
-    }
-    // Under viscous damping alone it goes v0 I/C far.
-    const Oscillator damped = system_of({.inertia = 1, .stiffness = 0, .damping = 0.5});
-    CHECK(must_run(damped, {}, {0, 1}, {0, 100}, Grid::none(), Spectral{}).state_at_stop.theta == within(2, 1e-12));
-    // And a harmonic load moves a free one along theta = -M0/(I w^2) sin w t + (v0 + M0/(I w)) t.
-    const Oscillator free = system_of({.inertia = 1, .stiffness = 0});
-    const Trajectory run = must_run(free, harmonic(1, 1), {0, -1}, {0, 40}, Grid::every(1), Spectral{});
-    for (Eigen::Index i = 0; i < run.size(); ++i) {
-        CHECK(run.rows(i, 1) == within(-std::sin(run.rows(i, 0)), 1e-12));
-    }
-}
-
 TEST_CASE("the story names both sides of a friction, and no closed form that does not hold", "[laws][explain]") {
     const auto story = [](const Friction& law) {
         const Oscillator system = with_law(law);
@@ -129,7 +99,7 @@ TEST_CASE("the story names both sides of a friction, and no closed form that doe
     std::replace(asymmetric.begin(), asymmetric.end(), '\n', ' ');
     CHECK_THAT(asymmetric, Catch::Contains("forward and 0.35 backward") && Catch::Contains("forward and 0.5 backward"));
     CHECK_THAT(asymmetric, !Catch::Contains("2 Rd/k"));
-    CHECK_THAT(story(truth::Stribeck{0.1, 0.3, 0.4}), Catch::Contains("friction depends on the speed"));
+    CHECK_THAT(story(law_cases().back().law), Catch::Contains("friction depends on the speed"));
     CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));
 }
 

@@ -1,9 +1,12 @@
 // Runs of systems with walls that have more in them, and what begins at a wall.
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "analysis/energy.hpp"
+#include "analysis/explain.hpp"
 #include "support/catch.hpp"
-#include "support/walled.hpp"
 #include "support/within.hpp"
 #include "support/written.hpp"
 
@@ -12,6 +15,33 @@ namespace dinal::leaning_test {
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double none = std::numeric_limits<double>::infinity();
+
+Oscillator walled(const Walls& walls, double k = 0, double Rd = 0, double Re = 0) {
+    return system_of({.inertia = 1, .stiffness = k, .kinetic_friction = Rd, .breakaway = Re, .walls = walls});
+}
+Excitation constant(double level) {
+    return Excitation::make(model::Constant{level}).value();
+}
+Excitation ramp(double slope, double at) {
+    return Excitation::make(model::Ramp{.slope = slope, .at = at}).value();
+}
+std::vector<Event> of_kind(const Trajectory& run, EventKind kind) {
+    std::vector<Event> found;
+    for (const Event& event : run.events) {
+        if (event.kind == kind) found.push_back(event);
+    }
+    return found;
+}
+/// With what each is right to: times and velocities of impacts, for spectral and for rk4.
+const std::vector<std::pair<Integrator, double>> methods_at_walls = {{motion::Spectral{}, 1e-12},
+                                                                     {motion::Rk4{0.002}, 1e-8}};
+
+}  // namespace
 
 TEST_CASE("a belt carries the mass against the wall and slides along it", "[walls][belt]") {
     const double vb = 0.5, Rd = 0.3, Re = 0.4;
@@ -63,19 +93,6 @@ TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
     CHECK(run->events[0].t == within(pi, 1e-12));
 }
 
-TEST_CASE("a shaking base throws the mass from wall to wall as a load would", "[walls][base]") {
-    Extras extras;
-    extras.base = constant(2);
-    const auto shaken = simulate(walled({0, none, 0.7}), {}, {1, 0}, {0, 50}, Grid::none(), Spectral{}, {}, {}, extras);
-    REQUIRE(shaken);
-    CHECK(shaken->outcome == Outcome::at_rest);
-    CHECK(shaken->events.back().t == within(1.7 / 0.3, 1e-11));
-    const auto energy = analysis::energy_of(*shaken);
-    REQUIRE(energy);
-    CHECK(energy->closure() < 1e-12);
-    CHECK(energy->total.work.base == within(2, 1e-11));
-}
-
 TEST_CASE("states go on while the mass leans, and events of the user see impacts", "[walls][states]") {
     Extras extras;
     extras.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
@@ -117,6 +134,21 @@ TEST_CASE("a load that only touches the limit does not take the mass off the wal
         const Trajectory run = must_run(walled({-none, 0, 0.5}), M, {0, 0}, {0, 20}, Grid::none(), integrator);
         CHECK(run.state_at_stop.theta == within(0, 1e-12));
         CHECK(run.outcome == Outcome::at_rest);
+    }
+}
+
+TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][explain]") {
+    const Oscillator ball = walled({0, none, 0.5});
+    const Excitation M = constant(-2) + ramp(1, 8);
+    const Trajectory run = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), Spectral{});
+    const std::string story = analysis::explain(run, ball, M, Spectral{});
+    CAPTURE(story);
+    for (const char* part : {"There is a wall at theta = 0; an impact keeps 50 % of the speed.", "It hit the wall",
+                             "first at t = 1;", "the hardest impact had velocity -2, at t = 1.",
+                             "It came to rest at the wall, theta = 0, at t = 3;", "pulled it off the wall forward"}) {
+        std::string flat = story;
+        std::replace(flat.begin(), flat.end(), '\n', ' ');
+        CHECK_THAT(flat, Catch::Contains(part));
     }
 }
 

@@ -30,7 +30,7 @@ constexpr double too_close = nudge;
 #ifdef __SANITIZE_ADDRESS__
 constexpr long usual_cases = 60;
 #else
-constexpr long usual_cases = 250;
+constexpr long usual_cases = 120;
 #endif
 
 template <class Events>

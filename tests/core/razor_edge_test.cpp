@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 
+#include "analysis/stretches.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
@@ -288,6 +289,49 @@ TEST_CASE("a motion too large for its derivatives ends the run, also without fri
     const Trajectory run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
     CHECK((std::fabs(speed) > 1e300 || run.outcome == Outcome::reached_end));
     CHECK(run.rows.matrix().allFinite());
+}
+
+TEST_CASE("a decay whose last extreme is Re/k ends there", "[razor]") {
+    // From Re/k + 2 n Rd/k: n half swings, each of which costs 2 Rd/k, end at Re/k.
+    const Integrator integrator = GENERATE(as<Integrator>{}, Exact{}, Spectral{});
+    for (const double k : {1.0, 4.0, 39.478417604357, 2.5}) {
+        for (const double Rd : {0.5, 0.1, 0.25, 0.3}) {
+            for (const double ratio : {1.0, 1.25, 1.5, 2.0, 3.0}) {
+                for (int n = 1; n <= 6; ++n) {
+                    const double Re = ratio * Rd;
+                    const Oscillator system =
+                        system_of({.inertia = 1, .stiffness = k, .kinetic_friction = Rd, .breakaway = Re});
+                    const Trajectory run = must_run(system, {}, {(Re + 2 * n * Rd) / k, 0},
+                                                    {0, 10 * system.natural_period()}, Grid::none(), integrator);
+                    CAPTURE(integrator.index(), k, Rd, ratio, n);
+                    REQUIRE(run.events.size() == static_cast<std::size_t>(n));
+                    const Event& last = run.events.back();
+                    CHECK((last.kind == EventKind::rest || last.kind == EventKind::stick));
+                    CHECK(std::fabs(last.t / system.natural_period() - 0.5 * n) <= 1e-12);
+                    // It is held to the letter, and is there but for the roundings of its way.
+                    const double held = std::fabs(k * run.state_at_stop.theta);
+                    CHECK(held <= Re * (1 + 4e-16));
+                    CHECK(held >= Re - 2e-14 * (Re + 2 * n * Rd));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a run knows whether it began stuck, whatever came later", "[razor]") {
+    const Oscillator system = nondimensional(0.05, 0.2, 0.3);
+    const Integrator integrator = either();
+    CAPTURE(integrator.index());
+    const auto began_stuck = [&](const Excitation& M, const State& initial, const Oscillator& s) {
+        const Trajectory run = must_run(s, M, initial, {0, 3}, Grid::every(0.1), integrator);
+        CHECK(analysis::stretches(run).front().stuck == run.began_stuck);
+        return run.began_stuck;
+    };
+    CHECK(began_stuck({}, {0.1, 0}, system));
+    CHECK(began_stuck(native(Step{.amplitude = 1, .at = 1}), {0, 0}, system));
+    CHECK_FALSE(began_stuck({}, {1, 0}, system));
+    CHECK_FALSE(began_stuck({}, {0, 1}, system));
+    CHECK_FALSE(began_stuck({}, {0, 0}, nondimensional(0.05, 0)));
 }
 
 }  // namespace dinal::razor_edge_test

@@ -171,20 +171,4 @@ TEST_CASE("with Re > Rd a mass breaks away where M passes Re, and comes to rest 
     }
 }
 
-TEST_CASE("where there is one motion the curve has a row for each value, and no jump", "[response]") {
-    const Oscillator system = truth::nondimensional(0, 0.5, 0.5);
-    const std::vector<double> values = evenly(0.3, 0.9, 13);
-    const ResponseCurve curve = response_curve(
-        {.family =
-             [&](double r) {
-                 return SteadyQuestion{
-                     .system = system, .excitation = truth::harmonic(1, 2 * pi * r), .drive = {0, 1 / r}};
-             },
-         .values = values});
-    CHECK(curve.jumps.empty());
-    REQUIRE(curve.branches.size() == 1);
-    REQUIRE(curve.branches[0].size() == values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) CHECK(curve.branches[0][i].parameter == values[i]);
-}
-
 }  // namespace dinal::response_curve_test

@@ -90,7 +90,7 @@ TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "
 
 TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look][long]") {
     truth::Lot lot(12);
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 150; ++i) {
         const bool resting = i % 2 == 0;
         const Oscillator system = nondimensional(0.05, resting ? 0.3 : 0.02);
         const State initial{resting ? 0.0 : 1.0, 0};
@@ -137,7 +137,7 @@ TEST_CASE("a jump that is not announced costs at most 70 values of M more than o
         return function->calls;
     };
     int more = 0;
-    constexpr int jumps = 200;
+    constexpr int jumps = 60;
     for (int i = 0; i < jumps; ++i) {
         const double at = lot.between(1, 9);
         more += calls(at, {}) - calls(at, {at});

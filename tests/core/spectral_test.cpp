@@ -105,19 +105,6 @@ TEST_CASE("a function that rests at Re and then leaves it gently releases when i
     }
 }
 
-TEST_CASE("a step that comes bare between the samples of short panels releases at its time", "[spectral]") {
-    const Oscillator system = nondimensional(0.05, 0.2, 0.3);
-    const auto M = script([](double t) { return t < 1.325 ? 0.0 : 0.7; });
-    for (const double max_panel : {0.025, 0.05, 1.0}) {
-        const Trajectory run = by_spectral(system, M.M, {0, 0}, {0, 2}, {.max_panel = max_panel});
-        CAPTURE(max_panel);
-        REQUIRE_FALSE(run.events.empty());
-        CHECK(run.events[0].kind == EventKind::slip);
-        CHECK(run.events[0].t == within(1.325, 1e-15));
-        CHECK(run.events[0].M == within(0.7, 1e-15));
-    }
-}
-
 TEST_CASE("a mass that M is nowhere great enough to move waits for any length of time at no cost", "[spectral]") {
     const Oscillator system = nondimensional(0.05, 0.3);
     for (const Excitation& M : {harmonic(0.2, 7), harmonic(0.1, 7) + made(Square{.amplitude = 0.1, .period = 0.37}),
@@ -151,23 +138,6 @@ TEST_CASE("a stiff relaxation oscillator is followed through its jumps", "[spect
     CHECK(energy_of(run)->closure() < 1e-10);
 }
 
-TEST_CASE("a motion that runs away in finite time ends with an outcome", "[spectral][feedback]") {
-    for (const double Rd : {0.0, 0.3}) {
-        const Oscillator system = nondimensional(0.05, Rd);
-        for (const bool square : {true, false}) {
-            const Excitation M = feedback([square](double, const State& y) {
-                return square ? -0.1 * y.velocity * y.velocity : 5 * y.theta * y.theta * y.theta;
-            });
-            const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
-            CAPTURE(Rd, square);
-            CHECK(run.outcome != Outcome::reached_end);
-            CHECK(run.outcome != Outcome::at_rest);
-            CHECK(run.t_stop < 0.3);
-            CHECK(run.rows.matrix().allFinite());
-        }
-    }
-}
-
 TEST_CASE("negative damping grows beyond all numbers without inventing turns on the way", "[spectral][feedback]") {
     for (const double Rd : {0.0, 0.3}) {
         const Oscillator system = nondimensional(0.05, Rd);
@@ -195,20 +165,6 @@ TEST_CASE("feedback that pushes at rest and holds in motion ends, its events in 
         CHECK(run.outcome == Outcome::chattering);
         REQUIRE(run.events.size() == 1);  // and none for each of the motions that did not get under way
         CHECK(run.events[0].kind == EventKind::stick);
-    }
-}
-
-TEST_CASE("a relay that slides along its switching line ends soon, with the outcome that says so",
-          "[spectral][feedback]") {
-    const auto relay = std::make_shared<Probe>(
-        [](double t, const State& y) { return -5 * sgn(y.theta + 0.3 * y.velocity) + std::sin(3 * t); });
-    const Excitation M = made(Scripted{.function = relay, .feedback = true});
-    for (const double Rd : {0.0, 0.3}) {
-        relay->calls = 0;
-        const Trajectory run = by_spectral(nondimensional(0.02, Rd), M, {0.3, 0.2}, {0, 20});
-        CHECK(run.outcome == Outcome::chattering);
-        CHECK(run.t_stop < 0.1);
-        CHECK(relay->calls < 20000000);  // a second or two
     }
 }
 
@@ -258,27 +214,6 @@ TEST_CASE("a mass at rest without friction does not turn before a smooth pulse c
     }
 }
 
-TEST_CASE("a pulse lets a mass go between two doubles of the time, beside a term that knows none",
-          "[spectral][razor]") {
-    // Of a lot. The time is rounded to 2e-13, in which M rises by 2e-6.
-    const Oscillator system = system_of(
-        {.inertia = 66615.869690414795, .stiffness = 52.233929629455076, .kinetic_friction = 427.67211950215545});
-    const Excitation narrow = made(Gaussian{-36195714.309486486, -1169.9797098326421, 0.00022730478662856034});
-    const Excitation wide =
-        made(Triangle{.amplitude = 272.3230897746846, .period = 216.07414499566445, .at = -803.9921185630863})
-            .windowed(-1233.3987088201591, 449.73900767637019);
-    const Trajectory run = by_spectral(system, narrow + wide, {0, 0}, {-1539.2664671213929, -1000});
-    REQUIRE(run.events.size() >= 2);
-    CHECK(run.events[0].kind == EventKind::slip);
-    CHECK(run.events[0].t == within(-1169.9807733119437, 1e-12));
-    CHECK(run.outcome == Outcome::stuck_at_end);
-    // The pulse is a blow at its middle, but for the friction in its 2e-3.
-    constexpr double impulse = -36195714.309486486 * 0.00022730478662856034 * 2.5066282746310002;
-    const Trajectory struck =
-        must_run(system, wide, {0, impulse / system.inertia()}, {-1169.9797098326421, -1000}, Grid::none(), Exact{});
-    CHECK(run.state_at_stop.theta == within(struck.state_at_stop.theta, 1e-3));
-}
-
 // ---- stiff
 
 TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spectral]") {
@@ -297,17 +232,6 @@ TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spect
         CHECK(as_stop(run.events[i].kind) == exact.events()[i].kind);
         // theta'' is M/C w there at most, 2000 times less than without damping.
         CHECK(run.events[i].t == within(static_cast<double>(exact.events()[i].t), 1e-9));
-    }
-}
-
-TEST_CASE("an overdamped mass that creeps to its place is told to be at rest, not to chatter", "[spectral]") {
-    for (const double zeta : {1.0, 1.5, 40.0}) {
-        const Oscillator system = nondimensional(zeta, 0.3);
-        const Trajectory run = by_spectral(system, {}, {1.5, 0}, {0, 100 * zeta});
-        CAPTURE(zeta);
-        CHECK(run.outcome == Outcome::at_rest);
-        REQUIRE(run.events.size() == 1);
-        CHECK(run.state_at_stop.theta == within(0.3, 1e-11));
     }
 }
 

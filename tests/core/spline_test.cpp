@@ -116,26 +116,6 @@ TEST_CASE("a spline through points of a cubic is that cubic, wherever the points
     CHECK(through(cubic({4}, {7})).value(-3) == 7);
 }
 
-TEST_CASE("a sine through 16 points a period is one to the fourth power of their distance", "[spline]") {
-    const auto worst_of = [](int n, Interpolation way) {
-        Samples s{.t = {}, .M = {}, .interpolation = way, .period = 1};
-        for (int i = 0; i <= n; ++i) {
-            s.t.push_back(static_cast<double>(i) / n);
-            s.M.push_back(std::sin(2 * pi * i / n));
-        }
-        const Polyline line = through(std::move(s));
-        CHECK(line.samples->t.size() == static_cast<std::size_t>(n));  // the last one is the first again
-        double worst = 0;
-        for (int i = 0; i < 500; ++i)
-            worst = std::max(worst, std::fabs(line.value(i / 500.0) - std::sin(2 * pi * i / 500.0)));
-        return worst;
-    };
-    // h^4/384 max|f''''| for a cubic spline, h^2/8 max|f''| for straight lines.
-    CHECK(worst_of(16, Interpolation::cubic) < 1.05 * std::pow(2 * pi / 16, 4) / 384);
-    CHECK(worst_of(16, Interpolation::linear) > 100 * worst_of(16, Interpolation::cubic));
-    CHECK(worst_of(16, Interpolation::cubic) / worst_of(32, Interpolation::cubic) == within(16, 1));
-}
-
 TEST_CASE("two integrators agree on a motion under a spline, and its steady motion is that of the sine", "[spline]") {
     const Oscillator system = truth::nondimensional(0.05, 0.3, 0.35);
     Samples s{.t = {}, .M = {}, .interpolation = Interpolation::cubic, .period = 1.6};

@@ -82,13 +82,6 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)
 
-test("a chain without friction swings in its modes", function()
-    local run = pair({ I = 1, k = 1 }, { I = 1, k = 1 }, { k = 4 }):simulate { theta0 = { a = 1 }, t_end = 30, dt = 1 }
-    near(run.a.theta, (run.t:cos() + (3 * run.t):cos()) / 2, 1e-11)
-    near(run.b.theta, (run.t:cos() - (3 * run.t):cos()) / 2, 1e-11)
-    near(run.link.torque, -4 * run.link.theta, 1e-12)
-end)
-
 test("two bodies that stick to each other are one of both inertias", function()
     local M = function(t) return 3 * math.sin(t) end
     local pair = pair({ I = 1, k = 4, Rd = 0.3 }, { I = 2 }, { Rd = 100 })
@@ -164,26 +157,6 @@ test("one body under a name moves as a system of one does, with all that a run m
             equal(select(2, table.concat(named.events.kind):gsub(kind, "")), select(2, table.concat(one.events.kind):gsub(kind, "")))
         end
     end
-end)
-
-test("a run goes on as if it had not ended", function()
-    local rig = clutch { Rd = 0.5, Re = 0.7, k = 3 }
-    local options = { M = { motor = function(t) return 2 * math.sin(t) end }, dt = 0.3 }
-    options.t_end = 10
-    local whole = rig:simulate(options)
-    options.t_end = 4
-    local parts = rig:simulate(options):continue { t_end = 10 }
-    equal(#parts, #whole)
-    equal(#parts.events, #whole.events)
-    near(parts.load.theta, whole.load.theta, 1e-12)
-    near(parts.load:at(2.05), whole.load:at(2.05), 1e-12)
-end)
-
-test("closed loops of contacts hold what they can hold together", function()
-    -- two masses on the ground, with a damper of dry friction between them: a load on the first is held by three contacts
-    local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.5 })
-    local run = rig:simulate { M = { a = function(t) return t end }, t_end = 2 }
-    near(first(run, "slip", "a").t, 1.5, 1e-9)
 end)
 
 test("a pulse between the nodes is seen while all bodies stand, with a state beside", function()

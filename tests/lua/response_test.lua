@@ -188,15 +188,6 @@ test("a resonance without enough friction is no finite peak, whatever the points
     end
 end)
 
-test("a response over the speed of a belt has the closed form of stick-slip", function()
-    local I, k, Rd, Re = 1, 4, 0.3, 0.6
-    local c = system{ I = I, k = k, Rd = Rd, Re = Re }:response{ over = { speed = vector.linspace(0.02, 0.3, 15) },
-        at = function(p) return { belt = p.speed, velocity0 = p.speed } end }
-    equal(#c, 15)
-    near(c.amplitude, (((Re - Rd) / k) ^ 2 + c.speed ^ 2 * I / k):sqrt(), 1e-9)
-    for _, status in ipairs(c.status) do equal(status, "steady") end
-end)
-
 test("squeal begins at a Hopf point and ends at a fold, where the sliding of the cycle grazes the belt", function()
     local Rd, Re, C, v0 = 0.3, 0.6, 0.15, 0.3
     local squeal = system{ I = 1, k = 4, C = C, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }

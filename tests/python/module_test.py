@@ -555,23 +555,6 @@ print(shell.object_inspect_text("sys_.simulate"))
 class Truth(unittest.TestCase):
     """The numbers of the reference cases."""
 
-    def test_newsgroup(self):
-        e = dinal.system(I=1, k=1, Rd=10).simulate(velocity0=5, t_end=2).events[0]
-        self.assertAlmostEqual(e.t, math.atan(.5), 12)
-        self.assertAlmostEqual(e.theta, math.sqrt(125) - 10, 12)
-
-    def test_block_pulled_by_a_spring(self):
-        run = dinal.system(I=10, k=4000, Rd=19.62, Re=29.43).simulate(M=lambda t: 40 * t, t_end=1)
-        slip, stick = run.events[:2]
-        self.assertAlmostEqual(slip.t, .73575, 8)
-        self.assertAlmostEqual(stick.t - slip.t, .177191371, 7)
-        self.assertAlmostEqual(stick.theta - slip.theta, 6.676913711e-3, 9)
-
-    def test_den_hartog(self):
-        for r, g, A in ((.75, .5, 1.972601445), (1.35, .5, .860792180), (2, .5, .220479276)):
-            s = dinal.nondimensional(friction_ratio=g).steady(M=dinal.excitation.harmonic(frequency=r))
-            self.assertAlmostEqual(s.amplitude, A, 8)
-
     def test_figure_22(self):
         run = dinal.nondimensional(friction_ratio=.167).simulate(velocity0=2 * math.pi, t_end=3)
         self.assertAlmostEqual(run.events[0].theta, .846848608, 8)
