@@ -1,7 +1,9 @@
 // The table and the bars, as they are printed.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "dinal_runs.hpp"
 #include "results.hpp"
@@ -36,21 +38,59 @@ double median(const Results& results, std::string_view group, std::string_view n
     return item == nullptr ? 0 : item->median();
 }
 
-void bar(std::string_view what, double value, double limit, std::string_view unit) {
-    fmt::print("{:<66}{:>8.3g} {:<3}{:>8.3g}   {}\n", what, value, unit, limit, value <= limit ? "met" : "NOT MET");
+struct Place {
+    std::string_view group, name;
+};
+
+/// A number of some items, which says so where these were filtered away.
+template <class Value>
+void bar(const Results& results, std::string_view what, double most, std::string_view unit,
+         std::initializer_list<Place> items, Value value) {
+    const bool measured = std::all_of(
+        items.begin(), items.end(), [&](const Place& item) { return results.find(item.group, item.name) != nullptr; });
+    if (!measured) {
+        fmt::print("{:<66}not measured\n", what);
+        return;
+    }
+    const double found = value();
+    fmt::print("{:<66}{:>8.3g} {:<3}{:>8.3g}   {}\n", what, found, unit, most, found <= most ? "met" : "NOT MET");
 }
 
-// A bar whose items were filtered away says so instead of a number.
-template <class Value>
-void bar_of(const Results& results, std::initializer_list<std::pair<std::string_view, std::string_view>> items,
-            std::string_view what, double limit, std::string_view unit, Value value) {
-    for (const auto& [group, name] : items) {
-        if (results.find(group, name) == nullptr) {
-            fmt::print("{:<66}not measured\n", what);
-            return;
-        }
+/// A time in units of which a second has so many.
+struct TimeBar {
+    std::string what;
+    double most;
+    std::string_view unit;
+    double units;
+    Place item;
+};
+
+/// A time against another one.
+struct RatioBar {
+    std::string what;
+    double most;
+    Place item, against;
+};
+
+Place arcs_on(std::string_view work) {
+    return {work, arcs_peer.name};
+}
+
+double time_of(const Results& results, const Place& item) {
+    return median(results, item.group, item.name);
+}
+
+void print(const Results& results, const std::vector<TimeBar>& bars) {
+    for (const TimeBar& b : bars) {
+        bar(results, b.what, b.most, b.unit, {b.item}, [&] { return time_of(results, b.item) * b.units; });
     }
-    bar(what, value(), limit, unit);
+}
+
+void print(const Results& results, const std::vector<RatioBar>& bars) {
+    for (const RatioBar& b : bars) {
+        bar(results, b.what, b.most, "x", {b.item, b.against},
+            [&] { return time_of(results, b.item) / time_of(results, b.against); });
+    }
 }
 
 }  // namespace
@@ -90,120 +130,91 @@ static void print_arcs_bars(const Results& results) {
                          {dinal_exact, "W4", 0.7, 1e-12},
                          {dinal_spectral, "W3", 2, 1e-11},
                          {dinal_spectral, "W4", 2, 1e-11}}) {
-        bar_of(results, {{b.work, b.peer.name}, {b.work, arcs_peer.name}},
-               fmt::format("{}: {}, time against closed-form arcs by hand", b.peer.name, b.work), b.time, "x",
-               [&] { return median(results, b.work, b.peer.name) / median(results, b.work, arcs_peer.name); });
-        bar_of(results, {{b.work, b.peer.name}}, fmt::format("{}: {}, error", b.peer.name, b.work), b.error, "",
-               [&] { return results.find(b.work, b.peer.name)->error; });
+        const std::string name = fmt::format("{}: {}, ", b.peer.name, b.work);
+        const Place item{b.work, b.peer.name};
+        print(results, {RatioBar{name + "time against closed-form arcs by hand", b.time, item, arcs_on(b.work)}});
+        bar(results, name + "error", b.error, "", {item}, [&] { return results.find(b.work, b.peer.name)->error; });
     }
-    bar_of(results, {{closed_forms_group, samples_item}}, "dinal exact: a sample of a record", 20, "ns",
-           [&] { return median(results, closed_forms_group, samples_item) / 1e6 * 1e9; });
-    for (const auto& [harmonics, most] : {std::pair{10, 30.}, {100, 300.}, {1000, 10000.}}) {
-        const std::string name = std::string(harmonics_item) + std::to_string(harmonics);
-        bar_of(results, {{closed_forms_group, name}}, fmt::format("dinal exact: a period of {} harmonics", harmonics),
-               most, "us",
-               [&] { return median(results, closed_forms_group, name) / (harmonics == 1000 ? 20 : 100) * 1e6; });
-    }
-}
-
-static void print_spectral_bars(const Results& results) {
-    const std::string_view in_lua = "spectral on W3, M in Lua", bare = "the same number of bare calls";
-    bar_of(results, {{lua_group, in_lua}, {"W3", arcs_peer.name}},
-           "spectral with a Lua function: W3, time against arcs by hand", 3.5, "x",
-           [&] { return median(results, lua_group, in_lua) / median(results, "W3", arcs_peer.name); });
-    bar_of(results, {{lua_group, bare}}, "spectral with a Lua function: W3, calls of M a period", 70, "",
-           [&] { return results.lua_calls.spectral_on_w3 / 1000; });
-}
-
-static void print_question_bars(const Results& results) {
-    struct Bar {
-        std::string_view item, what;
-        double most;
-        std::string_view unit;
-        double factor;
-    };
-    for (const Bar& b : {Bar{steady_native, "steady motion, native: a point", 5, "us", 1e6 / 40000},
-                         {sweep_one_worker, "steady motion, sweep in Lua: a point", 25, "us", 1e6 / 40000},
-                         {sweep_of_nothing, "a sweep: setting it up", 5, "ms", 1e3},
-                         {response_300, "response, 300 points", 5, "ms", 1e3},
-                         {identify_1000, "identify, free decay of 1000 samples", 10, "ms", 1e3}}) {
-        bar_of(results, {{analysis_group, b.item}}, b.what, b.most, b.unit,
-               [&] { return median(results, analysis_group, b.item) * b.factor; });
-    }
-    bar_of(results, {{analysis_group, sweep_one_worker}, {analysis_group, sweep_two_workers}},
-           "sweep: time with two workers against one", 1 / 1.8, "x", [&] {
-               return median(results, analysis_group, sweep_two_workers) /
-                      median(results, analysis_group, sweep_one_worker);
-           });
 }
 
 static void print_systems_bars(const Results& results) {
     for (const LuaRow& row : lua_rows()) {
-        bar_of(results, {{systems_group, row.name}}, fmt::format("{}: a {}", row.name, row.per), row.most,
-               row.figure == Figure::microseconds ? "us"
-               : row.figure == Figure::seconds    ? "s"
-                                                  : "",
-               [&] {
-                   const Item& item = *results.find(systems_group, row.name);
-                   const double all = row.figure == Figure::calls          ? item.calls
-                                      : row.figure == Figure::microseconds ? item.median() * 1e6
-                                                                           : item.median();
-                   return all / item.count;
-               });
+        bar(results, fmt::format("{}: a {}", row.name, row.per), row.most,
+            row.figure == Figure::microseconds ? "us"
+            : row.figure == Figure::seconds    ? "s"
+                                               : "",
+            {{systems_group, row.name}}, [&] {
+                const Item& item = *results.find(systems_group, row.name);
+                const double all = row.figure == Figure::calls          ? item.calls
+                                   : row.figure == Figure::microseconds ? item.median() * 1e6
+                                                                        : item.median();
+                return all / item.count;
+            });
     }
 }
 
 void print_bars(const Results& results) {
     fmt::print("\n{:<66}{:>8} {:<3}{:>8}\n", "bar", "measured", "", "at most");
     print_arcs_bars(results);
-    print_spectral_bars(results);
-    print_question_bars(results);
-    print_systems_bars(results);
+    const Place spectral_in_lua{lua_group, "spectral on W3, M in Lua"}, rk4_in_lua{lua_group, "rk4 on W3, M in Lua"};
+    const Place bare{lua_group, "the same number of bare calls"};
+    const Place one_worker{analysis_group, sweep_one_worker};
+    const auto harmonics = [](const std::string& n) { return std::string(harmonics_item) + n; };
+    const std::string ten = harmonics("10"), hundred = harmonics("100"), thousand = harmonics("1000");
+    print(results, std::vector<TimeBar>{
+                       {"dinal exact: a sample of a record", 20, "ns", 1e3, {closed_forms_group, samples_item}},
+                       {"dinal exact: a period of 10 harmonics", 30, "us", 1e4, {closed_forms_group, ten}},
+                       {"dinal exact: a period of 100 harmonics", 300, "us", 1e4, {closed_forms_group, hundred}},
+                       {"dinal exact: a period of 1000 harmonics", 10000, "us", 5e4, {closed_forms_group, thousand}},
+                       {"steady motion, native: a point", 5, "us", 1e6 / 40000, {analysis_group, steady_native}},
+                       {"steady motion, sweep in Lua: a point", 25, "us", 1e6 / 40000, one_worker},
+                       {"a sweep: setting it up", 5, "ms", 1e3, {analysis_group, sweep_of_nothing}},
+                       {"response, 300 points", 5, "ms", 1e3, {analysis_group, response_300}},
+                       {"identify, free decay of 1000 samples", 10, "ms", 1e3, {analysis_group, identify_1000}},
+                   });
+    print(results,
+          std::vector<RatioBar>{
+              {"spectral with a Lua function: W3, time against arcs by hand", 3.5, spectral_in_lua, arcs_on("W3")},
+              {"sweep: time with two workers against one", 1 / 1.8, {analysis_group, sweep_two_workers}, one_worker},
+              {"rk4 with a Lua function: time against the bare calls", 1.3, rk4_in_lua, bare},
+          });
     for (const Peer* peer : {&dinal_rk4, &dinal_1989}) {
-        bar_of(results, {{"W1", peer->name}, {"W1", baseline}},
-               fmt::format("{}: W1, time against the hand-inlined RK4", peer->name), 0.2, "x",
-               [&] { return median(results, "W1", peer->name) / median(results, "W1", baseline); });
-        for (const std::string_view work : {"W3", "W4"}) {
-            bar_of(results, {{work, peer->name}, {work, baseline}}, fmt::format("{}: {}, the same", peer->name, work),
-                   1, "x", [&] { return median(results, work, peer->name) / median(results, work, baseline); });
+        for (const auto& [work, most] : {std::pair{"W1", 0.2}, {"W3", 1.}, {"W4", 1.}}) {
+            print(results, {RatioBar{fmt::format("{}: {}, time against the hand-inlined RK4", peer->name, work),
+                                     most,
+                                     {work, peer->name},
+                                     {work, baseline}}});
         }
     }
-    const std::string_view in_lua = "rk4 on W3, M in Lua", bare = "the same number of bare calls";
+    print_systems_bars(results);
     const LuaCalls& calls = results.lua_calls;
+    bar(results, "spectral with a Lua function: W3, calls of M a period", 70, "", {bare},
+        [&] { return calls.spectral_on_w3 / 1000; });
     // The first value belongs to no step; what locating an event takes is told on a line of its own.
-    bar_of(results, {{lua_group, bare}}, "rk4 with a Lua function: calls of M a step without an event", 2, "",
-           [&] { return (calls.without_events - 1) / 1e6; });
-    bar_of(results, {{lua_group, in_lua}, {lua_group, bare}}, "rk4 with a Lua function: time against the bare calls",
-           1.3, "x", [&] { return median(results, lua_group, in_lua) / median(results, lua_group, bare); });
+    bar(results, "rk4 with a Lua function: calls of M a step without an event", 2, "", {bare},
+        [&] { return (calls.without_events - 1) / 1e6; });
     if (calls.events_on_w3 > 0) {
         fmt::print("    (W3: {:.0f} calls in 1e6 steps, {:.1f} more for each of its {:.0f} events)\n", calls.on_w3,
                    (calls.on_w3 - calls.without_events) / calls.events_on_w3, calls.events_on_w3);
     }
-    bar_of(results, {{rows_group, "W1 with a row a step"}, {rows_group, "W1 without rows"}},
-           "six columns kept, memory warm: a row on top of its step", 5, "ns", [&] {
-               return (median(results, rows_group, "W1 with a row a step") -
-                       median(results, rows_group, "W1 without rows")) /
-                      1e7 * 1e9;
-           });
+    const Place with_rows{rows_group, "W1 with a row a step"}, without_rows{rows_group, "W1 without rows"};
+    bar(results, "six columns kept, memory warm: a row on top of its step", 5, "ns", {with_rows, without_rows},
+        [&] { return (time_of(results, with_rows) - time_of(results, without_rows)) / 1e7 * 1e9; });
+    std::vector<TimeBar> others;
     for (const auto& [item, most] : {std::pair{csv_in_memory, 300.}, {csv_on_disk, 300.}, {csv_read, 250.}}) {
-        const std::string_view csv = item;
-        bar_of(results, {{files_group, csv}}, fmt::format("{}: a row", csv), most, "ns",
-               [&, csv] { return median(results, files_group, csv) / 1e6 * 1e9; });
+        others.push_back({fmt::format("{}: a row", item), most, "ns", 1e3, {files_group, item}});
     }
     for (const std::string_view plot : {terminal_response, terminal_phase}) {
-        bar_of(results, {{plots_group, plot}}, fmt::format("plot of 1e6 rows, {}", plot), 50, "ms",
-               [&] { return median(results, plots_group, plot) * 1e3; });
+        others.push_back({fmt::format("plot of 1e6 rows, {}", plot), 50, "ms", 1e3, {plots_group, plot}});
     }
     for (const std::string_view plot : {svg_response, svg_phase}) {
-        bar_of(results, {{plots_group, plot}}, fmt::format("plot of 1e6 rows, {}", plot), 1, "s",
-               [&] { return median(results, plots_group, plot); });
+        others.push_back({fmt::format("plot of 1e6 rows, {}", plot), 1, "s", 1, {plots_group, plot}});
     }
-    bar_of(results, {{plots_group, report_figures}}, report_figures, 30, "s",
-           [&] { return median(results, plots_group, report_figures); });
+    others.push_back({std::string(report_figures), 30, "s", 1, {plots_group, report_figures}});
     for (const std::string_view start : {"to the end of -e \"\"", "to the end of an empty script", "to the prompt"}) {
-        bar_of(results, {{start_group, start}}, fmt::format("start {}", start), 20, "ms",
-               [&] { return median(results, start_group, start) * 1e3; });
+        others.push_back({fmt::format("start {}", start), 20, "ms", 1e3, {start_group, start}});
     }
+    print(results, others);
 }
 
 }  // namespace bench
