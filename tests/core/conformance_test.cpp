@@ -175,26 +175,4 @@ TEST_CASE("rows are at the asked times and their torques add up", "[conformance]
     }
 }
 
-TEST_CASE("a copy scaled by powers of two moves alike, bit for bit", "[conformance][rk4]") {
-    for (const char* name : {"W3: one stop per half cycle (fig 24)", "W4: resonance, both frictions (fig 27)"}) {
-        const ReferenceSystem& s = reference_system(name);
-        for (const double angle : {0x1p-30, 0x1p+20}) {
-            for (const double time : {1.0, 0x1p-9, 0x1p+7}) {
-                const double k = 0x1p5 * s.oscillator.stiffness();
-                const double inertia = s.oscillator.inertia() * 0x1p5 * time * time;
-                const ReferenceSystem copy = rescaled(s, "copy", inertia, k, angle);
-                REQUIRE(copy.window.end == s.window.end * time);
-                const Trajectory a = must_run(s, Grid::every(0.03), Rk4{0.01});
-                const Trajectory b = must_run(copy, Grid::every(0.03 * time), Rk4{0.01 * time});
-                CAPTURE(name, angle, time);
-                REQUIRE(a.size() == b.size());
-                CHECK((a.rows.col(1) * angle - b.rows.col(1)).cwiseAbs().maxCoeff() == 0);
-                CHECK((a.rows.col(2) * (angle / time) - b.rows.col(2)).cwiseAbs().maxCoeff() == 0);
-                REQUIRE(a.events.size() == b.events.size());
-                for (std::size_t i = 0; i < a.events.size(); ++i) REQUIRE(a.events[i].t * time == b.events[i].t);
-            }
-        }
-    }
-}
-
 }  // namespace dinal::conformance_test

@@ -89,36 +89,6 @@ TEST_CASE("tables that fall, rise, nearly jump or have a narrow bump move as an 
     }
 }
 
-TEST_CASE("a law with corners moves alike in all units", "[laws][corners]") {
-    const auto in_units = [](double time, double torque, double angle) {
-        const Tabulated table{.speed = {0, 0.05 * angle / time, 0.2 * angle / time, 0.6 * angle / time},
-                              .torque = {0.6 * torque, 0.4 * torque, 0.3 * torque, 0.35 * torque}};
-        const Oscillator system = Oscillator::make({.inertia = torque / angle * time * time,
-                                                    .stiffness = torque / angle,
-                                                    .damping = 0.02 * torque / angle * time,
-                                                    .friction = table})
-                                      .value();
-        return must_run(system, harmonic(1.5 * torque, 0.3 / time), {0.4 * angle, 0}, {0, 60 * time}, Grid::none(),
-                        Spectral{});
-    };
-    const Trajectory one = in_units(1, 1, 1);
-    REQUIRE(one.events.size() > 5);
-    for (const double time : {1e-9, 1e9}) {
-        for (const double torque : {1e-9, 1e9}) {
-            for (const double angle : {1e-9, 1e9}) {
-                CAPTURE(time, torque, angle);
-                const Trajectory other = in_units(time, torque, angle);
-                REQUIRE(other.events.size() == one.events.size());
-                for (std::size_t i = 0; i < one.events.size(); ++i) {
-                    CHECK(other.events[i].kind == one.events[i].kind);
-                    CHECK(other.events[i].t / time == within(one.events[i].t, 1e-10));
-                    CHECK(other.events[i].theta / angle == within(one.events[i].theta, 1e-11));
-                }
-            }
-        }
-    }
-}
-
 TEST_CASE("a speed that only touches a corner, or stays at it, goes on", "[laws][corners]") {
     // A block pushed to the very speed of a corner, where the push balances friction.
     const Tabulated table{.speed = {0, 1, 2}, .torque = {0.5, 0.3, 0.6}};

@@ -38,7 +38,7 @@ struct Way {
 };
 /// rk4 comes to a velocity of 1e-14 or so, which it keeps.
 std::vector<Way> ways() {
-    return {{Exact{}}, {Spectral{}}, {Rk4{0.001}}, {Rk4{0.001}, true}};
+    return {{Exact{}}, {Spectral{}}, {Rk4{0.002}}, {Rk4{0.002}, true}};
 }
 
 }  // namespace

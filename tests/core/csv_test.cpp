@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
@@ -247,18 +248,15 @@ TEST_CASE("a row whose first numbers are plain is read once and as a whole, or r
 }
 
 TEST_CASE("a ragged row is refused with its line", "[csv]") {
-    CHECK(fault("t,theta\n0,1\n0\n") ==
-          "x.csv:3: found 1 field, expected 2 as in the first line; put # before lines that are no columns");
-    CHECK(fault("# c\n\nt,theta\r\n0,1\r\n1,2,3\r\n") ==
-          "x.csv:5: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
-    CHECK(fault("t,theta\n0\n") ==
-          "x.csv:2: found 1 field, expected 2 as in the first line; put # before lines that are no columns");
-    CHECK(fault("0 1\n0 1 2\n") ==
-          "x.csv:2: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
-    CHECK(fault("t,theta\n0,1,\n") ==
-          "x.csv:2: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
-    CHECK(fault("t\ttheta\n0\t1\n\t1\t2\n") ==
-          "x.csv:3: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
+    for (const auto& [text, line, found] : {std::tuple{"t,theta\n0,1\n0\n", 3, "1 field"},
+                                            {"# c\n\nt,theta\r\n0,1\r\n1,2,3\r\n", 5, "3 fields"},
+                                            {"t,theta\n0\n", 2, "1 field"},
+                                            {"0 1\n0 1 2\n", 2, "3 fields"},
+                                            {"t,theta\n0,1,\n", 2, "3 fields"},
+                                            {"t\ttheta\n0\t1\n\t1\t2\n", 3, "3 fields"}}) {
+        CHECK(fault(text) == "x.csv:" + std::to_string(line) + ": found " + found +
+                                 ", expected 2 as in the first line; put # before lines that are no columns");
+    }
 }
 
 TEST_CASE("what is no finite number is refused with its line and column", "[csv]") {

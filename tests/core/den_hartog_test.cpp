@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "support/catch.hpp"
 #include "support/measure.hpp"
+#include "support/random_case.hpp"
 #include "support/within.hpp"
 #include "theory/theory_forced.hpp"
 
@@ -45,15 +45,6 @@ long sticks_since(const Trajectory& run, double t) {
         return event.t > t && (event.kind == EventKind::stick || event.kind == EventKind::rest);
     });
 }
-
-class Chance {
-public:
-    explicit Chance(unsigned seed) : engine_(seed) {}
-    double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
-
-private:
-    std::mt19937 engine_;
-};
 
 }  // namespace
 
@@ -167,7 +158,7 @@ TEST_CASE("at resonance without damping the motion grows below pi/4, and there i
 }
 
 TEST_CASE("a run that begins on Den Hartog's motion stays on it", "[den_hartog]") {
-    Chance chance(6);
+    truth::Lot chance(6);
     for (int i = 0; i < 60; ++i) {
         const double r = chance.between(0.3, 2.5);
         const double zeta = i % 3 == 0 ? 0 : i % 3 == 1 ? chance.between(0, 0.3) : chance.between(0, 1.5);

@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "support/catch.hpp"
 #include "support/measure.hpp"
+#include "support/random_case.hpp"
 #include "support/within.hpp"
 
 namespace dinal::theory_free_test {
@@ -22,16 +22,6 @@ constexpr double pi = std::numbers::pi;
 
 /// Half a unit of the ninth decimal, the last one printed.
 constexpr double printed = 0.51e-9;
-
-class Chance {
-public:
-    explicit Chance(unsigned seed) : engine_(seed) {}
-    double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
-    double power_of_ten(double a, double b) { return std::pow(10, between(a, b)); }
-
-private:
-    std::mt19937 engine_;
-};
 
 truth::ExactMotion true_motion(const Oscillator& system, const State& initial, double end) {
     return {system, {truth::Piece{}}, initial, 0, end};
@@ -49,7 +39,7 @@ void check_extremes(const FreeMotion& motion, const std::vector<Extreme>& expect
 }  // namespace
 
 TEST_CASE("the free response is the exact one in all regimes and on the way between them", "[theory]") {
-    Chance chance(1);
+    truth::Lot chance(1);
     for (int i = 0; i < 400; ++i) {
         const double near_one = 1 + (i % 2 == 0 ? 1 : -1) * chance.power_of_ten(-16, -1);
         const double zeta = i % 4 == 0 ? near_one : i % 4 == 1 ? chance.power_of_ten(-6, 2) : chance.between(0, 2);
@@ -93,7 +83,7 @@ TEST_CASE("figure 26: the half-cycle map with both frictions", "[theory]") {
 }
 
 TEST_CASE("free motion with dry friction is the exact one, event by event and in between", "[theory]") {
-    Chance chance(2);
+    truth::Lot chance(2);
     int rests = 0;
     for (int i = 0; i < 300; ++i) {
         const double zeta = i % 3 == 0 ? 0 : chance.between(0, i % 3 == 1 ? 0.3 : 1.6);
@@ -216,7 +206,7 @@ TEST_CASE("without dry friction a motion swings for ever, or tends to the middle
 }
 
 TEST_CASE("three extremes tell both dampings", "[theory]") {
-    Chance chance(4);
+    truth::Lot chance(4);
     for (int i = 0; i < 100; ++i) {
         const double zeta = i % 10 == 0 ? 0 : chance.between(0, 0.3);
         const double shift = i % 10 == 1 ? 0 : chance.between(0, 0.02);

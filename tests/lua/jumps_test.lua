@@ -10,18 +10,6 @@ local function kinds(run)
     return table.concat(list, " ")
 end
 
-test("a belt that is a function and jumps past the mass turns the sliding round, and moves nothing at once", function()
-    local run = system { I = 1, k = 0, Rd = 0.25 }:simulate {
-        belt = function(t) return t < 1 and 1 or -1 end, t_end = 3, dt = 0.5,
-    }
-    equal(kinds(run), "turn")
-    near(run.events[1].t, 1, found)
-    near(run.theta[#run], 0.125, found)
-    near(run.velocity[#run], -0.25, found)
-    near(select(2, run:at(1)), 0.25, found)
-    assert(run:energy().total.closure < 1e-11)
-end)
-
 test("a belt with kinks where it is zero is followed in no time", function()
     local asked = 0
     local run = system { I = 1, k = 0, Rd = 0.1 }:simulate {

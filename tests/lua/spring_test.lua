@@ -17,20 +17,6 @@ test("a spring is an option of a system, and the text of the system makes it aga
     equal(system { I = 1, k = 1, spring = spring.polynomial {} }.spring, nil)
 end)
 
-test("a spring written as a Lua function moves the mass as the native one", function()
-    local task = { M = excitation.harmonic { amplitude = 0.8, frequency = 0.05 }, theta0 = 1.3, t_end = 60, dt = 0.5 }
-    local native = system { I = 1, k = 1, Rd = 0.1, Re = 0.2, spring = duffing }
-    local own = native:with { spring = function(theta) return 0.5 * theta ^ 3 end }
-    local a, b = native:simulate(task), own:simulate(task)
-    equal(#a.events, #b.events)
-    near(a.theta, b.theta, 1e-11)
-    near(b:energy().total.error, 0, 1e-12)
-    near(a:energy().spring, b:energy().spring, 1e-11)
-    says(b, "a second spring besides k theta")
-    task.integrator = integrator.rk4 { h = 0.005 }
-    near(native:simulate(task).theta, a.theta, 1e-7)
-end)
-
 test("with changes a spring, or takes it away", function()
     local sys = system { I = 1, k = 1, Rd = 0.1, spring = duffing }
     equal(tostring(sys:with { k = 2 }.spring), tostring(duffing))

@@ -30,6 +30,17 @@ Ingredient term_of(const Term& term, Load load) {
             native(term), std::move(load)};
 }
 
+Ingredient sine_of(double a, double omega, double phase) {
+    return term_of(
+        model::Harmonic{a, omega, phase},
+        load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega));
+}
+
+Ingredient exponential_of(double a, double tau, double at) {
+    return term_of(model::Exponential{a, tau, at},
+                   load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
+}
+
 /// From, from + step, ... all over the window, also when they are delayed later on.
 std::vector<double> every(double from, double step, const Units& u, std::vector<double> parts = {0}) {
     std::vector<double> times;
@@ -96,9 +107,7 @@ Ingredient short_term(Lot& lot, const Units& u) {
         }
         default: {
             const double tau = u.period * (lot.once_in(4) ? -lot.between(8, 20) : lot.power_of_ten(-1.5, 1));
-            return term_of(
-                model::Exponential{a, tau, at},
-                load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
+            return exponential_of(a, tau, at);
         }
     }
 }
@@ -178,9 +187,7 @@ Ingredient table(Lot& lot, const Units& u) {
 Ingredient sine(Lot& lot, const Units& u) {
     const double a = u.torque * lot.between(0.2, 1.5), phase = lot.once_in(2) ? 0 : lot.between(0, 6.2);
     const double omega = (lot.once_in(5) ? 1 : lot.between(0.05, 3)) * (6.283185307179586 / u.period);
-    return term_of(
-        model::Harmonic{a, omega, phase},
-        load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega));
+    return sine_of(a, omega, phase);
 }
 
 }  // namespace
@@ -211,15 +218,12 @@ Ingredient random_resonant_term(Lot& lot, const Units& u, double damping_ratio) 
     if (damping_ratio < 1 && !lot.once_in(4)) {
         const double a = u.torque * lot.between(0.05, 0.5), phase = lot.between(0, 6.2);
         const double omega = w0 * detuned * std::sqrt((1 - damping_ratio) * (1 + damping_ratio));
-        return term_of(model::Harmonic{a, omega, phase},
-                       load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); },
-                               {}, omega));
+        return sine_of(a, omega, phase);
     }
     const double zeta = damping_ratio, root = zeta > 1 ? std::sqrt((zeta - 1) * (zeta + 1)) : 0;
     const double rate = w0 * detuned * (root > 0 && lot.once_in(2) ? 1 / (zeta + root) : std::max(zeta + root, 0.1));
     const double a = u.torque * lot.between(-1, 1), at = u.window.start, tau = 1 / rate;
-    return term_of(model::Exponential{a, tau, at},
-                   load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
+    return exponential_of(a, tau, at);
 }
 
 /// A narrow one is as great as it must be to be felt. The oracle, which takes some steps between breaks, is told of

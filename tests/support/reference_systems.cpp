@@ -133,6 +133,28 @@ ReferenceSystem braked_by_hand(std::string name, const ReferenceSystem& s, doubl
     return copy;
 }
 
+/// The same motion in other units: theta times `angle`, with the given inertia and stiffness.
+ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness,
+                         double angle) {
+    const double time = std::sqrt(inertia / stiffness) * base.oscillator.natural_frequency();
+    const double torque = angle * stiffness / base.oscillator.stiffness();
+    const Drive& drive = base.drives.front().drive;
+    if (base.drives.size() != 1) throw std::logic_error("rescaled: only for one drive");
+    const auto amplitude = static_cast<double>(drive.amplitude) * torque;
+    const auto omega = static_cast<double>(drive.omega) / time;
+    return {std::move(name),
+            system_of({.inertia = inertia,
+                       .stiffness = stiffness,
+                       .damping = base.oscillator.damping() * torque / angle * time,
+                       .kinetic_friction = base.oscillator.kinetic_friction() * torque,
+                       .breakaway = base.oscillator.breakaway() * torque}),
+            harmonic(amplitude, omega),
+            harmonic_drive(amplitude, omega),
+            {base.initial.theta * angle, base.initial.velocity * angle / time},
+            {base.window.start * time, base.window.end * time},
+            base.size * angle};
+}
+
 }  // namespace
 
 double ReferenceSystem::fastest_rate() const {
@@ -159,27 +181,6 @@ model::Excitation harmonic(double amplitude, double omega, double phase) {
 
 std::vector<Piece> harmonic_drive(double amplitude, double omega, double phase) {
     return {{-model::never, {.amplitude = amplitude, .omega = omega, .phase = phase}}};
-}
-
-ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness,
-                         double angle) {
-    const double time = std::sqrt(inertia / stiffness) * base.oscillator.natural_frequency();
-    const double torque = angle * stiffness / base.oscillator.stiffness();
-    const Drive& drive = base.drives.front().drive;
-    if (base.drives.size() != 1) throw std::logic_error("rescaled: only for one drive");
-    const auto amplitude = static_cast<double>(drive.amplitude) * torque;
-    const auto omega = static_cast<double>(drive.omega) / time;
-    return {std::move(name),
-            system_of({.inertia = inertia,
-                       .stiffness = stiffness,
-                       .damping = base.oscillator.damping() * torque / angle * time,
-                       .kinetic_friction = base.oscillator.kinetic_friction() * torque,
-                       .breakaway = base.oscillator.breakaway() * torque}),
-            harmonic(amplitude, omega),
-            harmonic_drive(amplitude, omega),
-            {base.initial.theta * angle, base.initial.velocity * angle / time},
-            {base.window.start * time, base.window.end * time},
-            base.size * angle};
 }
 
 const std::vector<ReferenceSystem>& reference_systems() {

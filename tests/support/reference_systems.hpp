@@ -52,7 +52,4 @@ const ReferenceSystem& reference_system(std::string_view name);
 /// Systems in which M takes over a part of sliding friction: it jumps when the velocity is zero.
 const std::vector<ReferenceSystem>& jumping_feedback_systems();
 
-/// The same motion in other units: theta times `angle`, with the given inertia and stiffness.
-ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness, double angle);
-
 }  // namespace dinal::truth
