@@ -155,6 +155,16 @@ test("friction that rises right before a stop is felt, however low the speed", f
     end
 end)
 
+test("a law that bends costs at most 380 values of M a half swing, at any speed of its bend", function()
+    for _, speed in ipairs { 0.002, 0.02, 0.3 } do
+        local calls = 0
+        local run = nondimensional { friction = friction.stribeck { Rd = 0.005, Re = 0.0125, speed = speed } }:simulate {
+            M = function(t) calls = calls + 1 return 0.25 * math.sin(4 * t) end, theta0 = 1, t_end = 20, dt = 20 }
+        equal(#run.events, 40)
+        assert(calls <= 380 * #run.events, calls)
+    end
+end)
+
 test("a law whose value at speed 0 is Re but for rounding holds what it says", function()
     local law = friction.law(function(speed) return 0.1 + 0.2 * math.exp(-speed) end, { Re = 0.3 }) -- 0.1 + 0.2 > 0.3
     equal(law.Re, 0.1 + 0.2)

@@ -561,30 +561,17 @@ class Truth(unittest.TestCase):
         self.assertAlmostEqual(run.events[-1].theta, .155151392, 8)
         self.assertAlmostEqual(run.events[-1].t, 1.723664157, 8)
 
-    def test_sheet_1_of_the_lab(self):
-        """Done as tests/lab/sheet1_test.lua does it: every answer is right."""
-        for number in (4711, 20260017):
-            dinal.lab.number(number)
-            given = dinal.lab.given(1)
-            T0 = 2 * math.pi * math.sqrt(given.viscous.I / given.viscous.k)
-            viscous, dry = dinal.system(**given.viscous), dinal.system(**given.dry)
-            run = viscous.simulate(theta0=given.theta0, t_end=10 * T0, dt=T0 / 100)
-            decrement = math.log(given.theta0 / run.events[1].theta)
-            run = dry.simulate(theta0=given.theta0, t_end=10 * T0, dt=T0 / 100)
-            last = run.events[-1]
-            record = dinal.lab.experiment(1)
-            X0, X1, X2 = record.theta[0], -record.theta[1], record.theta[2]
-            q = (X1 - X2) / (X0 - X1)
-            z = -math.log(q) / math.pi
-            answers = {"1a": T0, "1b": decrement, "1c": decrement / math.sqrt(4 * math.pi**2 + decrement**2),
-                       "1d": given.theta0 + run.events[0].theta, "1e": last.theta, "1f": last.t,
-                       "1g": z / math.sqrt(1 + z**2), "1h": (q * X0 - X1) / (1 + q)}
-            for question, value in answers.items():
-                dinal.check(question, value)
-            marks = dinal.lab.marks()
-            said = dict(zip(marks.question, marks.said))
-            for question in answers:
-                self.assertTrue(said[question].startswith(f"{question}: right"), said[question])
+    def test_a_sheet_of_the_lab(self):
+        """Two of its answers; tests/lab has them all."""
+        dinal.lab.number(4711)
+        given = dinal.lab.given(1)
+        run = dinal.system(**given.dry).simulate(theta0=given.theta0, t_end=100)
+        record = dinal.lab.experiment(1)
+        self.assertGreater(record.theta[0], -record.theta[1])
+        for question, value in (("1a", 2 * math.pi * math.sqrt(given.viscous.I / given.viscous.k)), ("1e", run.events[-1].theta)):
+            dinal.check(question, value)
+            said = dict(zip(dinal.lab.marks().question, dinal.lab.marks().said))
+            self.assertTrue(said[question].startswith(f"{question}: right"), said[question])
 
 
 if __name__ == "__main__":
