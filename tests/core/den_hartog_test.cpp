@@ -9,7 +9,6 @@
 
 #include "support/catch.hpp"
 #include "support/measure.hpp"
-#include "support/random_case.hpp"
 #include "support/within.hpp"
 #include "theory/theory_forced.hpp"
 
@@ -155,32 +154,6 @@ TEST_CASE("at resonance without damping the motion grows below pi/4, and there i
     // Next to it the amplitude is what the slope says: sqrt(1 - (4 gamma/pi)^2)/|1 - r^2|.
     const double r = 1 + 0x1p-30;
     CHECK(amplitude(r, 0.5) == Approx(std::sqrt(1 - 4 / (pi * pi)) / (2 * 0x1p-30)).epsilon(1e-8));
-}
-
-TEST_CASE("a run that begins on Den Hartog's motion stays on it", "[den_hartog]") {
-    truth::Lot chance(6);
-    for (int i = 0; i < 60; ++i) {
-        const double r = chance.between(0.3, 2.5);
-        const double zeta = i % 3 == 0 ? 0 : i % 3 == 1 ? chance.between(0, 0.3) : chance.between(0, 1.5);
-        const DenHartog theory(r, zeta);
-        const double factor = i % 2 == 0 ? 1 : chance.between(1, 1.5);
-        const double gamma = chance.between(0.05, 0.98) * theory.stop_boundary(factor);
-        const auto y = theory.motion(gamma, factor * gamma);
-        REQUIRE(y);
-        const Trajectory run = from_the_peak(truth::nondimensional(zeta, gamma, factor * gamma), r, *y, 6.1);
-        CAPTURE(r, zeta, gamma, factor);
-        REQUIRE(run.events.size() == 12);
-        for (std::size_t n = 0; n < run.events.size(); ++n) {
-            const Event& turn = run.events[n];
-            REQUIRE(turn.kind == EventKind::turn);
-            const double side = n % 2 == 0 ? -1 : 1;
-            // rk4's error, (w0 h)^4/120 w0 t = 5e-12 a period, times the amplitude; dry friction multiplies it at
-            // turns.
-            const double tolerance = 2e-9 * std::max(y->amplitude, 1.0);
-            REQUIRE(std::fabs(turn.theta - side * y->amplitude) <= tolerance);
-            REQUIRE(std::fabs(turn.t - static_cast<double>(n + 1) / (2 * r)) <= 1e-8);
-        }
-    }
 }
 
 TEST_CASE("a run has stops beyond the boundary and none before it", "[den_hartog]") {

@@ -45,22 +45,16 @@ test("what is saved reads back to the last bit: gaps, infinities, words that loo
     equal(back["a name; #2"], d["a name; #2"])
 end)
 
-test("files of others: separators, decimal commas, no names, comments, empty fields", function()
+test("files of others: decimal commas, empty fields, words; csv_test.cpp has the numbers", function()
     equal(load("t,x\n0,1\n1,\n2,nan\n").t, vector{ 0, 1, 2 })
     local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
     equal(d["Time (s)"], vector{ 0.5, 1 })
-    equal(load("1 2\n3 4\n")["2"], vector{ 2, 4 })
     equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
     equal(#load("only,names\n"), 0)
-    -- Fortran's double precision; a word that begins as a number is none.
-    equal(load("t,x\n0.0D0,1.5D+02\n.5d0,-2.0d-1\n").x, vector{ 150, -0.2 })
     equal(load("t,x\n1,3d\n2,1-2\n").x[2], "1-2")
     for text, message in pairs{
-        ["a,b\n1,2\n3\n"] = ":3: found 1 field, expected 2",
-        ["a,a\n1,2\n"] = "belongs to two columns",
         ['"a\nb",x\n1,2\n'] = ":1: a double quote is opened and not closed",
         ['t,w\n1,"open\n'] = ":2: a double quote is opened and not closed",
-        [""] = "the file is empty",
     } do
         raises(function() load(text) end, message)
     end

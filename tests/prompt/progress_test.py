@@ -177,16 +177,6 @@ class AtThePrompt(TerminalTest):
         terminal.child.send("6*7\r")
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
 
-    def test_ctrl_c_at_the_prompt_clears_the_line(self):
-        terminal = self.start()
-        terminal.until(lambda lines: lines[-1] == ">")
-        terminal.child.send("some text (that is wrong")
-        terminal.until(lambda lines: lines[-1].endswith("wrong"))
-        terminal.child.send(CTRL_C)
-        terminal.until(lambda lines: lines[-1] == ">")
-        terminal.child.send("6*7\r")
-        terminal.until(lambda lines: lines[-2:] == ["42", ">"])
-
     def test_each_input_of_a_limited_session_has_its_own_time(self):
         terminal = self.start("--safe", "--max-time", "0.5")
         terminal.until(lambda lines: lines[-1] == ">")

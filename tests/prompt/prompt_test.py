@@ -225,24 +225,6 @@ class Interrupts(PromptTest):
             session.until_prompt()
         self.assertEqual(session.enter("x"), "nil")
 
-    def test_an_interrupted_run_goes_on_as_if_it_had_not_been(self):
-        session = self.session()
-        session.enter("nd = nondimensional{ zeta = 0.01, friction_ratio = 0.3 }")
-        session.enter("function go(t_end) return nd:simulate{ M = M, t_end = t_end, dt = 1 } end")
-        session.enter("function M(t) if t > enough then busy() end return math.sin(t) end enough = 9")
-        self.interrupted(session, "go(1e6)")
-        session.enter("part = ans")
-        self.assertEqual(session.enter("part.outcome"), '"interrupted"')
-        session.enter("longer = part:continue{ t_end = part.t_end + 100 };")
-        session.enter("whole = go(longer.t_end);")
-        # M moves by rounding of t only, 1e-10 at the latest possible t; theta is of order 1.
-        self.assertEqual(session.enter("(longer.theta - whole.theta):abs():max() < 1e-9"), "true")
-        self.assertEqual(session.enter("#longer == #whole and #longer.events == #whole.events"), "true")
-        session.enter("part = part:continue{ t_end = part.t_end + 10 };")
-        session.enter("enough = part.t_end + 10")
-        self.interrupted(session, "part:continue{ t_end = 1e6 }")
-        self.assertEqual(session.enter("ans.t_end > part.t_end"), "true")
-
     def test_the_rows_of_a_run_whose_excitation_failed_are_kept_in_ans(self):
         session = self.session()
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")

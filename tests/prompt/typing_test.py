@@ -242,12 +242,6 @@ class Lines(Typing):
         terminal.type(UP + ENTER)
         terminal.shows("no variables of your own")
 
-    def test_a_pasted_block_runs_once_as_one(self):
-        terminal = self.terminal()
-        terminal.type("\x1b[200~n = (n or 0) + 1\nfor i = 1, 2 do\n\tn = n + 10\nend\nn\x1b[201~" + ENTER)
-        terminal.shows("\n21")
-        self.assertEqual(terminal.enter("n"), "21")
-
 
 if __name__ == "__main__":
     unittest.main()
