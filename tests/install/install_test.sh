@@ -35,9 +35,10 @@ done
     print(string.format("theta(1.2345) = %.6g\n\n%s", run:at(1.2345), run:explain()))' | diff - "$prefix/out"
 
 # The Python module, from where it is installed, and from a wheel that pip makes of it without a network.
-module=$(dirname "$(find "$prefix/usr/lib" -path '*/dist-packages/dinal/__init__.py')")
-folder=$(dirname "$module")
-if [ -d "$module" ]; then
+init=$(find "$prefix/usr/lib" -path '*/dist-packages/dinal/__init__.py')
+if [ -n "$init" ]; then
+    module=$(dirname "$init")
+    folder=$(dirname "$module")
     readelf -d "$module"/_dinal.*.so >"$prefix/out"
     grep -q 'PATH).*\[$ORIGIN/../../../dinal\]$' "$prefix/out" || { echo "the module looks for libraries elsewhere"; cat "$prefix/out"; exit 1; }
     (cd "$prefix" && PYTHONPATH=$folder /usr/bin/python3 -c 'import dinal; print(dinal.system(I=1, k=4).omega0)') | grep -qx 2.0
