@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,33 +25,12 @@ namespace {
 using lua::Vector;
 using Values = std::span<const double>;
 
-/// How a method is called, for its errors: "v:sin()".
-struct CallText {
-    char text[32] = {};
-    template <std::size_t n>
-    constexpr CallText(const char (&words)[n]) {  // NOLINT(google-explicit-constructor)
-        std::copy_n(words, n, text);
-    }
-};
+using Numbers = std::vector<double>;  // a new vector
+using text::Error;
+using text::Expected;
 
-const Vector& own(lua_State* L, std::string_view call) {
-    return lua::self<Vector>(L, 1, call);
-}
-
-const Vector& other(lua_State* L, int index, std::string_view call, const char* name) {
-    const auto* found = lua::test<Vector>(L, index);
-    if (found == nullptr) {
-        lua::fail(L, call,
-                  {.sentence = fmt::format("{} must be a vector, got {}", name, lua::describe(L, index)),
-                   .culprit = lua::written(L, index)});
-    }
-    return *found;
-}
-
-void check_equal_sizes(lua_State* L, std::string_view call, std::size_t n, std::size_t m) {
-    if (n != m) {
-        lua::fail(L, call, {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)});
-    }
+Error unequal_sizes(std::size_t n, std::size_t m) {
+    return {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)};
 }
 
 /// Calls work(i) for all i below n; a stop is noticed in between.
@@ -66,33 +46,36 @@ void for_each_index(lua_State* L, std::size_t n, Work work) {
 
 // ---- families of methods: f of each element, of all elements, of two vectors
 
-template <CallText call, auto f>
-int of_each(lua_State* L) {
-    const Vector& v = own(L, call.text);
-    std::vector<double> result = lua::new_numbers(L, v.size());
+template <auto f>
+Numbers of_each(lua_State* L, const Vector& v) {
+    Numbers result = lua::new_numbers(L, v.size());
     for_each_index(L, v.size(), [&](std::size_t i) { result[i] = f(v.begin()[i]); });
-    return lua::push_vector(L, std::move(result));
+    return result;
 }
 
-/// One number from at least so many.
-template <CallText call, auto f, std::size_t least = 1>
-int of_all(lua_State* L) {
-    const Vector& v = own(L, call.text);
-    if (v.size() < least) {
-        lua::fail(L, call.text, {least == 1 ? "the vector is empty" : "two numbers are needed at least"});
-    }
-    lua::push_value(L, f(v.values()));
-    return 1;
+/// One value from at least so many.
+template <auto f, std::size_t least = 1>
+auto of_all(const Vector& v) -> Expected<decltype(f(Values()))> {
+    if (v.size() < least) return Error{least == 1 ? "the vector is empty" : "two numbers are needed at least"};
+    return f(v.values());
 }
 
 /// f fills a vector that has as many numbers.
-template <CallText call, auto f>
-int filled(lua_State* L) {
-    const Vector& v = own(L, call.text);
-    std::vector<double> result = lua::new_numbers(L, v.size());
+template <auto f>
+Numbers filled(lua_State* L, const Vector& v) {
+    Numbers result = lua::new_numbers(L, v.size());
     f(v.values(), result);
-    return lua::push_vector(L, std::move(result));
+    return result;
 }
+
+/// How an operator is written, for its errors.
+struct Symbol {
+    char text[8] = {};
+    template <std::size_t n>
+    constexpr Symbol(const char (&words)[n]) {  // NOLINT(google-explicit-constructor)
+        std::copy_n(words, n, text);
+    }
+};
 
 /// One side of an operator: a vector, or a number that stands for as many as the other side has.
 struct Operand {
@@ -126,7 +109,7 @@ Operands operands(lua_State* L, const char* symbol) {
     return {a, b, (a.vector != nullptr ? a : b).vector->size()};
 }
 
-template <CallText symbol, auto f>
+template <Symbol symbol, auto f>
 int combined(lua_State* L) {
     const Operands of = operands(L, symbol.text);
     std::vector<double> result = lua::new_numbers(L, of.size);
@@ -232,7 +215,7 @@ int masked(lua_State* L) {
 }
 
 /// True when it holds for every element.
-template <CallText symbol, auto f>
+template <Symbol symbol, auto f>
 int holds(lua_State* L) {
     const Operands of = operands(L, symbol.text);
     lua::make_room(L, of.size / 8 + 1);
@@ -323,14 +306,6 @@ void sort(Values v, std::vector<double>& result) {
 
 // ---- questions with an argument
 
-void check_function(lua_State* L, const char* call) {
-    if (!lua::is_callable(L, 2)) {
-        lua::raise(L, {.sentence = fmt::format("{} takes a function of an element, got {}", call, lua::describe(L, 2)),
-                       .call = call,
-                       .culprit = lua::written(L, 2)});
-    }
-}
-
 /// Leaves f(x, i) on the top of the stack.
 void ask(lua_State* L, double x, std::size_t i) {
     lua_pushvalue(L, 2);
@@ -339,70 +314,52 @@ void ask(lua_State* L, double x, std::size_t i) {
     lua_call(L, 2, 1);
 }
 
-int map(lua_State* L) {
-    const Vector v = own(L, "v:map(f)");
-    check_function(L, "v:map");
-    std::vector<double> result = lua::new_numbers(L, v.size());
+Expected<Numbers> map(lua_State* L, const Vector& v, lua::Callable /*f*/) {
+    Numbers result = lua::new_numbers(L, v.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
         ask(L, v.begin()[i], i);
         if (!lua_isboolean(L, -1) && lua_type(L, -1) != LUA_TNUMBER) {
-            lua::fail(L, "v:map",
-                      {fmt::format("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
-                                   lua::describe(L, -1))});
+            return Error{fmt::format("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
+                                     lua::describe(L, -1))};
         }
         result[i] = lua_isboolean(L, -1) ? static_cast<double>(lua_toboolean(L, -1)) : lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
-    return lua::push_vector(L, std::move(result));
+    return result;
 }
 
-int find(lua_State* L) {
-    const Vector v = own(L, "v:find(f)");
-    check_function(L, "v:find");
-    std::vector<double> places;
+Numbers find(lua_State* L, const Vector& v, lua::Callable /*f*/) {
+    Numbers places;
     for (std::size_t i = 0; i < v.size(); ++i) {
         ask(L, v.begin()[i], i);
         if (lua_toboolean(L, -1) != 0) places.push_back(static_cast<double>(i + 1));
         lua_pop(L, 1);
     }
-    return lua::push_vector(L, std::move(places));
+    return places;
 }
 
-int quantile(lua_State* L) {
-    const Vector& v = own(L, "v:quantile(p)");
-    const double p = lua::finite_argument(L, 2, "v:quantile(p): p");
-    if (!(p >= 0 && p <= 1)) {
-        lua::fail(L, "v:quantile(p)", {fmt::format("p = {:.6g} must lie between 0 and 1", p)});
-    }
-    if (v.size() == 0) lua::fail(L, "v:quantile(p)", {"the vector is empty"});
-    std::vector<double> values(v.begin(), v.end());
-    if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) {
-        lua_pushnumber(L, std::nan(""));
-        return 1;
-    }
+Expected<double> quantile(const Vector& v, double p) {
+    if (!(p >= 0 && p <= 1)) return Error{fmt::format("p = {:.6g} must lie between 0 and 1", p)};
+    if (v.size() == 0) return Error{"the vector is empty"};
+    Numbers values(v.begin(), v.end());
+    if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return std::nan("");
     const double place = p * static_cast<double>(values.size() - 1), below = std::floor(place);
     const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
     std::nth_element(values.begin(), nth, values.end());
     double value = *nth;
     if (place > below) value += (place - below) * (*std::min_element(nth + 1, values.end()) - value);
-    lua_pushnumber(L, value);
-    return 1;
+    return value;
 }
 
-int interpolated(lua_State* L) {
-    const char* const call = "v:interp(x, y)";
-    const Vector& v = own(L, call);
-    const Vector& x = other(L, 2, call, "x");
-    const Vector& y = other(L, 3, call, "y");
-    check_equal_sizes(L, call, x.size(), y.size());
-    if (x.size() == 0) lua::fail(L, call, {"there are no points"});
+Expected<Numbers> interpolated(lua_State* L, const Vector& v, const Vector& x, const Vector& y) {
+    if (x.size() != y.size()) return unequal_sizes(x.size(), y.size());
+    if (x.size() == 0) return Error{"there are no points"};
     const auto* const step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
     if (step != x.end()) {
-        lua::fail(L, call,
-                  {fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase", step - x.begin() + 2, step[1],
-                               step - x.begin() + 1, *step)});
+        return Error{fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase", step - x.begin() + 2, step[1],
+                                 step - x.begin() + 1, *step)};
     }
-    std::vector<double> result = lua::new_numbers(L, v.size());
+    Numbers result = lua::new_numbers(L, v.size());
     std::transform(v.begin(), v.end(), result.begin(), [&](double at) {
         if (std::isnan(at)) return at;
         const auto i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin());
@@ -412,7 +369,7 @@ int interpolated(lua_State* L) {
         const double* const b = y.begin() + i - 1;
         return b[0] + (b[1] - b[0]) * ((at - a[0]) / (a[1] - a[0]));
     });
-    return lua::push_vector(L, std::move(result));
+    return result;
 }
 
 int joined(lua_State* L) {
@@ -433,8 +390,8 @@ int joined(lua_State* L) {
 }
 
 int pick(lua_State* L) {
-    const Vector& v = own(L, "v[w]");
-    const Vector& w = other(L, 2, "v[w]", "w");
+    const Vector& v = *lua::test<Vector>(L, 1);
+    const Vector& w = *lua::test<Vector>(L, 2);
     const bool mask =
         w.size() == v.size() && std::all_of(w.begin(), w.end(), [](double x) { return x == 0 || x == 1; });
     std::vector<double> picked;
@@ -457,27 +414,19 @@ int pick(lua_State* L) {
     return lua::push_vector(L, std::move(picked));
 }
 
-int dot(lua_State* L) {
-    const Vector& v = own(L, "v:dot(w)");
-    const Vector& w = other(L, 2, "v:dot(w)", "w");
-    check_equal_sizes(L, "v:dot(w)", v.size(), w.size());
+Expected<double> dot(const Vector& v, const Vector& w) {
+    if (v.size() != w.size()) return unequal_sizes(v.size(), w.size());
     Sum sum;
     for (std::size_t i = 0; i < v.size(); ++i) sum.add(v.begin()[i] * w.begin()[i]);
-    lua_pushnumber(L, sum.value());
-    return 1;
+    return sum.value();
 }
 
 int arctangent(lua_State* L) {
-    const Vector& v = own(L, "v:atan(w)");
-    const bool number = lua_isnoneornil(L, 2) || lua_type(L, 2) == LUA_TNUMBER;
-    const double all = lua_isnoneornil(L, 2) ? 1 : lua_tonumber(L, 2);
-    const Vector* w = number ? nullptr : &other(L, 2, "v:atan(w)", "w");
-    if (w != nullptr) check_equal_sizes(L, "v:atan(w)", v.size(), w->size());
-    std::vector<double> result = lua::new_numbers(L, v.size());
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        result[i] = std::atan2(v.begin()[i], w != nullptr ? w->begin()[i] : all);
+    if (lua_isnoneornil(L, 2)) {
+        lua_settop(L, 1);
+        lua_pushnumber(L, 1);
     }
-    return lua::push_vector(L, std::move(result));
+    return combined<"atan", [](double a, double b) { return std::atan2(a, b); }>(L);
 }
 
 int equal(lua_State* L) {
@@ -511,86 +460,55 @@ int element(lua_State* L) {
     return 1;
 }
 
-lua_Integer whole_argument(lua_State* L, int index, std::string_view name, lua_Integer otherwise) {
-    if (lua_isnoneornil(L, index)) {
-        return otherwise;
-    }
-    int is_integer = 0;
-    const lua_Integer value = lua_tointegerx(L, index, &is_integer);
-    if (is_integer == 0 || lua_type(L, index) != LUA_TNUMBER) {
-        lua::raise_got(L, index, "v:slice(first, last, step)",
-                       fmt::format("v:slice(first, last, step): {} must be a whole number", name));
-    }
-    return value;
-}
-
-int slice(lua_State* L) {
-    const Vector& v = own(L, "v:slice(1, 10)");
+Expected<Numbers> slice(lua_State* L, const Vector& v, std::optional<lua_Integer> from, std::optional<lua_Integer> to,
+                        std::optional<lua_Integer> every) {
     const auto n = static_cast<lua_Integer>(v.size());
-    const lua_Integer first = whole_argument(L, 2, "first", 1);
-    const lua_Integer last = whole_argument(L, 3, "last", n);
-    const lua_Integer step = whole_argument(L, 4, "step", 1);
+    const lua_Integer first = from.value_or(1), last = to.value_or(n), step = every.value_or(1);
     if (first < 1 || last > n || step < 1) {
-        lua::fail(L, fmt::format("v:slice({}, {}, {})", first, last, step),
-                  {fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)});
+        return Error{fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)};
     }
     lua::make_room(L, v.size() * sizeof(double));
-    std::vector<double> result;
-    for (lua_Integer i = first; i <= last; i += std::min(step, n)) {
-        result.push_back(v.begin()[i - 1]);
-    }
-    return lua::push_vector(L, std::move(result));
-}
-
-int vector_text(lua_State* L) {
-    const Vector& v = own(L, "tostring(v)");
-    constexpr std::size_t shown_whole = 10;
-    constexpr std::size_t ends = 3;
-    const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
-    const std::size_t n = v.size();
-    return lua::push_text(L, n == 0 ? "vector{}"
-                             : n <= shown_whole
-                                 ? "vector{ " + list(v.values()) + " }"
-                                 : fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
-                                               list(v.values().last(ends)), n));
+    Numbers result;
+    for (lua_Integer i = first; i <= last; i += std::min(step, n)) result.push_back(v.begin()[i - 1]);
+    return result;
 }
 
 // ---- the class
 
 constexpr lua::Member vector_members[] = {
-    {lua::a_method<of_each<"v:sin()", [](double x) { return std::sin(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::sin(x); }>>,
      {"v:sin() -> vector", "Sine of every element (rad).", "print(vector{ 0, 1 }:sin())  --> vector{ 0, 0.841471 }"}},
-    {lua::a_method<of_each<"v:cos()", [](double x) { return std::cos(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::cos(x); }>>,
      {"v:cos() -> vector", "Cosine of every element (rad).", "print(vector{ 0, 1 }:cos())  --> vector{ 1, 0.540302 }"}},
-    {lua::a_method<of_each<"v:tan()", [](double x) { return std::tan(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::tan(x); }>>,
      {"v:tan() -> vector", "Tangent of every element (rad).", "print(vector{ 0, 1 }:tan())  --> vector{ 0, 1.55741 }"}},
-    {lua::a_method<of_each<"v:abs()", [](double x) { return std::fabs(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::fabs(x); }>>,
      {"v:abs() -> vector", "Absolute value of every element.", "print(vector{ -2, 3 }:abs())  --> vector{ 2, 3 }"}},
-    {lua::a_method<of_each<"v:sqrt()", [](double x) { return std::sqrt(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::sqrt(x); }>>,
      {"v:sqrt() -> vector", "Square root of every element; nan for negative ones.",
       "print(vector{ 4, 9 }:sqrt())  --> vector{ 2, 3 }"}},
-    {lua::a_method<of_each<"v:exp()", [](double x) { return std::exp(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::exp(x); }>>,
      {"v:exp() -> vector", "e to the power of every element.",
       "print(vector{ 0, 1 }:exp())  --> vector{ 1, 2.71828 }"}},
-    {lua::a_method<of_each<"v:log()", [](double x) { return std::log(x); }>>,
+    {lua::a_typed_method<of_each<[](double x) { return std::log(x); }>>,
      {"v:log() -> vector", "Natural logarithm of every element; nan for negative ones.",
       "print(vector{ 1, 10 }:log())  --> vector{ 0, 2.30259 }"}},
-    {lua::a_method<of_all<"v:max()", extreme<1>>>,
+    {lua::a_typed_method<of_all<extreme<1>>>,
      {"v:max() -> number", "The greatest element.", "print(vector{ 1, 3, 2 }:max())  --> 3.0"}},
-    {lua::a_method<of_all<"v:min()", extreme<-1>>>,
+    {lua::a_typed_method<of_all<extreme<-1>>>,
      {"v:min() -> number", "The least element.", "print(vector{ 1, 3, -2 }:min())  --> -2.0"}},
-    {lua::a_method<of_all<"v:mean()", mean_of>>,
+    {lua::a_typed_method<of_all<mean_of>>,
      {"v:mean() -> number", "The sum divided by the number of elements.", "print(vector{ 1, 2, 6 }:mean())  --> 3.0"}},
-    {lua::a_method<of_all<"v:sum()", sum_of, 0>>,
+    {lua::a_typed_method<of_all<sum_of, 0>>,
      {"v:sum() -> number", "The sum of all elements (0 when there are none), accurate however many there are.",
       "print(vector{ 1e100, 1, -1e100 }:sum())  --> 1.0"}},
-    {lua::a_method<slice>,
+    {lua::a_typed_method<slice>,
      {"v:slice(first = 1, last = #v, step = 1) -> vector", "The elements from first to last, every step-th of them.",
       "print(vector{ 10, 20, 30, 40, 50 }:slice(2, 5, 2))  --> vector{ 20, 40 }"}},
-    {lua::a_method<of_all<"v:table()", [](Values v) { return v; }, 0>>,
+    {lua::a_typed_method<of_all<[](Values v) { return v; }, 0>>,
      {"v:table() -> table", "An ordinary Lua table with the same numbers.",
       "print(table.concat(vector{ 1, 2 }:table(), \" \"))  --> 1.0 2.0"}},
-    {lua::a_metamethod<of_all<"#v", [](Values v) { return v.size(); }, 0>>("__len"),
+    {lua::a_metamethod<lua::detail::called<of_all<[](Values v) { return v.size(); }, 0>>>("__len"),
      {"#v -> integer", "How many elements there are. v[1] is the first one, v[#v] the last one; beyond them is nil.",
       "print(#vector{ 4, 5, 6 })  --> 3"}},
     {lua::a_metamethod<combined<"+", [](double a, double b) { return a + b; }>>("__add"),
@@ -604,7 +522,7 @@ constexpr lua::Member vector_members[] = {
      {"v / w, v / number -> vector", "Element by element.", "print(vector{ 1, 2 } / 4)  --> vector{ 0.25, 0.5 }"}},
     {lua::a_metamethod<combined<"^", [](double a, double b) { return b == 2 ? a * a : std::pow(a, b); }>>("__pow"),
      {"v ^ w, v ^ number -> vector", "Element by element.", "print(vector{ 2, 3 } ^ 2)  --> vector{ 4, 9 }"}},
-    {lua::a_metamethod<of_each<"-v", [](double x) { return -x; }>>("__unm"),
+    {lua::a_metamethod<lua::detail::called<of_each<[](double x) { return -x; }>>>("__unm"),
      {"-v -> vector", "Every element with the other sign.", "print(-vector{ 1, -2 })  --> vector{ -1, 2 }"}},
     {lua::a_metamethod<equal>("__eq"),
      {"v == w -> boolean", "True when both have the same elements.",
@@ -616,47 +534,47 @@ constexpr lua::Member vector_members[] = {
     {lua::a_metamethod<holds<"<=", [](double a, double b) { return a <= b; }>>("__le"),
      {"v <= w, v <= number -> boolean", "True when it holds for every element. Also >=.",
       "print(vector{ 1, 2 } >= 1)  --> true"}},
-    {lua::a_metamethod<vector_text>("__tostring"),
+    {lua::a_text<Vector, [](const Vector& v) { return vector_text(v, 10, 3); }>,
      {"tostring(v) -> string", "The elements to six digits; of a long vector its two ends and its length.",
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
-    {lua::a_method<map>,
+    {lua::a_typed_method<map>,
      {"v:map(f) -> vector", "f(x, i) for every element x with index i: a number, or true for 1 and false for 0.",
       "print(vector{ 1, 2, 3 }:map(function(x) return 10 * x end))  --> vector{ 10, 20, 30 }"}},
-    {lua::a_method<find>,
+    {lua::a_typed_method<find>,
      {"v:find(f) -> vector", "The indices of the elements x for which f(x, i) is true; v[v:find(f)] has the elements.",
       "print(vector{ 5, 1, 7 }:find(function(x) return x > 3 end))  --> vector{ 1, 3 }"}},
-    {lua::a_method<of_all<"v:std()", deviation, 2>>,
+    {lua::a_typed_method<of_all<deviation, 2>>,
      {"v:std() -> number", "The standard deviation: the root of the sum of squares about the mean over #v - 1.",
       "print(vector{ 1, 2, 3 }:std())  --> 1.0"}},
-    {lua::a_method<quantile>,
+    {lua::a_typed_method<quantile>,
      {"v:quantile(p) -> number",
       "The value below which the fraction p of the elements lies; 0.5 gives the median. Linear between the sorted "
       "elements.",
       "print(vector{ 4, 1, 3, 2 }:quantile(0.5), vector{ 1, 2, 6 }:quantile(1))  --> 2.5\t6.0"}},
-    {lua::a_method<of_all<"v:argmax()", place_of_extreme<1>>>,
+    {lua::a_typed_method<of_all<place_of_extreme<1>>>,
      {"v:argmax() -> integer", "The index of the greatest element, the first of equal ones.",
       "print(vector{ 1, 3, 2 }:argmax())  --> 2"}},
-    {lua::a_method<of_all<"v:argmin()", place_of_extreme<-1>>>,
+    {lua::a_typed_method<of_all<place_of_extreme<-1>>>,
      {"v:argmin() -> integer", "The index of the least element, the first of equal ones.",
       "print(vector{ 1, 3, -2 }:argmin())  --> 3"}},
-    {lua::a_method<filled<"v:cumsum()", cumulate>>,
+    {lua::a_typed_method<filled<cumulate>>,
      {"v:cumsum() -> vector", "The sums of the first, the first two, ... of all elements.",
       "print(vector{ 1, 2, 3 }:cumsum())  --> vector{ 1, 3, 6 }"}},
-    {lua::a_method<filled<"v:diff()", subtract_previous>>,
+    {lua::a_typed_method<filled<subtract_previous>>,
      {"v:diff() -> vector", "Each element minus the one before it: one number fewer.",
       "print(vector{ 1, 4, 9 }:diff())  --> vector{ 3, 5 }"}},
-    {lua::a_method<interpolated>,
+    {lua::a_typed_method<interpolated>,
      {"v:interp(x, y) -> vector",
       "Linear interpolation at each element through the points x, y; x must increase. Beyond its ends the first "
       "and the last y hold.",
       "print(vector{ 0.5, 1.5, 9 }:interp(vector{ 0, 1, 2 }, vector{ 0, 10, 30 }))  --> vector{ 5, 20, 30 }"}},
-    {lua::a_method<dot>,
+    {lua::a_typed_method<dot>,
      {"v:dot(w) -> number", "The sum of the products of elements in the same place.",
       "print(vector{ 1, 2 }:dot(vector{ 3, 4 }))  --> 11.0"}},
     {lua::a_method<arctangent>,
      {"v:atan(w = 1) -> vector", "The angle of each point (w, v), rad, from -pi to pi; w is a vector or a number.",
       "print(vector{ 1, 1 }:atan(vector{ 1, -1 }))  --> vector{ 0.785398, 2.35619 }"}},
-    {lua::a_method<filled<"v:sort()", sort>>,
+    {lua::a_typed_method<filled<sort>>,
      {"v:sort() -> vector", "The elements from the least to the greatest, nan last.",
       "print(vector{ 3, 1, 2 }:sort())  --> vector{ 1, 2, 3 }"}},
     {lua::a_metamethod<joined>("__concat"),

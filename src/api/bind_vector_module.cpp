@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "api/classes.hpp"
 #include "lua/options.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::api {
@@ -22,14 +24,6 @@ int vector_make(lua_State* L) {
     return lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
 }
 
-std::size_t count_argument(lua_State* L, const std::string& call) {
-    const double count = lua::finite_argument(L, 3, call + ": n");
-    if (count != std::floor(count) || count < 2 || count > most_numbers) {
-        lua::fail(L, call, {fmt::format("n = {} must be a whole number from 2 to {}", count, most_numbers)});
-    }
-    return static_cast<std::size_t>(count);
-}
-
 std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) {
     std::vector<double> values = lua::new_numbers(L, n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -40,46 +34,41 @@ std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) 
     return values;
 }
 
-int vector_linspace(lua_State* L) {
-    const double from = lua::finite_argument(L, 1, "vector.linspace(from, to, n): from");
-    const double to = lua::finite_argument(L, 2, "vector.linspace(from, to, n): to");
-    return lua::push_vector(L, spaced(L, from, to, count_argument(L, "vector.linspace(from, to, n)")));
+using Numbers = std::vector<double>;
+
+std::optional<text::Error> wrong_count(double n) {
+    if (text::is_whole(n, 2, most_numbers)) return {};
+    return text::Error{fmt::format("n = {} must be a whole number from 2 to {}", n, most_numbers)};
 }
 
-int vector_range(lua_State* L) {
-    const std::string call = "vector.range(from, to [, step])";
-    const double from = lua::finite_argument(L, 1, call + ": from"), to = lua::finite_argument(L, 2, call + ": to");
-    const double step = lua_isnoneornil(L, 3) ? 1 : lua::finite_argument(L, 3, call + ": step");
+text::Expected<Numbers> vector_linspace(lua_State* L, double from, double to, double n) {
+    if (const auto wrong = wrong_count(n)) return *wrong;
+    return spaced(L, from, to, static_cast<std::size_t>(n));
+}
+
+text::Expected<Numbers> vector_range(lua_State* L, double from, double to, std::optional<double> given) {
+    const double step = given.value_or(1), ratio = (to - from) / step;
     if (step == 0 || (to - from) * step < 0) {
-        lua::fail(L, call, {fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)});
+        return text::Error{fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)};
     }
-    const double ratio = (to - from) / step;
-    if (ratio >= most_numbers) {
-        lua::fail(L, call, {fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)});
-    }
+    if (ratio >= most_numbers) return text::Error{fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)};
     constexpr double rounding = 1e-9;  // of a step: 0 to 0.3 by 0.1 has its end
-    const auto count = static_cast<std::size_t>(std::floor(ratio + rounding)) + 1;
-    std::vector<double> values = lua::new_numbers(L, count);
-    for (std::size_t i = 0; i < count; ++i) values[i] = from + static_cast<double>(i) * step;
-    return lua::push_vector(L, std::move(values));
+    Numbers values = lua::new_numbers(L, static_cast<std::size_t>(std::floor(ratio + rounding)) + 1);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = from + static_cast<double>(i) * step;
+    return values;
 }
 
-int vector_logspace(lua_State* L) {
-    const std::string call = "vector.logspace(from, to, n)";
-    const double from = lua::finite_argument(L, 1, call + ": from");
-    const double to = lua::finite_argument(L, 2, call + ": to");
-    const std::size_t n = count_argument(L, call);
+text::Expected<Numbers> vector_logspace(lua_State* L, double from, double to, double n) {
+    if (const auto wrong = wrong_count(n)) return *wrong;
     if (!(from > 0) || !(to > 0)) {
-        lua::fail(L, call,
-                  {fmt::format("from = {} and to = {} must be positive: they are the ends "
-                               "themselves, not powers of ten",
-                               from, to)});
+        return text::Error{fmt::format(
+            "from = {} and to = {} must be positive: they are the ends themselves, not powers of ten", from, to)};
     }
-    std::vector<double> values = spaced(L, std::log(from), std::log(to), n);
+    Numbers values = spaced(L, std::log(from), std::log(to), static_cast<std::size_t>(n));
     for (double& x : values) x = std::exp(x);
     values.front() = from;
     values.back() = to;
-    return lua::push_vector(L, std::move(values));
+    return values;
 }
 
 // ---- random numbers
@@ -91,9 +80,9 @@ struct NormalNumbers {
     double n = 0, seed = 0, mean = 0, std = 1;
 };
 constexpr text::Range count_range{"be a whole number from 1 to 1e9",
-                                  [](double x) { return x == std::floor(x) && x >= 1 && x <= most_numbers; }};
+                                  [](double x) { return text::is_whole(x, 1, most_numbers); }};
 constexpr text::Range seed_range{"be a whole number from 0 to 2^53",
-                                 [](double x) { return x == std::floor(x) && x >= 0 && x <= 9007199254740992.0; }};
+                                 [](double x) { return text::is_whole(x, 0, 9007199254740992.0); }};
 constexpr const char* seed_meaning = "the same seed gives the same numbers on every machine";
 
 constexpr text::Option uniform_options[] = {
@@ -151,15 +140,15 @@ int vector_normal(lua_State* L) {
 constexpr lua::Member vector_module_members[] = {
     {lua::a_metamethod<vector_make>("__call"),
      {"vector{ ... } -> vector", "A vector of these finite numbers.", "print(#vector{ 1, 2, 3 })  --> 3"}},
-    {lua::a_function<vector_range>,
+    {lua::a_typed_function<vector_range>,
      {"vector.range(from, to [, step]) -> vector",
       "from, from + step, ... up to to, as Lua's for counts; step is 1 unless given. Whole numbers stay whole.",
       "print(vector.range(1, 4), vector.range(0, 1, 0.25))  --> vector{ 1, 2, 3, 4 }\tvector{ 0, 0.25, 0.5, 0.75, "
       "1 }"}},
-    {lua::a_function<vector_linspace>,
+    {lua::a_typed_function<vector_linspace>,
      {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
       "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},
-    {lua::a_function<vector_logspace>,
+    {lua::a_typed_function<vector_logspace>,
      {"vector.logspace(from, to, n) -> vector",
       "n >= 2 positive numbers with even ratios; the ends, which are exact, are the numbers themselves and not powers "
       "of ten.",

@@ -28,12 +28,6 @@ std::string row(std::string_view name, double value, std::string_view remark, co
     return "\n" + (fits ? text + " " + std::string(remark) : text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
-std::string vector_line(const lua::Vector& v, std::size_t ends) {
-    const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
-    return fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
-                       list(v.values().last(ends)), v.size());
-}
-
 }  // namespace
 
 std::string system_card(lua_State* L, int index, const terminal::Display& screen) {
@@ -85,26 +79,19 @@ std::string integrator_card(lua_State* L, int index, const terminal::Display& sc
     return text::wrapped(method.lua_text(text::Defaults::told), screen.width - 1);
 }
 
+std::string vector_text(const lua::Vector& v, std::size_t whole, std::size_t ends) {
+    const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
+    if (v.size() == 0) return "vector{}";
+    if (v.size() <= whole) return fmt::format("vector{{ {} }}", list(v.values()));
+    return fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
+                       list(v.values().last(ends)), v.size());
+}
+
 std::string vector_card(lua_State* L, int index, const terminal::Display& screen) {
     const lua::Vector& v = *lua::test<lua::Vector>(L, index);
-    constexpr std::size_t most = 12;  // numbers of a vector that is shown whole
-    if (v.size() == 0) {
-        return "vector{}";
-    }
-    if (v.size() <= most) {
-        std::string whole = fmt::format("vector{{ {:.6g} }}", fmt::join(v.values(), ", "));
-        if (text::columns(whole) < screen.width || v.size() < 3) {
-            return whole;
-        }
-    }
-    constexpr std::size_t most_ends = 5;
-    for (std::size_t ends = std::min(most_ends, (v.size() - 1) / 2); ends > 1; --ends) {
-        std::string line = vector_line(v, ends);
-        if (text::columns(line) < screen.width) {
-            return line;
-        }
-    }
-    const std::string line = vector_line(v, 1);
+    std::size_t ends = 5, whole = 12;
+    std::string line = vector_text(v, whole, ends);
+    for (; ends > 1 && text::columns(line) >= screen.width; line = vector_text(v, whole, ends)) whole = 2 * --ends;
     return text::columns(line) < screen.width ? line
                                               : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
 }

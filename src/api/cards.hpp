@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lua/lua_headers.hpp"
+#include "lua/vector.hpp"
 #include "terminal/display.hpp"
 
 namespace dinal::api {
@@ -16,6 +16,9 @@ std::string excitation_card(lua_State* L, int index, const terminal::Display& sc
 
 /// The method with all its options, those that were not given, too.
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen);
+
+/// All elements if there are not more than `whole`; otherwise so many of both ends, and the length.
+std::string vector_text(const lua::Vector& v, std::size_t whole, std::size_t ends);
 
 /// The ends of the vector that fit on a line, and its length.
 std::string vector_card(lua_State* L, int index, const terminal::Display& screen);

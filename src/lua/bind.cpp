@@ -1,9 +1,13 @@
 #include "lua/bind.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "lua/error_memory.hpp"
 #include "lua/standard_globals.hpp"
+#include "lua/values.hpp"
 #include "text/harmless.hpp"
 
 namespace dinal::lua {
@@ -297,6 +301,23 @@ std::string signature_of_running(lua_State* L) {
     lua_pop(L, 1);
     const std::string_view signature = found.member != nullptr ? found.member->doc.signature : "object:method()";
     return std::string(signature.substr(0, signature.find(" ->")));
+}
+
+void raise_argument(lua_State* L, int index, std::string_view wanted) {
+    const std::string call = signature_of_running(L);
+    const std::size_t open = call.find('(');
+    std::string_view names = std::string_view(call).substr(open == std::string::npos ? call.size() : open + 1);
+    // Before the parentheses of a method stands its object, the first argument.
+    for (int i = call.find(':') < open ? 2 : 1; i < index; ++i)
+        names.remove_prefix(std::min(names.find(", "), names.size() - 2) + 2);
+    raise_got(L, index, call,
+              fmt::format("{}: {} must be {}", call, names.substr(0, names.find_first_of(",)] ")), wanted));
+}
+
+std::string article_and_name(lua_State* L, const void* key) {
+    push_metatable(L, key);
+    lua_getfield(L, -1, "__name");
+    return with_article(lua_tostring(L, -1));
 }
 
 void raise_no_object(lua_State* L, std::string_view call) {

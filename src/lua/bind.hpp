@@ -122,6 +122,9 @@ void set_number(lua_State* L, const char* name, double value);
 /// What a value is, for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
 std::string describe(lua_State* L, int index);
 
+/// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
+[[nodiscard]] bool is_callable(lua_State* L, int index);
+
 /// A value as it may stand in the user's text, for Error::culprit: "nil", "-1", the string itself; "" for others.
 std::string written(lua_State* L, int index);
 

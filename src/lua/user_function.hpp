@@ -73,9 +73,6 @@ private:
     bool failed_before_ = false;  // the error is kept all the same
 };
 
-/// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
-[[nodiscard]] bool is_callable(lua_State* L, int index);
-
 /// What a function stands for, in sentences: "friction returned nil at speed = 0.3".
 struct FunctionRole {
     std::string name = "M";

@@ -1,6 +1,7 @@
 // How values become Lua: numbers, flags, texts, optionals and lists each by themselves, so that a field is one row.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,6 +16,14 @@ namespace dinal::lua {
 
 /// What a getter returns that has pushed its value by itself.
 struct Pushed {};
+
+/// Pushes a vector; in lua/vector.hpp.
+int push_vector(lua_State* L, std::vector<double> values);
+
+/// An argument that can be called.
+struct Callable {
+    int index;
+};
 
 /// Pushes a number, a flag, a text, a list of such, a table of such by their names, or an object of a class; nil for an
 /// optional that is empty.
@@ -135,6 +144,82 @@ int read_kept(lua_State* L) {
     return 1;
 }
 }  // namespace detail
+
+namespace detail {
+/// Raises "v:quantile(p): p must be WANTED, got ...", about the argument at `index` of the function that runs.
+[[noreturn]] void raise_argument(lua_State* L, int index, std::string_view wanted);
+/// "a vector": the class with this metatable.
+std::string article_and_name(lua_State* L, const void* key);
+
+/// The argument at `index`: a finite number, a string or an object; an optional one may be absent.
+template <class T>
+decltype(auto) argument(lua_State* L, int index) {
+    if constexpr (requires(T t) { t.has_value(); }) {
+        return lua_isnoneornil(L, index) ? T() : T(argument<typename T::value_type>(L, index));
+    } else if constexpr (std::is_same_v<T, double>) {
+        const double number = lua_tonumber(L, index);
+        if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(number)) raise_argument(L, index, "a finite number");
+        return number;
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        if (lua_type(L, index) != LUA_TSTRING) raise_argument(L, index, "a string");
+        return std::string(lua_tostring(L, index));
+    } else if constexpr (std::is_same_v<T, lua_Integer>) {
+        int whole = 0;
+        const lua_Integer number = lua_type(L, index) == LUA_TNUMBER ? lua_tointegerx(L, index, &whole) : 0;
+        if (whole == 0) raise_argument(L, index, "a whole number");
+        return number;
+    } else if constexpr (std::is_same_v<T, Callable>) {
+        if (!is_callable(L, index)) raise_argument(L, index, "a function");
+        return Callable{index};
+    } else {
+        if (index == 1) return own<T>(L);
+        const auto* object = lua::test<T>(L, index);
+        if (object == nullptr) raise_argument(L, index, article_and_name(L, &type_key<T>));
+        return *object;
+    }
+}
+
+/// Pushes the result of a function: numbers in a row as a vector; raises an error as one of the call.
+template <class Result>
+void push_result(lua_State* L, Result result) {
+    if constexpr (std::is_same_v<Result, std::vector<double>>) {
+        push_vector(L, std::move(result));
+    } else if constexpr (requires { result.error(); }) {
+        if (!result) fail(L, signature_of_running(L), result.error());
+        push_result(L, std::move(result).value());
+    } else {
+        push_value(L, result);
+    }
+}
+
+template <auto function, class Result, class... T, std::size_t... i>
+int call_with_state(lua_State* L, Result (* /*type*/)(lua_State*, T...), std::index_sequence<i...> /*places*/) {
+    push_result(L, function(L, argument<std::remove_cvref_t<T>>(L, static_cast<int>(i) + 1)...));
+    return 1;
+}
+template <auto function, class Result, class... T>
+int call_typed(lua_State* L, Result (*type)(lua_State*, T...)) {
+    return call_with_state<function>(L, type, std::index_sequence_for<T...>());
+}
+template <auto function, class Result, class... T>
+int call_typed(lua_State* L, Result (* /*type*/)(T...)) {
+    constexpr auto with_state = [](lua_State*, T... arguments) -> Result {
+        return function(std::forward<T>(arguments)...);
+    };
+    return call_with_state<with_state>(L, +with_state, std::index_sequence_for<T...>());
+}
+template <auto function>
+int called(lua_State* L) {
+    return call_typed<function>(L, +function);
+}
+}  // namespace detail
+
+/// A method or a function that is a C++ function of the object and its arguments, which are read and checked by their
+/// types.
+template <auto function>
+inline constexpr Binding a_typed_method = a_method<detail::called<function>>;
+template <auto function>
+inline constexpr Binding a_typed_function = a_function<detail::called<function>>;
 
 /// A field that is a member of the C++ object, or what a function makes of it, or of the Lua state and it.
 template <class Object, auto get>

@@ -107,7 +107,7 @@ assert(x[x:map(function(e) return e == 3 end)] == vector{ 3, 3 } and x[vector{ 4
 assert(vector{ 1e100, 1, -1e100 }:dot(vector{ 1, 1, 1 }) == 1)
 assert(x:atan()[2] == math.atan(-1) and x:atan(-2)[2] == math.atan(-1, -2))
 
-raises(function() return x:map(3) end, "v:map takes a function")
+raises(function() return x:map(3) end, "f must be a function, got 3")
 raises(function() return x:map(function() return "a" end) end, "must return a number, true or false", 'the string "a"')
 raises(function() return vector{ 1 }:std() end, "two numbers are needed")
 raises(function() return vector{}:argmax() end, "the vector is empty")
