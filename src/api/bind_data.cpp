@@ -121,10 +121,6 @@ inline constexpr lua::Doc make_doc{
     "Columns of one length: vectors, or tables of numbers or of strings. They are in the order of their names; "
     "data{ { \"r\", v }, { \"A\", w } } gives them in another one.",
     DINAL_DATA "print(d.A:max())  --> 4.0"};
-inline constexpr lua::Doc load_doc{
-    "data.load(file)", "Its name is load now.",
-    "print(select(2, pcall(data.load, \"run.csv\")):match(\"load%(.*\"))  --> load(\"run.csv\")"};
-
 #undef DINAL_DATA
 
 namespace {
@@ -168,11 +164,8 @@ void push_row_metatable(lua_State* L, int index, const Data& data) {
 }
 
 int push_column(lua_State* L, const DataColumn& column) {
-    if (const lua::Vector* numbers = column.numbers()) {
-        lua::push(L, *numbers);
-    } else {
-        lua::push_value(L, *std::get<Words>(column.values));
-    }
+    const lua::Vector* numbers = column.numbers();
+    numbers != nullptr ? lua::push_value(L, *numbers) : lua::push_value(L, column.words());
     return 1;
 }
 
@@ -274,7 +267,6 @@ constexpr lua::Member data_members[] = {
 
 constexpr lua::Member data_module_members[] = {
     {lua::a_metamethod<data_make>("__call"), make_doc},
-    {lua::a_function<data_functions::load>, load_doc},
 };
 
 }  // namespace
@@ -348,11 +340,7 @@ void push_row(lua_State* L, int index, const Data& data, std::size_t row) {
     lua_createtable(L, 0, static_cast<int>(data.columns.size()));
     for (const DataColumn& each : data.columns) {
         lua::push_text(L, each.name);
-        if (const lua::Vector* numbers = each.numbers()) {
-            lua_pushnumber(L, numbers->begin()[row]);
-        } else {
-            lua::push_text(L, (*std::get<Words>(each.values))[row]);
-        }
+        each.push(L, row);
         lua_rawset(L, -3);
     }
     push_row_metatable(L, index, data);
@@ -394,19 +382,7 @@ Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
                 .pieces_of = data.pieces_of,
                 .dotted_of = data.dotted_of,
                 .parameters = data.parameters};
-    for (const DataColumn& column : data.columns) {
-        if (const lua::Vector* numbers = column.numbers()) {
-            std::vector<double> values(rows.size());
-            std::transform(rows.begin(), rows.end(), values.begin(),
-                           [numbers](std::size_t row) { return numbers->begin()[row]; });
-            picked.columns.push_back(column_of(column.name, std::move(values), column.unit));
-        } else {
-            const std::vector<std::string>& words = *std::get<Words>(column.values);
-            std::vector<std::string> values(rows.size());
-            std::transform(rows.begin(), rows.end(), values.begin(), [&words](std::size_t row) { return words[row]; });
-            picked.columns.push_back(column_of(column.name, std::move(values)));
-        }
-    }
+    for (const DataColumn& column : data.columns) picked.columns.push_back(column.rows(rows));
     return picked;
 }
 
@@ -482,7 +458,7 @@ int sort(lua_State* L) {
     const lua::Vector* numbers = column.numbers();
     std::stable_sort(rows.begin(), rows.end(), [&](std::size_t i, std::size_t j) {
         if (numbers == nullptr) {
-            const std::vector<std::string>& words = *std::get<Words>(column.values);
+            const std::vector<std::string>& words = column.words();
             return down ? words[j] < words[i] : words[i] < words[j];
         }
         const double a = numbers->begin()[i], b = numbers->begin()[j];
@@ -517,14 +493,7 @@ int save(lua_State* L) {
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
     std::vector<files::NamedColumn> columns;
-    for (const DataColumn& column : data->columns) {
-        files::NamedColumn& written = columns.emplace_back(files::NamedColumn{column.name});
-        if (const lua::Vector* numbers = column.numbers()) {
-            written.values = numbers->values();
-        } else {
-            written.words = *std::get<Words>(column.values);
-        }
-    }
+    for (const DataColumn& column : data->columns) columns.push_back(column.named());
     lua::value_or_raise(L, "d:save", files::write_csv(file, columns, {}, files::Gaps::written));
     return 0;
 }
@@ -814,7 +783,7 @@ std::vector<std::string> different_parameters(const Data& data) {
             return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end();
         };
         const lua::Vector* numbers = column->numbers();
-        if (numbers != nullptr ? differ(*numbers) : differ(*std::get<Words>(column->values))) names.push_back(name);
+        if (numbers != nullptr ? differ(*numbers) : differ(column->words())) names.push_back(name);
     }
     return names;
 }

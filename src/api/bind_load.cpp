@@ -39,11 +39,7 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
 
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
     Data data;
-    for (files::ReadColumn& column : content.columns) {
-        data.columns.push_back(
-            column.of_words ? column_of(std::move(column.name), std::move(column.words))
-                            : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit)));
-    }
+    for (files::ReadColumn& column : content.columns) data.columns.push_back(column_of(std::move(column)));
     return push_data(L, std::move(data));
 }
 
@@ -116,11 +112,6 @@ int load(lua_State* L) {
     return original(L);
 }
 
-/// What older scripts call.
-int load_of_old(lua_State* L) {
-    lua::raise(L, {.sentence = "trajectory.load and data.load are load now: load(\"run.csv\")", .call = "load"});
-}
-
 constexpr lua::Member load_members[] = {
     {lua::a_function<load>,
      {"load(file) -> run or data",
@@ -142,12 +133,6 @@ constexpr lua::Member load_members[] = {
       "os.remove(file)"}},
 };
 
-constexpr lua::Member trajectory_module_members[] = {
-    {lua::a_function<load_of_old>,
-     {"trajectory.load(file)", "Its name is load now.",
-      "print(select(2, pcall(trajectory.load, \"run.csv\")):match(\"load%(.*\"))  --> load(\"run.csv\")"}},
-};
-
 }  // namespace
 
 const lua::Class load_functions = {
@@ -155,20 +140,10 @@ const lua::Class load_functions = {
     {"load(file) -> run or data", "Reads files.", "print(select(2, pcall(load, \"missing.csv\")) ~= nil)  --> true"},
     load_members};
 
-const lua::Class trajectory_module = {"trajectory",
-                                      {"trajectory.load(file)", "The former name of load(file).",
-                                       "print((pcall(trajectory.load, \"run.csv\")))  --> false"},
-                                      trajectory_module_members};
-
-int data_functions::load(lua_State* L) {
-    return load_of_old(L);
-}
-
 void register_load(lua_State* L) {
     lua_getglobal(L, "load");
     lua_rawsetp(L, LUA_REGISTRYINDEX, &original_key);
     lua::add_functions(L, load_functions);
-    lua::add_module(L, trajectory_module);
 }
 
 }  // namespace dinal::api

@@ -44,7 +44,6 @@ extern const lua::Class integrator_class;    // what they return
 extern const lua::Class run_class;           // run
 extern const lua::Class energy_class;        // what run:energy() returns
 extern const lua::Class load_functions;      // load
-extern const lua::Class trajectory_module;   // trajectory.load, which is gone
 extern const lua::Class theory_module;       // theory.magnification ...
 extern const lua::Class vector_module;       // vector{...}, vector.linspace
 extern const lua::Class vector_class;        // v

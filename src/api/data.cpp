@@ -94,7 +94,29 @@ std::string heading_of(std::span<const model::Event> events) {
 
 std::size_t DataColumn::size() const {
     const lua::Vector* vector = numbers();
-    return vector != nullptr ? vector->size() : std::get<Words>(values)->size();
+    return vector != nullptr ? vector->size() : words().size();
+}
+
+DataColumn DataColumn::rows(const std::vector<std::size_t>& rows) const {
+    const auto picked = [&rows](const auto& from, auto into) {
+        into.reserve(rows.size());
+        for (const std::size_t row : rows) into.push_back(from[row]);
+        return into;
+    };
+    const lua::Vector* vector = numbers();
+    return vector != nullptr ? column_of(name, picked(vector->values(), std::vector<double>()), unit)
+                             : column_of(name, picked(words(), std::vector<std::string>()));
+}
+
+void DataColumn::push(lua_State* L, std::size_t row) const {
+    const lua::Vector* vector = numbers();
+    vector != nullptr ? lua_pushnumber(L, vector->begin()[row]) : static_cast<void>(lua::push_text(L, words()[row]));
+}
+
+files::NamedColumn DataColumn::named() const {
+    const lua::Vector* vector = numbers();
+    return vector != nullptr ? files::NamedColumn{.name = name, .values = vector->values()}
+                             : files::NamedColumn{.name = name, .words = words()};
 }
 
 std::string DataColumn::text(std::size_t row) const {
@@ -102,7 +124,7 @@ std::string DataColumn::text(std::size_t row) const {
         const double x = vector->begin()[row];
         return std::isnan(x) ? "nan" : fmt::format("{:.6g}", x);
     }
-    return (*std::get<Words>(values))[row];
+    return words()[row];
 }
 
 const DataColumn* Data::find(std::string_view name) const {
@@ -122,6 +144,11 @@ DataColumn column_of(std::string name, std::vector<double> numbers, std::string 
 
 DataColumn column_of(std::string name, std::vector<std::string> words) {
     return {std::move(name), std::make_shared<const std::vector<std::string>>(std::move(words))};
+}
+
+DataColumn column_of(files::ReadColumn column) {
+    return column.of_words ? column_of(std::move(column.name), std::move(column.words))
+                           : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit));
 }
 
 ColumnUnits::ColumnUnits(const model::Units& units) {

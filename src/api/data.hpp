@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "files/csv.hpp"
 #include "lua/bind.hpp"
 #include "lua/vector.hpp"
 #include "model/event.hpp"
@@ -27,6 +28,13 @@ struct DataColumn {
 
     [[nodiscard]] std::size_t size() const;
     [[nodiscard]] const lua::Vector* numbers() const { return std::get_if<lua::Vector>(&values); }
+    [[nodiscard]] const std::vector<std::string>& words() const { return *std::get<Words>(values); }
+    /// The same column with the values of these rows.
+    [[nodiscard]] DataColumn rows(const std::vector<std::size_t>& rows) const;
+    /// Pushes the value of a row.
+    void push(lua_State* L, std::size_t row) const;
+    /// As a file has it.
+    [[nodiscard]] files::NamedColumn named() const;
     /// As text for people: six digits, a word as it is.
     [[nodiscard]] std::string text(std::size_t row) const;
     /// "t, s"
@@ -62,6 +70,7 @@ using DataHandle = std::shared_ptr<const Data>;
 
 DataColumn column_of(std::string name, std::vector<double> numbers, std::string unit = {});
 DataColumn column_of(std::string name, std::vector<std::string> words);
+DataColumn column_of(files::ReadColumn column);
 /// Numbers that `owner` keeps, without a copy.
 template <class Numbers>
 lua::Vector view_of(std::shared_ptr<const void> owner, const Numbers& numbers) {
@@ -143,7 +152,6 @@ int filter(lua_State* L);
 int sort(lua_State* L);
 int select(lua_State* L);
 int save(lua_State* L);
-int load(lua_State* L);
 int column(lua_State* L);
 int markdown(lua_State* L);
 /// The data of a call such as d:plot{}.

@@ -219,37 +219,6 @@ inline constexpr auto at_options =
     text::joined(drive_options, period_options, start_options, extras_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
 
-constexpr const char* new_form = "over = { frequency = vector.linspace(0.05, 3, 200) }";
-
-/// Names the new form of what a call said once.
-void refuse_old_forms(lua_State* L) {
-    if (!lua_istable(L, 2)) return;
-    const auto type_of = [L](const char* name) {
-        const int type = lua_getfield(L, 2, name);
-        lua_pop(L, 1);
-        return type;
-    };
-    const auto fail = [L](const char* name, std::string sentence) {
-        lua::fail(L, "sys:response", {.sentence = fmt::format("{}", sentence), .option = name});
-    };
-    if (type_of("M") != LUA_TNIL) {
-        fail(
-            "M",
-            "instead of M = function(x) ... give over = { NAME = values } and at = function(p) return { M = ... } end");
-    }
-    for (const char* name : {"points", "name"}) {
-        if (type_of(name) != LUA_TNIL)
-            fail(name, fmt::format("there is no {}; a list of values has a name: {}", name, new_form));
-    }
-    for (const char* name : {"frequency", "amplitude"}) {
-        const int type = type_of(name);
-        if (type != LUA_TTABLE && type != LUA_TUSERDATA) continue;
-        fail(name, fmt::format("{0} = values is now over = {{ {0} = values }}, with every value in the list: "
-                               "vector.linspace(from, to, count) makes one",
-                               name));
-    }
-}
-
 /// What a call of sys:response asks.
 class ResponseCall {
 public:
@@ -257,10 +226,8 @@ public:
         : L_(L), system_(system), options_(options) {
         options.fill(asked_);
         choose();
-        options.push("at");
-        place_ = lua_gettop(L);
-        function_ = !lua_isnil(L, -1);
-        if (function_ && !lua::is_callable(L, place_)) options.wrong("at");
+        function_ = options.has("at");
+        if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
         extras_ = question(values_.front()).extras;
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
@@ -386,7 +353,7 @@ private:
 
     /// The names under `over`, and their values.
     void choose() {
-        parameters_ = varied_in(L_, options_, response_call);
+        parameters_ = varied_in(L_, options_);
         for (const DataColumn& parameter : parameters_) check_name(parameter.name);
         varied_ = parameters_.back().name;
         const auto values = parameters_.back().numbers()->values();
@@ -487,7 +454,6 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
 
 int response_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
-    refuse_old_forms(L);
     const lua::Options options(L, 2, response_call);
     ResponseCall call(L, system, options);
     const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },

@@ -261,12 +261,8 @@ void push_point(lua_State* L, const lua::Options& options, const std::vector<Dat
 int response_of_rig(lua_State* L) {
     const AssemblyHandle first = lua::self<AssemblyHandle>(L, 1, rig_response_call.example);
     const lua::Options options(L, 2, rig_response_call);
-    options.push("at");
-    if (!lua::is_callable(L, -1)) {
-        lua_isnil(L, -1) ? options.missing("at") : options.wrong("at");
-    }
-    lua_pop(L, 1);
-    const std::vector<DataColumn> parameters = varied_in(L, options, rig_response_call);
+    push_function(L, options, "at");
+    const std::vector<DataColumn> parameters = varied_in(L, options);
     const std::vector<Point> points = points_of(parameters);
     if (!first->named) options.fail("over", "a response is of several bodies, or of one with constant Rd and Re");
     constexpr std::array<const char*, 5> kinds{"amplitude", "peak", "lag", "stops", "stuck"};

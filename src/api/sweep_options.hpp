@@ -81,7 +81,7 @@ inline constexpr text::Call minimise_call{
 inline constexpr lua::Doc minimise_doc{
     "minimise{ OPTIONS } -> table",
     "Returns the point at which a function is least, its value, and the number of calls: best.NAME, best.value, "
-    "best.calls. A coarse grid (17 values of one parameter, 9 x 9 of two) finds the valley, then Brent's or "
+    "best.calls. A coarse grid (17 values of one parameter, 9 x 9 of two) finds the valley, then the golden section or "
     "Nelder and Mead's method refines it to about 1e-8 of the range. A narrower valley may be missed. To "
     "maximise, return the negative.",
     "sys = nondimensional{ zeta = 0.1 }\n"
@@ -117,14 +117,11 @@ inline constexpr lua::Doc sweep_doc{
 
 // The table that sweep and its like take: parameters with values, among options.
 
-/// The parameters that the option `over` of the table at 1 names, with their values.
-std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call);
+/// The parameters that the option `over` names, with their values: one at least, with different names.
+std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& options);
 
 /// The one or two names under `over` of a response, and their lists of numbers; raises errors.
-std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options, const text::Call& call);
-
-/// There must be one, their names must be different, and their points not too many.
-void check_parameters(lua_State* L, const text::Call& call, const std::vector<DataColumn>& parameters);
+std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options);
 
 /// Pushes the option of this name, a function, and returns its index.
 int push_function(lua_State* L, const lua::Options& options, const char* name);

@@ -394,20 +394,13 @@ void keep_unfinished(lua_State* L, std::uint64_t asked, const std::shared_ptr<Sw
     lua_rawsetp(L, LUA_REGISTRYINDEX, &unfinished_key);
 }
 
-void set_partial_sweep(lua_State* L, const SweepTask& task, const SweepResults& results) {
-    lua::push_dinal_table(L);
-    push_data(L, task.told(task.grid, results));
-    lua_setfield(L, -2, "partial");
-    lua_pop(L, 1);
-}
-
 void add_column(source::Fingerprint& print, const DataColumn& column) {
     print.add(column.name);
     print.add(static_cast<double>(column.size()));
     if (const lua::Vector* numbers = column.numbers()) {
         for (const double x : numbers->values()) print.add(x);
     } else {
-        for (const std::string& word : *std::get<Words>(column.values)) print.add(word);
+        for (const std::string& word : column.words()) print.add(word);
     }
 }
 
@@ -433,16 +426,22 @@ std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
     return print.number();
 }
 
-/// A mistake in the function makes all points fail; that is one error, and no map.
-void raise_if_all_failed(lua_State* L, const SweepTask& task, const SweepResults& results) {
-    const SweepGrid& grid = task.grid;
-    if (results.failures().size() < results.size()) return;
-    const auto& [point, message] = *results.failures().begin();
-    lua::raise(L, {.sentence = grid.size() == 1
-                                   ? fmt::format("{}: the point {} failed: {}", task.call, grid.text(point), message)
-                                   : fmt::format("{}: all {} points failed; the first one, {}: {}", task.call,
-                                                 grid.size(), grid.text(point), message),
-                   .call = task.call});
+struct Failures {
+    std::size_t count = 0;
+    std::string place, message;  ///< of the first one: "r = 0.5, g = 1"
+};
+
+Failures failures_in(const Data& data, const SweepGrid& grid) {
+    Failures found;
+    const std::vector<std::string>& errors = data.columns.back().words();
+    for (std::size_t row = 0; row < errors.size(); ++row) {
+        if (errors[row].empty() || ++found.count > 1) continue;
+        for (std::size_t i = 0; i < grid.parameters().size(); ++i) {
+            found.place += (i == 0 ? "" : ", ") + data.columns[i].name + " = " + data.columns[i].text(row);
+        }
+        found.message = errors[row];
+    }
+    return found;
 }
 
 std::size_t worker_count(const std::optional<double>& asked, std::size_t points) {
@@ -468,11 +467,11 @@ class SweepRun {
 public:
     SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {}
 
-    std::shared_ptr<SweepResults> run() {
+    Data run() {
         task_.file.empty() ? take_memory() : open_files();
-        if (files_ && files_->is_finished()) {
+        if (files_ && files_->result()) {
             if (share_.rank > 0) leave();
-            return results_;
+            return told(*files_->result());
         }
         work();
         if (lua::interrupt_requested()) stop();
@@ -503,9 +502,9 @@ private:
         share_ = share.value_or(files::Share{});
         launched_ = share.has_value();
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
-        files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.taken);
+        files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.looks);
         if (const auto wrong = files_->open()) lua::fail(L_, task_.call, *wrong);
-        if (!files_->is_finished()) points_ = files_->points(share_);
+        if (!files_->result()) points_ = files_->points(share_);
     }
 
     void work() {
@@ -529,46 +528,84 @@ private:
         workers.run(L_);
     }
 
+    /// With what the first line says when points have failed: nobody looks into a column that should be empty.
+    [[nodiscard]] Data told(std::vector<DataColumn> columns) const {
+        Data data = task_.form;
+        data.columns = std::move(columns);
+        if (const Failures failed = failures_in(data, task_.grid); failed.count > 0) {
+            data.heading = text::wrapped(fmt::format("data: {} points, {} of them failed; the first one, {}: {}",
+                                                     task_.grid.size(), failed.count, failed.place, failed.message));
+        }
+        return data;
+    }
+
+    /// What is done.
+    [[nodiscard]] Data told() const {
+        const std::vector<std::size_t> points = results_->done_points();
+        if (task_.told) return told(task_.told(*results_, points));
+        std::vector<DataColumn> columns = task_.grid.columns(points);
+        for (DataColumn& column : results_->columns(points)) columns.push_back(std::move(column));
+        return told(std::move(columns));
+    }
+
+    void set_partial() const {
+        lua::push_dinal_table(L_);
+        push_data(L_, told());
+        lua_setfield(L_, -2, "partial");
+        lua_pop(L_, 1);
+    }
+
     [[noreturn]] void stop() {
         if (files_ && lua::stop_requested() != lua::Stop::memory) {
             const WritesOn writes;
             static_cast<void>(files_->write_incomplete());
         }
         if (!files_) keep_unfinished(L_, print_, results_);
-        set_partial_sweep(L_, task_, *results_);
+        set_partial();
         lua::raise_interrupted(L_);
     }
 
     [[noreturn]] void fail() {
-        set_partial_sweep(L_, task_, *results_);
+        set_partial();
         trouble_->sentence += fmt::format(
             "; finished points are kept in '{}' and dinal.partial, and the same call continues", files_->folder());
         lua::fail(L_, task_.call, *trouble_);
     }
 
-    std::shared_ptr<SweepResults> finished() {
-        keep_unfinished(L_, 0, nullptr);
-        raise_if_all_failed(L_, task_, *results_);
-        return results_;
+    /// A mistake in the function makes all points fail; that is one error, and no map.
+    void raise_if_all_failed(const Data& data) const {
+        const Failures failed = failures_in(data, task_.grid);
+        if (failed.count < task_.grid.size()) return;
+        const std::string sentence =
+            failed.count == 1 ? fmt::format("{}: the point {} failed: {}", task_.call, failed.place, failed.message)
+                              : fmt::format("{}: all {} points failed; the first one, {}: {}", task_.call, failed.count,
+                                            failed.place, failed.message);
+        lua::raise(L_, {.sentence = sentence, .call = task_.call});
     }
 
-    std::shared_ptr<SweepResults> finished_in_files() {
+    Data finished() {
+        keep_unfinished(L_, 0, nullptr);
+        Data data = told();
+        raise_if_all_failed(data);
+        return data;
+    }
+
+    Data finished_in_files() {
         const bool last = lua::value_or_raise(L_, task_.call, files_->take_all());
         if (!last && share_.size > 1) leave();
+        Data data = told();
         if (results_->failures().size() == results_->size()) {
             files_->discard();
-            raise_if_all_failed(L_, task_, *results_);
+            raise_if_all_failed(data);
         }
-        if (const auto wrong = last ? files_->finish(task_.told(task_.grid, *results_)) : std::nullopt) {
-            lua::fail(L_, task_.call, *wrong);
-        }
-        return results_;
+        if (const auto wrong = last ? files_->finish(data) : std::nullopt) lua::fail(L_, task_.call, *wrong);
+        return data;
     }
 
     /// What comes after the sweep is for the process that has all of it.
     [[noreturn]] void leave() const {
         const std::string text =
-            files_->is_finished()
+            files_->result()
                 ? fmt::format("dinal: '{}' is there; process 0 of {} continues the script\n", task_.file, share_.size)
                 : fmt::format(
                       "dinal: share {} of {} is done, {} of all {} points; the process that does the last share "
@@ -591,14 +628,6 @@ private:
 
 }  // namespace
 
-/// What the first line of the map says when points have failed: nobody looks into a column that should be empty.
-std::string heading_of_map(const SweepGrid& grid, const SweepResults& results) {
-    if (results.failures().empty()) return "";
-    const auto& [point, message] = *results.failures().begin();
-    return text::wrapped(fmt::format("data: {} points, {} of them failed; the first one, {}: {}", grid.size(),
-                                     results.failures().size(), grid.text(point), message));
-}
-
 void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked) {
     if (options.has("file")) {
         if (text::ending_of(asked.file) == ".csv") return;
@@ -612,7 +641,7 @@ void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked)
                                      share->rank, share->size));
 }
 
-std::shared_ptr<SweepResults> swept(lua_State* L, const SweepTask& task) {
+Data swept(lua_State* L, const SweepTask& task) {
     return SweepRun(L, task).run();
 }
 
@@ -626,21 +655,40 @@ namespace fs = std::filesystem;
 
 constexpr const char* point_column = "point of the grid";
 
-/// Where a read column has something to say at this row; an empty column of words is one of nan.
-std::string word_at(const files::ReadColumn& column, std::size_t row) {
-    return column.of_words ? column.words[row] : "";
-}
-
-/// The line above a table that says which of its results are words, so that a damaged number is not taken for one.
-std::string note_of_words(const std::vector<std::string>& names) {
+/// The line above a table that says which of its results, from `first` to the one before `error`, are words: a damaged
+/// number is not taken for one.
+template <class Columns, class IsWords>
+std::string note_of(const Columns& columns, std::size_t first, IsWords is_words) {
+    std::vector<std::string> names;
+    for (std::size_t i = first; i + 1 < columns.size(); ++i) {
+        if (std::invoke(is_words, columns[i])) names.push_back(columns[i].name);
+    }
     return names.empty() ? "" : fmt::format("words in {}", fmt::join(names, ", "));
 }
 
-text::Expected<files::Written> write_columns(const std::string& file, std::span<const files::NamedColumn> columns,
-                                             const std::string& comment) {
+/// Writes a table whose results begin with the column `first`.
+text::Expected<files::Written> write_table(const std::string& file, std::span<const DataColumn> columns,
+                                           std::size_t first, const std::string& mark = "") {
+    std::vector<files::NamedColumn> named;
+    for (const DataColumn& column : columns) named.push_back(column.named());
+    const std::string note = note_of(columns, first, [](const DataColumn& c) { return c.numbers() == nullptr; });
+    const std::string comment(text::trimmed(mark + " " + note));
     const std::span<const std::string> comments(&comment, comment.empty() ? 0 : 1);
-    return files::write_csv(file, columns, comments, files::Gaps::written);
+    return files::write_csv(file, named, comments, files::Gaps::written);
 }
+
+/// Whether what was read is as it was written, with this note about words.
+bool is_sound(const std::vector<files::ReadColumn>& columns, std::size_t first, std::string_view note) {
+    return columns.size() > first && columns.back().name == "error" &&
+           text::trimmed(note) == note_of(columns, first, &files::ReadColumn::of_words);
+}
+
+/// The messages in the last column; an empty column of words is one of nan.
+std::vector<std::string> messages_of(const files::ReadColumn& column) {
+    return column.of_words ? column.words : std::vector<std::string>(column.numbers.size());
+}
+
+constexpr std::string_view was_changed = "has been changed since it was written";
 
 /// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
 /// copy to another machine that was broken off, can leave a part of one.
@@ -666,13 +714,13 @@ std::size_t chunk_size_for(std::size_t points) {
 }
 
 SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
-                       TakeColumns taken)
+                       std::size_t looks)
     : file_(std::move(file)),
       folder_(file_ + ".parts"),
       mark_("sweep " + mark),
       grid_(grid),
       results_(results),
-      taken_(std::move(taken)),
+      looks_(looks),
       written_(results.chunks()) {}
 
 std::string SweepFiles::chunk_file(std::size_t chunk) const {
@@ -742,10 +790,29 @@ std::optional<text::Error> SweepFiles::open() {
 }
 
 std::optional<text::Error> SweepFiles::take_result() {
-    auto wrong = take(file_, true);
-    finished_ = !wrong;
-    if (finished_) remove_folder(folder_ + ".merging");  // somebody was killed before the last of his work
-    return wrong;
+    auto read = files::read_columns(file_);
+    if (!read || read->comments.empty() || !read->comments.front().starts_with(mark_)) {
+        return refused(file_, "is there, and is not the result of this sweep");
+    }
+    const std::string note = read->comments.front().substr(mark_.size());
+    std::vector<files::ReadColumn> columns = std::move(read).value().columns;
+    const std::size_t first = grid_.parameters().size();
+    if (is_cut_off(file_) || !is_sound(columns, first, note)) return refused(file_, was_changed);
+    const std::vector<std::string> errors = messages_of(columns.back());
+    std::vector<std::size_t> points;
+    std::size_t point = 0, look = 0;
+    for (const std::string& error : errors) {
+        points.push_back(point);
+        if (++look < looks_ && error.empty()) continue;
+        ++point, look = 0;
+    }
+    if (point != results_.size() || look != 0) return refused(file_, was_changed);
+    result_ = grid_.columns(points);
+    columns.pop_back();
+    for (std::size_t i = first; i < columns.size(); ++i) result_->push_back(column_of(std::move(columns[i])));
+    result_->push_back(column_of("error", errors));
+    remove_folder(folder_ + ".merging");  // a process was killed before the last of its work
+    return {};
 }
 
 std::optional<text::Error> SweepFiles::take_chunks() {
@@ -756,45 +823,30 @@ std::optional<text::Error> SweepFiles::take_chunks() {
             return refused(chunk_file(chunk), "is not a regular file");
         if (!fs::exists(chunk_file(chunk), error)) continue;
         if (is_cut_off(chunk_file(chunk))) continue;  // done anew
-        if (auto wrong = take(chunk_file(chunk), false)) return wrong;
+        if (auto wrong = take(chunk_file(chunk))) return wrong;
         written_[chunk] = results_.is_complete(chunk);
     }
     return std::nullopt;
 }
 
-std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_result) {
-    const auto another = [&](std::string_view what) { return refused(file, what); };
+std::optional<text::Error> SweepFiles::take(const std::string& file) {
     const auto read = files::read_columns(file);
-    const bool has_mark = read && !read->comments.empty() && read->comments.front().starts_with(mark_);
-    if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
-    if (is_result && is_cut_off(file)) return another("has been changed since it was written");
     std::error_code error;
     if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
     if (!read) return read.error();
     const std::vector<files::ReadColumn>& columns = read->columns;
-    if (is_result && taken_) {
-        return taken_(columns, results_) ? std::nullopt
-                                         : std::optional(another("has been changed since it was written"));
+    constexpr std::size_t first = 1;
+    if (!is_sound(columns, first, read->comments.empty() ? "" : read->comments.front()) || columns[0].of_words) {
+        return refused(file, was_changed);
     }
-    const std::size_t first = is_result ? grid_.parameters().size() : 1;
-    const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
-    std::vector<std::string> words;
-    for (std::size_t i = first; i + 1 < columns.size(); ++i) {
-        if (columns[i].of_words) words.push_back(columns[i].name);
-    }
-    const std::string note = read->comments.empty() ? "" : read->comments.front().substr(is_result ? mark_.size() : 0);
-    const bool broken = columns.size() <= first || columns.back().name != "error" ||
-                        (is_result ? rows != results_.size() : columns[0].of_words) ||
-                        text::trimmed(note) != note_of_words(words);
-    if (broken) return another("has been changed since it was written");
-    for (std::size_t row = 0; row < rows; ++row) {
-        const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
-        if (!(place >= 0 && place < static_cast<double>(results_.size())))
-            return another("has been changed since it was written");
+    std::vector<std::string> errors = messages_of(columns.back());
+    for (std::size_t row = 0; row < errors.size(); ++row) {
+        const double place = columns[0].numbers[row];
+        if (!(place >= 0 && place < static_cast<double>(results_.size()))) return refused(file, was_changed);
         const auto point = static_cast<std::size_t>(place);
         if (results_.is_done(point)) continue;
-        if (std::string message = word_at(columns.back(), row); !message.empty()) {
-            results_.fail(point, std::move(message));
+        if (!errors[row].empty()) {
+            results_.fail(point, std::move(errors[row]));
             continue;
         }
         for (std::size_t i = first; i + 1 < columns.size(); ++i) {
@@ -820,37 +872,14 @@ std::vector<std::size_t> SweepFiles::points(const files::Share& share) const {
 std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
     const std::size_t first = chunk * results_.chunk_size();
     const std::size_t last = std::min(first + results_.chunk_size(), results_.size());
-    const SweepResults::Piece piece = results_.piece(first, last);
     std::vector<std::size_t> points;
-    std::vector<double> places;
-    std::vector<std::string> errors;
     for (std::size_t point = first; point < last; ++point) {
-        if (!results_.is_done(point)) continue;
-        points.push_back(point);
-        places.push_back(static_cast<double>(point));
-        const auto failed = piece.failures.find(point);
-        errors.push_back(failed == piece.failures.end() ? "" : failed->second);
+        if (results_.is_done(point)) points.push_back(point);
     }
     if (points.empty()) return std::nullopt;
-    std::vector<std::vector<double>> numbers;
-    std::vector<std::vector<std::string>> words;
-    std::vector<std::string> names;
-    numbers.reserve(piece.columns.size());
-    words.reserve(piece.columns.size());
-    std::vector<files::NamedColumn> columns{{.name = point_column, .values = places}};
-    for (const auto& [name, all] : piece.columns) {
-        std::vector<double>& own = numbers.emplace_back(points.size());
-        std::transform(points.begin(), points.end(), own.begin(),
-                       [values = all](std::size_t point) { return values[point]; });
-        if (auto own_words = results_.words(own)) {
-            names.push_back(name);
-            columns.push_back({.name = name, .words = words.emplace_back(std::move(*own_words))});
-        } else {
-            columns.push_back({.name = name, .values = own});
-        }
-    }
-    columns.push_back({.name = "error", .words = errors});
-    const auto written = write_columns(chunk_file(chunk), columns, note_of_words(names));
+    std::vector<DataColumn> columns = results_.columns(points);
+    columns.insert(columns.begin(), column_of(point_column, std::vector<double>(points.begin(), points.end())));
+    const auto written = write_table(chunk_file(chunk), columns, 1);
     if (written) return std::nullopt;
     // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
     std::error_code error;
@@ -885,18 +914,7 @@ text::Expected<bool> SweepFiles::take_all() {
 }
 
 std::optional<text::Error> SweepFiles::finish(const Data& result) {
-    std::vector<files::NamedColumn> columns;
-    std::vector<std::string> names;
-    for (const DataColumn& column : result.columns) {
-        files::NamedColumn& written = columns.emplace_back(files::NamedColumn{.name = column.name});
-        if (const lua::Vector* numbers = column.numbers()) {
-            written.values = numbers->values();
-        } else {
-            written.words = *std::get<Words>(column.values);
-            if (columns.size() > grid_.parameters().size() && column.name != "error") names.push_back(column.name);
-        }
-    }
-    const auto written = write_columns(file_, columns, mark_ + (names.empty() ? "" : " " + note_of_words(names)));
+    const auto written = write_table(file_, result.columns, grid_.parameters().size(), mark_);
     std::error_code error;
     if (!written) {
         fs::rename(folder_ + ".merging", folder_, error);
@@ -928,13 +946,6 @@ void SweepFiles::remove_folder(const std::string& folder) {
 SweepResults::SweepResults(std::size_t points, std::size_t chunk_size)
     : chunk_size_(chunk_size), done_(points, 0), done_in_chunk_((points + chunk_size - 1) / chunk_size) {}
 
-SweepResults::Piece SweepResults::piece(std::size_t first, std::size_t last) {
-    const std::lock_guard lock(changing_);
-    Piece piece{.columns = {}, .failures = {failures_.lower_bound(first), failures_.lower_bound(last)}};
-    for (const auto& [name, numbers] : columns_) piece.columns.emplace_back(name, numbers.data());
-    return piece;
-}
-
 double* SweepResults::column(std::string_view name) {
     const std::lock_guard lock(changing_);
     auto found = columns_.find(name);
@@ -961,7 +972,6 @@ double SweepResults::word(std::string_view text) {
 }
 
 std::optional<std::vector<std::string>> SweepResults::words(const std::vector<double>& numbers) const {
-    const std::lock_guard lock(changing_);
     const auto place = [this](double x) {
         const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), of_word = bits & ~nan_of_words;
         return (bits & nan_of_words) == nan_of_words && of_word <= words_.size() ? of_word : 0;
@@ -1004,21 +1014,22 @@ std::vector<std::size_t> SweepResults::done_points() const {
     return points;
 }
 
-Data SweepResults::data(const SweepGrid& grid, const std::vector<std::size_t>& points) const {
-    Data data{.columns = grid.columns(points)};
+std::vector<DataColumn> SweepResults::columns(const std::vector<std::size_t>& points) const {
+    const std::lock_guard lock(changing_);
+    std::vector<DataColumn> columns;
     for (const auto& [name, numbers] : columns_) {
-        std::vector<double> values(points.size());
-        std::transform(points.begin(), points.end(), values.begin(),
-                       [&all = numbers](std::size_t point) { return all[point]; });
+        std::vector<double> values;
+        for (const std::size_t point : points) values.push_back(numbers[point]);
         auto words = this->words(values);
-        data.columns.push_back(words ? column_of(name, std::move(*words)) : column_of(name, std::move(values)));
+        columns.push_back(words ? column_of(name, std::move(*words)) : column_of(name, std::move(values)));
     }
-    std::vector<std::string> errors(points.size());
-    for (std::size_t row = 0; row < points.size() && !failures_.empty(); ++row) {
-        if (const auto failed = failures_.find(points[row]); failed != failures_.end()) errors[row] = failed->second;
+    std::vector<std::string> errors;
+    for (const std::size_t point : points) {
+        const auto failed = failures_.find(point);
+        errors.push_back(failed != failures_.end() ? failed->second : "");
     }
-    data.columns.push_back(column_of("error", std::move(errors)));
-    return data;
+    columns.push_back(column_of("error", std::move(errors)));
+    return columns;
 }
 
 SweepGrid::SweepGrid(std::vector<DataColumn> parameters)
@@ -1029,23 +1040,10 @@ SweepGrid::SweepGrid(std::vector<DataColumn> parameters)
     }
 }
 
-std::string SweepGrid::text(std::size_t point) const {
-    std::string text;
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + parameters_[i].name + " = " + parameters_[i].text(place(i, point));
-    }
-    return text;
-}
-
 void SweepGrid::set_fields(lua_State* L, std::size_t point) const {
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        const DataColumn& parameter = parameters_[i];
-        lua::push_text(L, parameter.name);
-        if (const lua::Vector* numbers = parameter.numbers()) {
-            lua_pushnumber(L, numbers->begin()[place(i, point)]);
-        } else {
-            lua::push_text(L, (*std::get<Words>(parameter.values))[place(i, point)]);
-        }
+        lua::push_text(L, parameters_[i].name);
+        parameters_[i].push(L, place(i, point));
         lua_rawset(L, -3);
     }
 }
@@ -1053,19 +1051,9 @@ void SweepGrid::set_fields(lua_State* L, std::size_t point) const {
 std::vector<DataColumn> SweepGrid::columns(const std::vector<std::size_t>& points) const {
     std::vector<DataColumn> columns;
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        const DataColumn& parameter = parameters_[i];
-        if (const lua::Vector* numbers = parameter.numbers()) {
-            std::vector<double> values(points.size());
-            std::transform(points.begin(), points.end(), values.begin(),
-                           [&](std::size_t point) { return numbers->begin()[place(i, point)]; });
-            columns.push_back(column_of(parameter.name, std::move(values)));
-        } else {
-            const std::vector<std::string>& words = *std::get<Words>(parameter.values);
-            std::vector<std::string> values(points.size());
-            std::transform(points.begin(), points.end(), values.begin(),
-                           [&](std::size_t point) { return words[place(i, point)]; });
-            columns.push_back(column_of(parameter.name, std::move(values)));
-        }
+        std::vector<std::size_t> places;
+        for (const std::size_t point : points) places.push_back(place(i, point));
+        columns.push_back(parameters_[i].rows(places));
     }
     return columns;
 }

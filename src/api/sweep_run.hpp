@@ -39,8 +39,6 @@ public:
     [[nodiscard]] std::size_t place(std::size_t parameter, std::size_t point) const {
         return point / strides_[parameter] % parameters_[parameter].size();
     }
-    /// "r = 0.5, g = 1"
-    [[nodiscard]] std::string text(std::size_t point) const;
     /// Sets the table on the top of the stack to the parameters of this point.
     void set_fields(lua_State* L, std::size_t point) const;
     /// The parameters as columns with a row for each of these points.
@@ -64,8 +62,6 @@ public:
 
     /// A word as a number that can stand in a column: a nan of its own.
     double word(std::string_view text);
-    /// These numbers of a column as words, when a word is among them.
-    [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
 
     /// The point has all its numbers, or a message instead. Each point is told once, by one thread.
     void finish(std::size_t point) {
@@ -83,12 +79,9 @@ public:
         const std::size_t first = chunk * chunk_size_;
         return done_in_chunk_[chunk].load(std::memory_order_acquire) == std::min(chunk_size_, size() - first);
     }
-    /// A snapshot of its names, their numbers, and the messages of those that failed among the points [first, last).
-    struct Piece {
-        std::vector<std::pair<std::string, const double*>> columns;
-        std::map<std::size_t, std::string> failures;
-    };
-    [[nodiscard]] Piece piece(std::size_t first, std::size_t last);
+    /// All results of these points by their names, then `error`, empty where there is none. Also while others work, of
+    /// points that are done.
+    [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
 
     // What follows is for one thread, while no other changes anything.
 
@@ -96,13 +89,13 @@ public:
     [[nodiscard]] std::size_t done() const;
     /// nullptr when there is none of this name.
     [[nodiscard]] const double* find(std::string_view name) const;
-    /// All columns, of these points: the parameters, the results by their names, and `error`, empty where there is
-    /// none.
-    [[nodiscard]] Data data(const SweepGrid& grid, const std::vector<std::size_t>& points) const;
     /// The points that are done, in their order.
     [[nodiscard]] std::vector<std::size_t> done_points() const;
 
 private:
+    /// These numbers of a column as words, when a word is among them.
+    [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
+
     std::size_t chunk_size_;
     mutable std::mutex changing_;  // of the columns, the failures and the words, not of the numbers
     std::map<std::string, std::vector<double>, std::less<>> columns_;
@@ -112,9 +105,6 @@ private:
     std::vector<unsigned char> done_;
     std::vector<std::atomic<std::size_t>> done_in_chunk_;
 };
-
-/// Takes the results out of the columns of a file; false when they are none of this sweep.
-using TakeColumns = std::function<bool(const std::vector<files::ReadColumn>& columns, SweepResults& results)>;
 
 struct SweepTask {
     const char* call;  ///< heads sentences
@@ -127,10 +117,12 @@ struct SweepTask {
     std::vector<double> settings = {};  ///< what else decides about the results
     /// In the state of a worker: replaces the carried function on the top by the one that is asked.
     std::function<void(lua_State* worker)> adapt = {};
-    /// The results so far as data.
-    std::function<Data(const SweepGrid& grid, const SweepResults& results)> told;
-    /// Where the file has other rows than points: takes the results from its columns; false when they are none.
-    TakeColumns taken = {};
+    /// What the data are besides their columns.
+    Data form = {};
+    std::size_t looks = 1;  ///< rows of a point that has not failed
+    /// The columns of these points, if they are others than the parameters and the results.
+    std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)> told =
+        {};
 };
 
 /// An error of the call when the name of the file is none, or several processes would all do all of it.
@@ -139,10 +131,7 @@ void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked)
 /// All points. Raises when all of them fail; after Ctrl-C, when what is done is in dinal.partial, and the same task
 /// goes on from there. With a file, and as one of several processes of a launcher, it does its share, and ends the
 /// program unless it was the last.
-std::shared_ptr<SweepResults> swept(lua_State* L, const SweepTask& task);
-
-/// What the first line of the data says when points have failed: nobody looks into a column that should be empty.
-std::string heading_of_map(const SweepGrid& grid, const SweepResults& results);
+Data swept(lua_State* L, const SweepTask& task);
 
 void register_unfinished_sweep(lua_State* L);
 
@@ -157,14 +146,14 @@ std::size_t chunk_size_for(std::size_t points);
 
 class SweepFiles {
 public:
-    /// `mark` is that of what is asked. The file has a row for each point, unless `taken` reads another form.
+    /// `mark` is that of what is asked. The file has so many rows for each point.
     SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
-               TakeColumns taken = {});
+               std::size_t looks);
 
-    /// Makes the folder, and takes what is done; so does the file itself when it is the result. Fails when something of
+    /// Makes the folder, and takes what is done, or the result if the file is there. Fails when something of
     /// another sweep is there, or nothing can be written.
     std::optional<text::Error> open();
-    [[nodiscard]] bool is_finished() const { return finished_; }
+    [[nodiscard]] const std::optional<std::vector<DataColumn>>& result() const { return result_; }
 
     /// The points that are left in our share of the chunks.
     [[nodiscard]] std::vector<std::size_t> points(const files::Share& share) const;
@@ -192,16 +181,16 @@ private:
     std::optional<text::Error> write(std::size_t chunk);
     std::optional<text::Error> take_chunks();
     std::optional<text::Error> take_result();
-    std::optional<text::Error> take(const std::string& file, bool is_result);
+    std::optional<text::Error> take(const std::string& file);
     void remove_folder(const std::string& folder);
 
     std::string file_, folder_, mark_;
     const SweepGrid& grid_;
     SweepResults& results_;
-    TakeColumns taken_;
+    std::size_t looks_;
     std::vector<bool> written_;  // chunks
     int opened_ = 0;
-    bool finished_ = false;
+    std::optional<std::vector<DataColumn>> result_;
 };
 
 }  // namespace dinal::api

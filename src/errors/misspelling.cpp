@@ -138,7 +138,7 @@ enum class Use { any, as_number };
 
 /// Names of that spelling in the libraries: sin is math.sin, rk4 is integrator.rk4. Two at most.
 std::string qualified(lua_State* L, std::string_view name, Use use) {
-    constexpr std::array<std::string_view, 9> modules = {"excitation", "integrator", "theory", "trajectory", "vector",
+    constexpr std::array<std::string_view, 8> modules = {"excitation", "integrator", "theory", "vector",
                                                          "math",       "string",     "table",  "os"};
     std::string found;
     int count = 0;

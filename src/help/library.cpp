@@ -71,7 +71,6 @@ const Section all_sections[] = {
     {"The energy of a run", "energy", &api::energy_class},
     {"The energy of several bodies", "rig_energy", &api::rig_energy_class},
     {"Files", "", &api::load_functions},
-    {"Files by their old name", "trajectory", &api::trajectory_module},
     {"Theory", "theory", &api::theory_module},
     {"Vectors", "vector", &api::vector_module},
     {"A vector", "v", &api::vector_class},

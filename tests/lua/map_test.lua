@@ -165,10 +165,10 @@ test("what is wrong with a bifurcation is told", function()
     refuses(bifurcation, {
         { { over = { a = { 1 } }, at = at }, "bifurcation needs period" },
         { { over = { a = { 1 } }, period = 1, keep = 0, at = at }, "keep = 0 must be" },
-        { { period = 1, at = at }, "bifurcation: there is no parameter" },
+        { { period = 1, at = at }, "bifurcation needs over" },
         { { over = { theta = { 1 } }, period = 1, at = at }, "is a column of the result" },
-        { { over = { a = { 1 } }, period = 1, run = at }, "instead of run give at = function(p)" },
-        { { a = { 1 }, period = 1, at = at }, "over = { a = values }" },
+        { { over = { a = { 1 } }, period = 1, run = at }, "bifurcation has no option 'run'" },
+        { { a = { 1 }, period = 1, at = at }, "bifurcation has no option 'a'" },
         { returns(1), "at must return a table such as { system = sys, M = M }, got 1" },
         { returns { M = 1 }, "at must return a table with system = ..., got nil there" },
         { returns { system = nondimensional {}, omega = -1 }, "at returned omega = -1" },

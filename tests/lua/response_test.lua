@@ -73,12 +73,6 @@ test("what is wrong with a response is told", function()
         { { over = { a = { 1 } }, at = function() return 3 end }, "at returned 3 for a = 1" },
         { { over = { a = { 1 } }, at = function() return { m = 3 } end }, "no option 'm'" },
         { { over = { a = { 1 } }, at = function() return { M = "x" } end }, "at: M" },
-        -- The forms of before name the new ones.
-        { { frequency = { 1, 2 } }, "over = { frequency = values }", "vector.linspace" },
-        { { amplitude = { 1, 2, 3 }, frequency = 1 }, "over = { amplitude = values }" },
-        { { M = math.sin, over = { 1, 2 } }, "at = function(p) return { M = ... } end" },
-        { { over = { frequency = { 1 } }, points = 4 }, "there is no points", "vector.linspace" },
-        { { over = { frequency = { 1 } }, name = "f" }, "there is no name" },
     })
 end)
 

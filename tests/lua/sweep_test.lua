@@ -299,9 +299,9 @@ test("what is wrong with the call is told at the user's line", function()
         { { over = { x = { 1, "a" } }, run = run }, "sweep: x[2] must be a finite number" },
         { { over = { x = { "a", 1 } }, run = run }, "sweep: x[2] must be a string" },
         { { over = { x = { 1 } } }, "sweep needs run" },
-        { { run = run }, "there is no parameter" },
+        { { run = run }, "sweep needs over" },
         { { over = { x = 3 }, run = run }, "over.x must be a vector or a table of values, got 3" },
-        { { x = { 1 }, run = run }, "parameters and their values stand in over = { x = values }" },
+        { { x = { 1 }, run = run }, "sweep has no option 'x'" },
     })
     equal(#sweep { over = { seed = { 1, 2 }, file = { "a", "b" } }, run = function(p) return { y = p.seed } end }, 4) -- any name
     refuses(sweep, {
