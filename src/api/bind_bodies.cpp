@@ -523,21 +523,15 @@ RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
 }
 
 std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what,
-                        std::span<const lua::Member> members) {
+                        const lua::Class& of) {
     const std::string name = lua_tostring(L, index);
     std::vector<std::string> own;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         if (system.joints[j].name == name) return j;
         own.push_back(system.joints[j].name);
     }
-    std::vector<std::string_view> names(own.begin(), own.end());
-    for (const lua::Member& member : members) {
-        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
-    }
-    lua::raise(
-        L, {.sentence = fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
-            .culprit = name,
-            .cure = text::did_you_mean(name, names)});
+    raise_unknown_name(L, fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
+                       name, own, of);
 }
 
 int push_bodies_run(lua_State* L, BodiesRunHandle run) {
@@ -696,7 +690,7 @@ int part_by_name(lua_State* L) {
                                                member->kind == lua::Kind::field ? "." : ":"),
                        .culprit = std::string(name)});
     }
-    push_run(L, part_of(run, joint_named(L, 2, *run->system, "this run", bodies_run_class.members)));
+    push_run(L, part_of(run, joint_named(L, 2, *run->system, "this run", bodies_run_class)));
     return 1;
 }
 

@@ -32,6 +32,7 @@
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "text/option.hpp"
+#include "text/sentences.hpp"
 #include "text/suggest.hpp"
 
 namespace dinal::api {
@@ -101,52 +102,39 @@ inline constexpr text::Option extras_of_record[] = {extras_options[0], extras_op
 inline constexpr auto identify_options = text::joined(own_identify_options, extras_of_record);
 inline constexpr text::Call identify_call{"identify", "identify{ data = run }", identify_options};
 
-/// What was fitted to the record with a system as the guess.
-struct FittedParts {
-    std::vector<std::pair<std::string, double>> values = {}, errors = {};
-    std::vector<std::string> silent = {};
-    std::vector<double> t = {}, measured = {}, predicted = {};  ///< of the first measured quantity
-    double noise = 0;
-    std::string remark = {};
-    std::optional<model::Oscillator> system = {};
+namespace {
+
+using analysis::Unknown;
+
+struct FitAnswer {
+    analysis::IdentifyQuestion question;
+    analysis::Identified found;
+    std::vector<std::pair<std::string, double>> values, errors;
+    std::vector<std::string> silent;
+    std::optional<model::Oscillator> system;
     model::AssemblyHandle rig = {};
+    std::string remark = {};
+    bool from_guess = false;  ///< a system was given
+    model::Units units;       ///< of the record; without one for M where only ratios to I are found
 };
+using FitHandle = std::shared_ptr<const FitAnswer>;
 
 // The record that identify{ ... } is given, and which of the unknowns are fitted.
 
-namespace {
-
-struct RecordColumns {
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> numbers;  // empty for words
-};
-
-void add_column(RecordColumns& record, const std::string& name, std::span<const double> numbers) {
-    record.names.push_back(name);
-    record.numbers.emplace_back(numbers.begin(), numbers.end());
-}
-
-/// The columns of what stands under `data`.
-RecordColumns record_columns(lua_State* L, const lua::Options& options) {
-    RecordColumns record;
+/// What stands under `data`.
+Data record_of(lua_State* L, const lua::Options& options) {
+    Data record;
     options.push("data");
     const int place = lua_gettop(L);
     if (const auto* data = lua::test<DataHandle>(L, place)) {
-        for (const DataColumn& column : (*data)->columns) {
-            add_column(record, column.name,
-                       column.numbers() != nullptr ? column.numbers()->values() : std::span<const double>());
-        }
+        record.columns = (*data)->columns;
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
-        const motion::Trajectory& trajectory = (*run)->trajectory;
-        for (std::size_t i = 0; i < trajectory.names().size(); ++i) {
-            add_column(record, trajectory.names()[i],
-                       view_of(*run, trajectory.rows.col(static_cast<Eigen::Index>(i))).values());
-        }
+        record = rows_of(*run);
     } else if (lua_istable(L, place)) {
-        for (lua_pushnil(L); lua_next(L, place) != 0; lua_pop(L, 1)) {
-            if (lua_type(L, -2) != LUA_TSTRING) continue;
-            const std::string name = lua_tostring(L, -2);
-            add_column(record, name, lua::numbers_with_gaps_at(L, -1, "identify", "data." + name));
+        for (const std::string& name : lua::text_keys(L, place)) {
+            lua_getfield(L, place, name.c_str());
+            record.columns.push_back(column_of(name, lua::numbers_with_gaps_at(L, -1, "identify", "data." + name)));
+            lua_pop(L, 1);
         }
     } else if (lua_isnil(L, place)) {
         options.missing("data");
@@ -159,69 +147,39 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
     return record;
 }
 
-/// The column asked for, or the first of these names, or the one in this place.
-const std::vector<double>& record_column(const lua::Options& options, const RecordColumns& record,
-                                         const std::optional<std::string>& asked,
-                                         std::initializer_list<std::string_view> names, std::size_t place,
-                                         const char* option) {
-    std::size_t found = record.names.size();
-    for (std::size_t i = 0; i < record.names.size(); ++i) {
-        if (asked && record.names[i] == *asked) found = i;
+/// The numbers of the column asked for, or of the first with one of these names, or of the one in this place; nan where
+/// there is none.
+std::span<const double> record_numbers(lua_State* L, const lua::Options& options, const Data& record,
+                                       const std::optional<std::string>& asked,
+                                       std::initializer_list<std::string_view> names, std::size_t place) {
+    const DataColumn* found = asked ? &data_functions::column_or_fail(L, record, "identify", *asked) : nullptr;
+    for (const std::string_view name : names) found = found == nullptr ? record.find(name) : found;
+    if (found == nullptr && place < record.columns.size()) found = &record.columns[place];
+    if (found == nullptr) {
+        options.fail({fmt::format("the record has {}; times and angles are needed",
+                                  text::counted(record.columns.size(), "column"))});
     }
-    if (asked && found == record.names.size()) {
-        options.fail(
-            {.sentence = fmt::format("the record has no column '{}' among {}", *asked, fmt::join(record.names, ", ")),
-             .option = option,
-             .culprit = *asked,
-             .cure = text::did_you_mean(*asked, record.names)});
+    if (found->numbers() == nullptr) {
+        options.fail({fmt::format("the column '{}' of the record has no numbers", found->name)});
     }
-    for (const std::string_view name : names) {
-        const auto there = std::find(record.names.begin(), record.names.end(), name);
-        if (found == record.names.size() && there != record.names.end()) {
-            found = static_cast<std::size_t>(there - record.names.begin());
-        }
-    }
-    if (found == record.names.size()) found = place;
-    if (found >= record.names.size()) {
-        options.fail({fmt::format("the record has {} column{}; times and angles are needed", record.names.size(),
-                                  record.names.size() == 1 ? "" : "s")});
-    }
-    if (record.numbers[found].empty()) {
-        options.fail({fmt::format("the column '{}' of the record has no numbers", record.names[found])});
-    }
-    return record.numbers[found];
+    return found->numbers()->values();
 }
 
-}  // namespace
-
-/// The numbers of this column of the record, nan where there is none.
-std::vector<double> record_numbers(lua_State* L, const lua::Options& options, const std::string& name,
-                                   const char* option) {
-    return record_column(options, record_columns(L, options), name, {}, 0, option);
-}
-
-/// What the record is measured in, where its run or its columns say it.
-model::Units units_of_record(lua_State* L, const lua::Options& options) {
+/// What the record is measured in, where its columns say it.
+model::Units units_of_record(const Data& record) {
     model::Units units;
-    options.push("data");
-    if (const auto* run = lua::test<RunHandle>(L, -1)) {
-        units = units_of(**run);
-    } else if (const auto* data = lua::test<DataHandle>(L, -1)) {
-        for (const auto& [name, unit] : {std::pair{"theta", &units.theta}, {"t", &units.t}, {"M", &units.M}}) {
-            const DataColumn* column = (*data)->find(name);
-            if (column != nullptr && !column->unit.empty()) *unit = column->unit;
-        }
+    for (const auto& [name, unit] : {std::pair{"theta", &units.theta}, {"t", &units.t}, {"M", &units.M}}) {
+        const DataColumn* column = record.find(name);
+        if (column != nullptr && !column->unit.empty()) *unit = column->unit;
     }
-    lua_pop(L, 1);
     return units;
 }
 
 /// Fills times and angles of the question, without gaps. Raises when there is no such record.
-void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
+void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked, const Data& record,
                  analysis::IdentifyQuestion& question) {
-    const RecordColumns record = record_columns(L, options);
-    const std::vector<double>& t = record_column(options, record, asked.t, {"t", "time"}, 0, "t");
-    const std::vector<double>& theta = record_column(options, record, asked.theta, {"theta", "x", "angle"}, 1, "theta");
+    const auto t = record_numbers(L, options, record, asked.t, {"t", "time"}, 0);
+    const auto theta = record_numbers(L, options, record, asked.theta, {"theta", "x", "angle"}, 1);
     if (t.size() != theta.size()) {
         options.fail({fmt::format("the record has {} times, but {} angles", t.size(), theta.size())});
     }
@@ -249,7 +207,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     }
     question.given = {asked.I, asked.k, asked.C, asked.Rd, asked.Re, asked.theta0, asked.velocity0, asked.offset};
     if (!options.has("free")) return;
-    std::array<bool, analysis::unknown_count> free{};
+    std::vector<bool> held(analysis::unknown_count, true);
     for (const std::string& name : free_names(L, options)) {
         const auto* const known = std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name);
         if (known == analysis::unknown_names.end()) {
@@ -261,26 +219,21 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         }
         const auto place = static_cast<std::size_t>(known - analysis::unknown_names.begin());
         if (question.given[place]) options.fail({fmt::format("{} is given, so it cannot be fitted", name)});
-        free[place] = true;
+        held[place] = false;
     }
-    for (const analysis::Unknown which : {analysis::Unknown::C, analysis::Unknown::Rd, analysis::Unknown::offset}) {
+    for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
         const auto place = static_cast<std::size_t>(which);
-        if (!free[place] && !question.given[place]) question.given[place] = 0;
-    }
-    for (const analysis::Unknown which : {analysis::Unknown::I, analysis::Unknown::k}) {
-        const auto place = static_cast<std::size_t>(which);
-        if (!free[place] && !question.given[place] && question.M) {
+        if (!held[place] || question.given[place]) continue;
+        if (which != Unknown::I && which != Unknown::k) {
+            question.given[place] = 0;  // an Re less than Rd is Rd
+        } else if (question.M) {
             options.fail({fmt::format("{} is neither given nor in free", analysis::unknown_names[place])});
         }
     }
-    const auto Re = static_cast<std::size_t>(analysis::Unknown::Re);
-    if (!free[Re] && !question.given[Re]) question.given[Re] = 0;  // less than Rd is Rd
 }
 
 // identify{ system = ..., free = { ... } }: parameters of any system, and of tables that a user's functions read,
 // fitted from a guess to measured angles, velocities or accelerations.
-
-namespace {
 
 /// A number of a system: where it stands in a copy, and its range.
 struct NumberPlace {
@@ -328,51 +281,51 @@ bool with_number_of_law(model::Friction& friction, std::string_view name,
                change);
 }
 
-/// The system whose numbers are changed: one mass, or a system of one body whose friction has more to it.
+/// The system whose numbers are changed.
 struct Guess {
-    std::optional<model::OscillatorParameters> plain = {};
-    std::optional<model::Assembly> rig = {};
+    model::OscillatorParameters own = {};
+    std::optional<model::Assembly> rig = {};  ///< one body, whose friction has more to it than its law
 
     /// Calls with the number of that name; false when there is none.
     bool with(std::string_view name, const std::function<void(NumberPlace)>& change) {
-        constexpr std::string_view of_law = "friction.", of_spring = "spring.", of_walls = "walls.";
-        model::Joint* joint = rig ? rig->joints.data() : nullptr;
-        if (name == "I") return change({plain ? &plain->inertia : &rig->bodies[0].inertia, true}), true;
-        if (name == "k") return change({plain ? &plain->stiffness : &joint->stiffness}), true;
-        if (name == "C") return change({plain ? &plain->damping : &joint->damping}), true;
+        constexpr std::string_view of_law = "friction.", of_spring = "spring.";
+        if (name == "I") return change({&own.inertia, true}), true;
+        if (name == "k") return change({&own.stiffness}), true;
+        if (name == "C") return change({&own.damping}), true;
         if (name.starts_with(of_law)) {
-            if (plain && !plain->friction) return false;
-            model::Friction& law = plain ? *plain->friction : joint->friction.law;
-            return with_number_of_law(law, name.substr(of_law.size()), change);
+            return own.friction && with_number_of_law(*own.friction, name.substr(of_law.size()), change);
         }
-        if (name.starts_with(of_spring)) {
-            model::Spring& spring = plain ? plain->spring : joint->spring;
-            const auto* polynomial = spring.as<model::springs::PolynomialSpring>();
-            if (polynomial == nullptr) return false;
-            model::springs::PolynomialSpring changed = *polynomial;
+        if (const auto* spring = own.spring.as<model::springs::PolynomialSpring>(); spring != nullptr) {
+            model::springs::PolynomialSpring changed = *spring;
             for (auto& [power, coefficient] : changed.terms) {
-                if (std::to_string(power) != name.substr(of_spring.size())) continue;
+                if (fmt::format("{}{}", of_spring, power) != name) continue;
                 change({&coefficient, false, true});
-                spring = changed;
+                own.spring = changed;
                 return true;
             }
-            return false;
         }
-        if (name.starts_with(of_walls) && (plain ? plain->walls : joint->walls)) {
-            model::Walls& walls = plain ? *plain->walls : *joint->walls;
-            if (name == "walls.lower") return change({&walls.lower, false, true}), true;
-            if (name == "walls.upper") return change({&walls.upper, false, true}), true;
-            if (name == "walls.restitution") return change({&walls.restitution}), true;
+        if (own.walls) {
+            if (name == "walls.lower") return change({&own.walls->lower, false, true}), true;
+            if (name == "walls.upper") return change({&own.walls->upper, false, true}), true;
+            if (name == "walls.restitution") return change({&own.walls->restitution}), true;
         }
-        if (!plain || plain->friction) return false;
-        if (name == "Rd") return change({&plain->kinetic_friction}), true;
-        if (name == "Re") {
-            double Re = plain->breakaway.value_or(plain->kinetic_friction);
-            change({&Re});
-            plain->breakaway = Re;
-            return true;
-        }
-        return false;
+        if (own.friction) return false;
+        if (name == "Rd") return change({&own.kinetic_friction}), true;
+        if (name != "Re") return false;
+        double Re = own.breakaway.value_or(own.kinetic_friction);
+        change({&Re});
+        own.breakaway = Re;
+        return true;
+    }
+
+    /// With the numbers of now.
+    [[nodiscard]] model::AssemblyHandle assembly() const {
+        model::Assembly made = *rig;
+        made.bodies[0].inertia = own.inertia;
+        model::Joint& joint = made.joints[0];
+        joint.stiffness = own.stiffness, joint.damping = own.damping;
+        joint.spring = own.spring, joint.walls = own.walls, joint.friction.law = *own.friction;
+        return std::make_shared<const model::Assembly>(std::move(made));
     }
 };
 
@@ -396,15 +349,16 @@ struct MeasuredColumn {
 
 class AnyFit {
 public:
-    AnyFit(lua_State* L, const lua::Options& options, const IdentifyOptions& asked)
-        : L_(L), options_(options), asked_(asked) {
+    AnyFit(lua_State* L, const lua::Options& options, const IdentifyOptions& asked, const Data& record)
+        : L_(L), options_(options), asked_(asked), record_(record) {
         luaL_checkstack(L, 200, "for a fit");
         take_system();
         take_columns();
         take_free();
     }
 
-    FittedParts found() {
+    /// Fills the answer.
+    void fit(FitAnswer& fit) {
         analysis::GeneralQuestion question;
         const auto n = static_cast<Eigen::Index>(free_.size());
         question.start.resize(n);
@@ -445,16 +399,20 @@ public:
         if (!found) {
             options_.fail({failure_.empty() ? "no run of this system reaches the end of the record" : failure_});
         }
-        return answer(*found);
+        answer(*found, fit);
     }
 
 private:
     void take_system() {
         options_.push("system");
         if (const auto* plain = lua::test<model::Oscillator>(L_, -1)) {
-            guess_.plain = plain->parameters();
+            guess_.own = plain->parameters();
         } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, -1); rig != nullptr && !(*rig)->named) {
+            const model::Joint& joint = (*rig)->joints[0];
             guess_.rig = **rig;
+            guess_.own.inertia = (*rig)->bodies[0].inertia;
+            guess_.own.stiffness = joint.stiffness, guess_.own.damping = joint.damping;
+            guess_.own.spring = joint.spring, guess_.own.walls = joint.walls, guess_.own.friction = joint.friction.law;
         } else {
             options_.wrong("system");
         }
@@ -493,13 +451,14 @@ private:
     }
 
     void take_columns() {
-        std::vector<double> t = record_numbers(L_, options_, asked_.t.value_or("t"), "t");
+        const auto t = record_numbers(L_, options_, record_, asked_.t.value_or("t"), {}, 0);
         for (auto& [quantity, name] : asked_columns()) {
-            columns_.push_back({quantity, record_numbers(L_, options_, name, "measured")});
-            if (columns_.back().numbers.size() != t.size()) {
+            const auto numbers = record_numbers(L_, options_, record_, name, {}, 0);
+            if (numbers.size() != t.size()) {
                 options_.fail({fmt::format("the record has {} times, but {} numbers in the column '{}'", t.size(),
-                                           columns_.back().numbers.size(), name)});
+                                           numbers.size(), name)});
             }
+            columns_.push_back({quantity, {numbers.begin(), numbers.end()}});
         }
         std::vector<std::size_t> rows;
         for (std::size_t i = 0; i < t.size(); ++i) {
@@ -671,9 +630,10 @@ private:
         lua_setfield(L_, one.table, one.key.c_str());
     }
 
-    /// Sets the tables, and gives the system; none where there is no such system.
-    std::optional<Guess> with(const Eigen::VectorXd& p) {
+    /// Sets the tables, and gives the system.
+    Guess with(const Eigen::VectorXd& p) {
         Guess guess = guess_;
+        model::OscillatorParameters& own = guess.own;
         const bool own_Re = std::any_of(free_.begin(), free_.end(), [](const Fitted& one) { return one.name == "Re"; });
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const double value = p[static_cast<Eigen::Index>(i)];
@@ -683,11 +643,10 @@ private:
                 set_number(free_[i], value);
             }
         }
-        if (guess.plain && !guess.plain->friction) {
-            const auto& old = *guess_.plain;
-            const bool one_number = !own_Re && old.breakaway.value_or(old.kinetic_friction) == old.kinetic_friction;
-            const double Rd = guess.plain->kinetic_friction;
-            guess.plain->breakaway = one_number ? Rd : std::max(Rd, guess.plain->breakaway.value_or(Rd));
+        if (!own.friction) {
+            const double before = guess_.own.kinetic_friction, Rd = own.kinetic_friction;
+            const bool one_number = !own_Re && guess_.own.breakaway.value_or(before) == before;
+            own.breakaway = one_number ? Rd : std::max(Rd, own.breakaway.value_or(Rd));
         }
         // Breakaway takes at least the friction of motion.
         for (const char* way : {"", "forward.", "backward."}) {
@@ -700,14 +659,14 @@ private:
     }
 
     bool push_system(const Guess& guess) {
-        if (guess.plain) {
-            auto made = model::Oscillator::make(*guess.plain);
-            if (!made) return failure_ = made.error().sentence, false;
-            lua::push(L_, std::move(made).value());
-        } else {
-            if (auto wrong = guess.rig->joints[0].friction.law.complaint()) return failure_ = wrong->sentence, false;
-            lua::push<model::AssemblyHandle>(L_, std::make_shared<const model::Assembly>(*guess.rig));
+        if (guess.rig) {
+            if (auto wrong = guess.own.friction->complaint()) return failure_ = wrong->sentence, false;
+            lua::push<model::AssemblyHandle>(L_, guess.assembly());
+            return true;
         }
+        auto made = model::Oscillator::make(guess.own);
+        if (!made) return failure_ = made.error().sentence, false;
+        lua::push(L_, std::move(made).value());
         return true;
     }
 
@@ -716,7 +675,7 @@ private:
         const auto guess = with(p);
         const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
                                                    known_until_.begin() + 1);
-        if (!guess || !push_system(*guess)) return lua_settop(L_, top), std::nullopt;
+        if (!push_system(guess)) return lua_settop(L_, top), std::nullopt;
         lua_getfield(L_, -1, "simulate");
         lua_insert(L_, -2);
         push_options(p, rows);
@@ -789,53 +748,48 @@ private:
         }
     }
 
-    FittedParts answer(const analysis::GeneralFit& found) {
-        FittedParts parts;
-        auto guess = with(found.value);
+    void answer(const analysis::GeneralFit& found, FitAnswer& fit) {
+        Guess guess = with(found.value);
         restore();
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
             double value = found.value[place];  // what holds may have been less than what slides
             if (free_[i].of == Fitted::Of::system)
-                guess->with(free_[i].name, [&](NumberPlace own) { value = *own.value; });
-            parts.values.emplace_back(free_[i].name, value);
-            parts.errors.emplace_back(free_[i].name, found.error[place]);
-            if (found.silent[i]) parts.silent.push_back(free_[i].name);
+                guess.with(free_[i].name, [&](NumberPlace own) { value = *own.value; });
+            fit.values.emplace_back(free_[i].name, value);
+            fit.errors.emplace_back(free_[i].name, found.error[place]);
+            if (found.silent[i]) fit.silent.push_back(free_[i].name);
         }
-        if (guess->plain) {
-            auto made = model::Oscillator::make(*guess->plain);
-            if (made) parts.system = std::move(made).value();
-        } else {
-            parts.rig = std::make_shared<const model::Assembly>(*guess->rig);
+        if (guess.rig) {
+            fit.rig = guess.assembly();
+        } else if (auto made = model::Oscillator::make(guess.own)) {
+            fit.system = std::move(made).value();
         }
         const MeasuredColumn& first = columns_.front();
         Eigen::Index next = 0;
         for (std::size_t row = 0; row < t_.size(); ++row) {
-            for (std::size_t j = 0; j < columns_.size(); ++j) {
-                if (std::isnan(columns_[j].numbers[row])) continue;
-                if (j == 0) {
-                    parts.t.push_back(t_[row]);
-                    parts.measured.push_back(first.numbers[row]);
-                    parts.predicted.push_back(found.predicted[next] * first.size);
-                }
-                ++next;
+            if (!std::isnan(first.numbers[row])) {  // the first number of its row
+                fit.question.t.push_back(t_[row]);
+                fit.question.theta.push_back(first.numbers[row]);
+                fit.found.predicted.push_back(found.predicted[next] * first.size);
             }
+            next = known_until_[row];
         }
-        parts.noise = found.noise * first.size;
+        fit.found.noise = found.noise * first.size;
         constexpr double alike = 1.3, rounding = 1e-7;
         const double range = range_[static_cast<std::size_t>(first.quantity)];
-        if (found.widening > alike && parts.noise > rounding * range) {
-            parts.remark = fmt::format(
+        if (found.widening > alike && fit.found.noise > rounding * range) {
+            fit.remark = fmt::format(
                 "the residual is correlated from sample to sample (noise in M, another law of friction or a wrong "
                 "guess); the errors are {:.2g} times wider because of that",
                 found.widening);
         }
-        return parts;
     }
 
     lua_State* L_;
     const lua::Options& options_;
     const IdentifyOptions& asked_;
+    const Data& record_;
     Guess guess_;
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
@@ -847,30 +801,7 @@ private:
     std::string failure_;  ///< of the last run
 };
 
-}  // namespace
-
-FittedParts fit_any(lua_State* L, const lua::Options& options, const IdentifyOptions& asked) {
-    return AnyFit(L, options, asked).found();
-}
-
 // The answer.
-
-namespace {
-
-using analysis::Unknown;
-
-struct FitAnswer {
-    analysis::IdentifyQuestion question;
-    analysis::Identified found;
-    std::vector<std::pair<std::string, double>> values, errors;
-    std::vector<std::string> silent;
-    std::optional<model::Oscillator> system;
-    model::AssemblyHandle rig = {};
-    std::string remark = {};
-    bool from_guess = false;  ///< a system was given
-    model::Units units;       ///< of the record; without one for M where only ratios to I are found
-};
-using FitHandle = std::shared_ptr<const FitAnswer>;
 
 void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
@@ -914,14 +845,11 @@ int identify_record(lua_State* L) {
     IdentifyOptions asked;
     options.fill(asked);
     auto fit = std::make_shared<FitAnswer>();
+    const Data record = record_of(L, options);
+    fit->units = units_of_record(record);
     if (options.has("system")) {
-        FittedParts parts = fit_any(L, options, asked);
-        fit->units = units_of_record(L, options);
-        fit->question.t = std::move(parts.t), fit->question.theta = std::move(parts.measured);
-        fit->found.predicted = std::move(parts.predicted), fit->found.noise = parts.noise;
-        fit->values = std::move(parts.values), fit->errors = std::move(parts.errors);
-        fit->silent = std::move(parts.silent), fit->remark = std::move(parts.remark);
-        fit->system = std::move(parts.system), fit->rig = std::move(parts.rig), fit->from_guess = true;
+        AnyFit(L, options, asked, record).fit(*fit);
+        fit->from_guess = true;
         lua::push<FitHandle>(L, std::move(fit));
         return 1;
     }
@@ -931,8 +859,7 @@ int identify_record(lua_State* L) {
         options.fail(
             name, fmt::format("{} ({}) needs a guess: system = system{{ ... }} and free", name, lua::describe(L, -1)));
     }
-    take_record(L, options, asked, fit->question);
-    fit->units = units_of_record(L, options);
+    take_record(L, options, asked, record, fit->question);
     if (options.has("M")) {
         options.push("M");
         fit->question.M = to_excitation(L, -1, "identify: M", "M");
@@ -956,15 +883,20 @@ int identify_record(lua_State* L) {
 
 // ---- the answer
 
+std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+    std::vector<std::string> names;
+    for (const auto& value : fit.values) names.push_back(value.first);
+    return names;
+}
+
 int fit_value(lua_State* L) {
     const FitHandle& fit = lua::self<FitHandle>(L, 1, "fit.omega0");
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const std::string_view name = lua_tostring(L, 2);
     for (const auto& [known, value] : fit->values) {
-        if (known == name) {
-            lua_pushnumber(L, value);
-            return 1;
-        }
+        if (known != name) continue;
+        lua_pushnumber(L, value);
+        return 1;
     }
     if (!fit->from_guess && std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
                                 analysis::unknown_names.end()) {
@@ -972,20 +904,7 @@ int fit_value(lua_State* L) {
                            "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
                        .culprit = std::string(name)});
     }
-    std::vector<std::string_view> names;
-    for (const auto& value : fit->values) names.emplace_back(value.first);
-    for (const lua::Member& member : fit_class.members) {
-        if (member.kind != lua::Kind::metamethod) names.emplace_back(member.name);
-    }
-    lua::raise(L, {.sentence = fmt::format("a fit has no field '{}'", name),
-                   .culprit = std::string(name),
-                   .cure = text::did_you_mean(name, names)});
-}
-
-std::vector<std::string> names_of_fit(const FitAnswer& fit) {
-    std::vector<std::string> names;
-    for (const auto& value : fit.values) names.push_back(value.first);
-    return names;
+    raise_unknown_name(L, fmt::format("a fit has no field '{}'", name), name, names_of_fit(*fit), fit_class);
 }
 
 lua::Pushed fit_system(lua_State* L, const FitHandle& fit) {
@@ -998,10 +917,6 @@ std::vector<double> residual_of(const FitAnswer& fit) {
     std::vector<double> residual(fit.question.t.size());
     for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = fit.question.theta[i] - fit.found.predicted[i];
     return residual;
-}
-
-lua::Vector fit_residual(const FitAnswer& fit) {
-    return lua::Vector(residual_of(fit));
 }
 
 constexpr text::Call fit_plot_call{"fit:plot", "fit:plot{ file = \"fit.svg\" }", target_options, true};
@@ -1111,7 +1026,7 @@ constexpr lua::Member fit_members[] = {
     {lua::a_value<FitHandle, [](const FitAnswer& fit) { return fit.found.noise; }>,
      {"fit.noise -> number", "The standard deviation of record minus fit.",
       DINAL_FIT "print(math.abs(fit.noise - 0.01) < 0.001)  --> true"}},
-    {lua::a_value<FitHandle, fit_residual>,
+    {lua::a_value<FitHandle, [](const FitAnswer& fit) { return lua::Vector(residual_of(fit)); }>,
      {"fit.residual -> vector", "Record minus fit at each sample. It should look like noise.",
       DINAL_FIT "print(#fit.residual == #run)  --> true"}},
     {lua::a_method<fit_plot>,

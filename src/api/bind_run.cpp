@@ -277,28 +277,14 @@ void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
     lua::push(L, view_of(run, run->trajectory.rows.col(column)));
 }
 
-/// Members and columns: what a misspelt name may have meant.
-[[noreturn]] void raise_unknown(lua_State* L, const motion::Trajectory& trajectory, std::string_view wrong) {
-    std::vector<std::string_view> names(trajectory.names().begin(), trajectory.names().end());
-    for (const lua::Member& member : run_class.members) {
-        const bool column = member.kind == lua::Kind::field && trajectory.find(member.name) == std::nullopt &&
-                            std::find(motion::column_names().begin(), motion::column_names().end(), member.name) !=
-                                motion::column_names().end();
-        if (member.kind != lua::Kind::metamethod && !column) {
-            names.emplace_back(member.name);
-        }
-    }
-    lua::raise(L, {.sentence = fmt::format("this run has no field '{}'; its columns are {}", wrong,
-                                           fmt::join(trajectory.names(), ", ")),
-                   .culprit = std::string(wrong),
-                   .cure = text::did_you_mean(wrong, names)});
-}
-
 int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
-    const auto column = run->trajectory.find(name);
+    const motion::Trajectory& trajectory = run->trajectory;
+    const auto column = trajectory.find(name);
     if (!column) {
-        raise_unknown(L, run->trajectory, name);
+        raise_unknown_name(
+            L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
+            name, trajectory.names(), run_class);
     }
     push_column(L, run, *column);
     return 1;
@@ -309,22 +295,10 @@ int column_field(lua_State* L) {
     return column_by_name(L, motion::column_names()[static_cast<std::size_t>(column)].c_str());
 }
 
-/// Pushes the rows of the run as data, which keep the run.
-void push_as_data(lua_State* L, const RunHandle& run) {
-    const ColumnUnits in(units_of(*run));
-    Data data;
-    const auto& names = run->trajectory.names();
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto numbers = run->trajectory.rows.col(static_cast<Eigen::Index>(i));
-        data.columns.push_back({names[i], view_of(run, numbers), in.of(names[i])});
-    }
-    push_data(L, std::move(data));
-}
-
 /// A method of data, of the rows of the run.
 template <lua_CFunction method>
 int as_data(lua_State* L) {
-    push_as_data(L, run_self(L, "run:select(\"t\")"));
+    push_data(L, rows_of(run_self(L, "run:select(\"t\")")));
     lua_replace(L, 1);
     return method(L);
 }
@@ -337,7 +311,7 @@ int other_column(lua_State* L) {
             lua_pushnil(L);
             return 1;
         }
-        push_as_data(L, run);
+        push_data(L, rows_of(run));
         push_row(L, lua_gettop(L), **lua::test<DataHandle>(L, -1), static_cast<std::size_t>(i) - 1);
         return 1;
     }
@@ -372,6 +346,26 @@ lua::Pushed events(lua_State* L, const RunHandle& run) {
 }
 
 }  // namespace
+
+Data rows_of(const RunHandle& run) {
+    const ColumnUnits in(units_of(*run));
+    Data data;
+    for (const std::string& name : run->trajectory.names()) {
+        const auto numbers = run->trajectory.rows.col(static_cast<Eigen::Index>(data.columns.size()));
+        data.columns.push_back({name, view_of(run, numbers), in.of(name)});
+    }
+    return data;
+}
+
+void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,
+                        const std::vector<std::string>& known, const lua::Class& of) {
+    std::vector<std::string_view> names(known.begin(), known.end());
+    for (const lua::Member& member : of.members) {
+        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
+    }
+    lua::raise(
+        L, {.sentence = std::move(sentence), .culprit = std::string(wrong), .cure = text::did_you_mean(wrong, names)});
+}
 
 std::string_view status_word(model::Outcome outcome) {
     switch (outcome) {

@@ -128,8 +128,7 @@ int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRun
 /// Pushes it; of one body without a name as a run of one body.
 int push_bodies_run(lua_State* L, BodiesRunHandle run);
 /// The joint whose name stands at `index`; raises that `what`, which has these members, has none of that name.
-std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what,
-                        std::span<const lua::Member> members);
+std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what, const lua::Class& of);
 
 /// Pushes the system of the options `bodies` and `links`.
 int push_bodies(lua_State* L, const lua::Options& options);

@@ -68,7 +68,7 @@ int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const BodiesRun& run = *lua::self<RigEnergyHandle>(L, 1, "energy.load")->run;
     const engine::Works& works = *run.works;
-    const std::size_t joint = joint_named(L, 2, *run.system, "this energy", rig_energy_class.members);
+    const std::size_t joint = joint_named(L, 2, *run.system, "this energy", rig_energy_class);
     NamedNumbers numbers{{"spring", works.spring[joint]},
                          {"viscous", works.viscous[joint]},
                          {"dry", works.dry[joint]},

@@ -17,6 +17,7 @@
 namespace dinal::api {
 
 struct BodiesRun;
+struct Data;
 
 struct Run {
     motion::Trajectory trajectory;
@@ -39,6 +40,13 @@ void push_run(lua_State* L, RunHandle run);
 /// The column whose name or number stands at `index`; an error names it `what`.
 text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
                                        std::string_view what);
+
+/// The rows as data, which keep the run.
+Data rows_of(const RunHandle& run);
+
+/// Raises the sentence about a name that is none of the known ones nor of the members of the class.
+[[noreturn]] void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,
+                                     const std::vector<std::string>& known, const lua::Class& of);
 
 /// How a run ended, in one word.
 std::string_view status_word(model::Outcome outcome);

@@ -112,7 +112,7 @@ test("what cannot be fitted is told", function()
         { { data = record, system = guess }, "free must be a list" },
         { { data = record, system = guess, free = { "k" }, k = 3 }, "k is part of the first guess, system" },
         { { data = record, system = guess, free = { "k" }, measured = "speed" }, "measured must be \"theta\"" },
-        { { data = record, system = guess, free = { "k" }, measured = "velocity" }, "the record has no column 'velocity'" },
+        { { data = record, system = guess, free = { "k" }, measured = "velocity" }, "there is no column 'velocity'" },
         { { data = record, system = guess, free = { "k" }, M = function() error "broken" end }, "broken" },
     })
 end)
