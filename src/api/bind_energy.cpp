@@ -1,12 +1,18 @@
 // What run:energy() returns: the energy balance of a run in total, for each half cycle, and as columns beside its rows.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "analysis/energy.hpp"
+#include "analysis/rig_story.hpp"
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/run.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
@@ -17,11 +23,13 @@ namespace dinal::api {
 
 namespace {
 
+namespace engine = motion::engine;
+
 struct RunEnergy {
-    RunHandle run;
-    analysis::Energy energy;
-    Eigen::MatrixXd columns = {};  // at the rows; made when first asked for
-    bool has_columns = false;
+    RunHandle run = {};
+    analysis::Energy energy = {};
+    BodiesRunHandle rig = {};      ///< of several bodies together, instead
+    Eigen::MatrixXd columns = {};  ///< at the rows; made when first asked for
 };
 // Shared, because a column that Lua takes out is a view that keeps it alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
@@ -32,14 +40,24 @@ bool is_part(const RunEnergy& energy) {
 
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
+analysis::Whose whose_of(const Run& run) {
+    return !run.whole || !run.whole->system->named ? analysis::Whose::all
+           : run.whole->system->is_link(run.joint) ? analysis::Whose::link
+                                                   : analysis::Whose::body;
+}
+
+/// Of several bodies the sum: what the others do on one of them cancels.
 void make_columns(lua_State* L, RunEnergy& energy) {
-    if (energy.has_columns) return;
+    if (energy.columns.size() > 0) return;
     lua::CallState call(L);  // a law of friction may be a user's function
-    Eigen::MatrixXd columns = analysis::energy_columns(energy.run->trajectory, energy.energy.whose);
-    call.check();
-    if (is_part(energy)) columns.col(error_column) *= -1;  // then it is the work of the others
-    energy.columns = std::move(columns);
-    energy.has_columns = true;
+    const std::size_t parts = energy.rig ? energy.rig->system->joints.size() : 1;
+    for (std::size_t j = 0; j < parts; ++j) {
+        const RunHandle run = energy.rig ? part_of(energy.rig, j) : energy.run;
+        const Eigen::MatrixXd own = analysis::energy_columns(run->trajectory, whose_of(*run));
+        call.check();
+        energy.columns = j == 0 ? own : energy.columns + own;
+    }
+    if (is_part(energy)) energy.columns.col(error_column) *= -1;  // then it is the work of the others
     lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
 }
 
@@ -61,10 +79,33 @@ std::optional<lua::Vector> rest_of_energy(lua_State* L, const EnergyHandle& hand
 }
 
 lua::Vector times(const RunEnergy& energy) {
+    if (energy.rig) return table_column(energy.rig, 0);
     return view_of(energy.run, energy.run->trajectory.column(motion::Column::t));
 }
 
 using lua::NamedNumbers;
+
+double sum_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// Of all: the names are those of one body.
+NamedNumbers total_of_rig(const RunEnergy& energy) {
+    const engine::Works& works = *energy.rig->works;
+    const double error = analysis::error_of(works);
+    return {{"input", sum_of(works.input)},
+            {"base", sum_of(works.base)},
+            {"kinetic", sum_of(works.kinetic)},
+            {"spring", sum_of(works.spring)},
+            {"viscous", sum_of(works.viscous)},
+            {"dry", sum_of(works.dry)},
+            {"belt", sum_of(works.belt)},
+            {"impacts", sum_of(works.impacts)},
+            {"acts", works.acts},
+            {"error", error},
+            {"flow", works.flow},
+            {"closure", works.flow > 0 ? std::fabs(error) / works.flow : 0}};
+}
 
 void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool part) {
     const motion::Work& work = balance.work;
@@ -81,6 +122,7 @@ void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool p
 }
 
 NamedNumbers total(const RunEnergy& own) {
+    if (own.rig) return total_of_rig(own);
     NamedNumbers numbers;
     add_balance(numbers, own.energy.total, is_part(own));
     if (!is_part(own)) {
@@ -90,12 +132,14 @@ NamedNumbers total(const RunEnergy& own) {
 }
 
 template <auto member>
-NamedNumbers stored(const RunEnergy& own) {
+std::optional<NamedNumbers> stored(const RunEnergy& own) {
+    if (own.rig) return {};
     const auto& energy = own.energy.*member;
-    return {{"kinetic", energy.kinetic}, {"spring", energy.spring}};
+    return NamedNumbers{{"kinetic", energy.kinetic}, {"spring", energy.spring}};
 }
 
-std::vector<NamedNumbers> half_cycles(const RunEnergy& own) {
+std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
+    if (own.rig) return {};
     std::vector<NamedNumbers> list;
     for (const auto& half : own.energy.half_cycles) {
         list.push_back({{"t_start", half.t_start},
@@ -107,8 +151,64 @@ std::vector<NamedNumbers> half_cycles(const RunEnergy& own) {
     return list;
 }
 
+/// energy.load, energy.clutch
+int part_of_energy(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) return 0;
+    const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
+    if (energy->rig == nullptr) return 0;
+    const BodiesRun& run = *energy->rig;
+    const engine::Works& works = *run.works;
+    const std::size_t joint = joint_named(L, 2, *run.system, "this energy", energy_class);
+    NamedNumbers numbers{{"spring", works.spring[joint]},
+                         {"viscous", works.viscous[joint]},
+                         {"dry", works.dry[joint]},
+                         {"belt", works.belt[joint]},
+                         {"impacts", works.impacts[joint]}};
+    if (!run.system->is_link(joint)) {
+        numbers.insert(numbers.end(),
+                       {{"input", works.input[joint]}, {"base", works.base[joint]}, {"kinetic", works.kinetic[joint]}});
+    }
+    lua::push_value(L, numbers);
+    return 1;
+}
+
+std::string text_of_rig(const RunEnergy& energy) {
+    const BodiesRun& run = *energy.rig;
+    const engine::Works& works = *run.works;
+    const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * works.flow ? 0.0 : x; };
+    std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
+                                   run.run.t_start, run.run.t_stop);
+    std::size_t width = 5;
+    for (const model::Joint& joint : run.system->joints) width = std::max(width, joint.name.size());
+    const auto line = [&](const std::string& name, double input, double kinetic, double spring, double viscous,
+                          double dry) {
+        text += fmt::format("  {:<{}}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}\n", name, width, shown(input),
+                            shown(kinetic), shown(spring), shown(viscous), shown(dry));
+    };
+    text += fmt::format("  {:<{}}{:>13}{:>13}{:>13}{:>13}{:>13}\n", "", width, "input", "kinetic", "spring", "viscous",
+                        "dry");
+    for (std::size_t j = 0; j < run.system->joints.size(); ++j) {
+        const bool link = run.system->is_link(j);
+        line(run.system->joints[j].name, link ? 0 : works.input[j], link ? 0 : works.kinetic[j], works.spring[j],
+             works.viscous[j], works.dry[j]);
+    }
+    line("all", sum_of(works.input), sum_of(works.kinetic), sum_of(works.spring), sum_of(works.viscous),
+         sum_of(works.dry));
+    for (const auto& [name, value] : {std::pair("belt", sum_of(works.belt)), std::pair("base", sum_of(works.base)),
+                                      std::pair("acts", works.acts)}) {
+        if (value != 0) text += fmt::format("  {} {:.6g} added by belt, base and acts\n", name, shown(value));
+    }
+    if (const double lost = sum_of(works.impacts); lost != 0) {
+        text += fmt::format("  impacts {:.6g} were lost\n", shown(lost));
+    }
+    const double error = analysis::error_of(works);
+    text += fmt::format("  error {:.2g}, {:.1g} of {:.6g} that flowed", error,
+                        works.flow > 0 ? std::fabs(error) / works.flow : 0, works.flow);
+    return text;
+}
+
 std::string text_of_energy(const RunEnergy& energy) {
-    return analysis::text(energy.energy, units_of(*energy.run));
+    return energy.rig ? text_of_rig(energy) : analysis::text(energy.energy, units_of(*energy.run));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -197,19 +297,26 @@ constexpr lua::Member energy_members[] = {
 const lua::Class energy_class = {
     "energy",
     {"run:energy() -> energy",
-     "The energy balance of a run: total, half_cycles, and columns as long as run.t. It cannot "
-     "be changed.",
-     DINAL_ENERGY "print(#energy.half_cycles)  --> 4"},
+     "The energy balance of a run: total, half_cycles, and columns as long as run.t. It cannot be changed. For a run of "
+     "several bodies they are sums, half_cycles, start and finish are nil, and for each body and link there is a table "
+     "of its input, base, kinetic, spring, viscous, dry, belt and impacts: energy.clutch.dry. run.clutch:energy() has "
+     "the columns and half cycles of one.",
+     DINAL_ENERGY "print(#energy.half_cycles)  --> 4\n"
+                  "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } },\n"
+                  "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
+                  "print(rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }:energy().clutch.dry)  --> 3.375"},
     energy_members,
-    nullptr,
+    lua::guarded<part_of_energy>,
     energy_card};
 
 #undef DINAL_ENERGY
 
 std::string energy_card(lua_State* L, int index, const terminal::Display& screen) {
+    const RunEnergy& energy = **lua::test<EnergyHandle>(L, index);
+    if (energy.rig) return text_of_rig(energy);
     constexpr std::size_t name_and_number = 23;
     std::string card;
-    const std::string whole = terminal::spelled(text_of_energy(**lua::test<EnergyHandle>(L, index)), screen);
+    const std::string whole = terminal::spelled(text_of_energy(energy), screen);
     for (std::string_view rest = whole; !rest.empty();) {
         const std::string_view line = rest.substr(0, rest.find('\n'));
         const bool fits = text::columns(line) < screen.width || !line.starts_with(' ');
@@ -219,34 +326,69 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     return text::wrapped(card, screen.width - 1);
 }
 
-namespace {
-
-EnergyHandle push_energy(lua_State* L, const RunHandle& run) {
-    if (run->whole) works_of(L, run->whole);  // with the torques between the rows
-    const analysis::Whose whose = !run->whole || !run->whole->system->named ? analysis::Whose::all
-                                  : run->whole->system->is_link(run->joint) ? analysis::Whose::link
-                                                                            : analysis::Whose::body;
+/// By running it again, now with a look at all torques between the events.
+const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
+    if (run->works) return *run->works;
+    if (!(run->run.t_stop > run->run.t_start)) {
+        lua::raise(L, "run:energy(): there is no motion to integrate over: the run ended where it started");
+    }
+    const motion::Window window{run->run.t_start, run->run.t_stop};
     lua::CallState call(L);
-    auto energy = analysis::energy_of(run->trajectory, whose);
+    name_functions(call, *run->system, run->drive);
+    call.set_span(window.end - window.start);
+    const motion::Monitor monitor = [](double) { return !lua::interrupt_requested(); };
+    const motion::Grid rows = motion::Grid::none().within(window).value();
+    engine::AssemblyRun again = engine::run({.system = *run->system,
+                                             .drive = run->drive,
+                                             .window = window,
+                                             .rows = rows,
+                                             .monitor = monitor,
+                                             .limits = {},
+                                             .works = true});
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
-    auto handle =
-        std::make_shared<RunEnergy>(RunEnergy{run, lua::value_or_raise(L, "run:energy()", std::move(energy))});
-    lua::push<EnergyHandle>(L, handle);
-    return handle;
+    double off = 0, size = 0;
+    for (std::size_t k = 0; k < again.carry->y.size(); ++k) {
+        off = std::max(off, std::fabs(again.carry->y[k] - run->run.carry->y[k]));
+        size = std::max(size, std::fabs(run->run.carry->y[k]));
+    }
+    constexpr double same = 1e-6;
+    if (!(off <= same * size)) {
+        lua::raise(
+            L,
+            "run:energy(): repeating the run for its energy gave another motion: a controller keeps a memory from "
+            "one run to the next");
+    }
+    run->legs = again.history;
+    run->works = std::make_shared<const engine::Works>(std::move(again.works));
+    return *run->works;
 }
 
-}  // namespace
-
 lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
-    push_energy(L, run);
+    if (run->whole) works_of(L, run->whole);  // with the torques between the rows
+    lua::CallState call(L);
+    auto energy = analysis::energy_of(run->trajectory, whose_of(*run));
+    call.check();
+    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{
+                                   .run = run, .energy = lua::value_or_raise(L, "run:energy()", std::move(energy))}));
     return {};
 }
 
-Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run) {
-    const EnergyHandle energy = push_energy(L, run);
-    make_columns(L, *energy);
-    lua_pop(L, 1);
-    return energy->columns;
+lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
+    works_of(L, run);
+    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{.rig = run}));
+    return {};
+}
+
+std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run) {
+    std::vector<RunHandle> kept;
+    std::vector<const motion::Trajectory*> parts;
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        kept.push_back(part_of(run, j));
+        parts.push_back(&kept.back()->trajectory);
+    }
+    const bool moved = run->run.t_stop > run->run.t_start;
+    return analysis::explain(*run->system, run->drive, run->run, parts, moved ? &works_of(L, run) : nullptr);
 }
 
 void register_energy(lua_State* L) {

@@ -117,11 +117,9 @@ inline std::size_t acceleration_column(const BodiesRun& run, std::size_t body) {
 }
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
-/// What was put in and taken, torque times rad; in rig_energy.cpp. Raises when a function of the run does.
+/// What was put in and taken, torque times rad; in bind_energy.cpp. Raises when a function of the run does.
 const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
 lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
-/// Of a run as seen from one of the bodies or links; in bind_energy.cpp.
-Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run);
 std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
 /// Pushes the run of one body without a name, continued.
 int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked);

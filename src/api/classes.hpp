@@ -8,7 +8,6 @@ namespace dinal::api {
 /// One for each bind_*.cpp: called with the table `dinal` on the top of the stack, which it leaves there.
 void register_system(lua_State* L);
 void register_bodies(lua_State* L);
-void register_rig_energy(lua_State* L);
 void register_friction(lua_State* L);
 void register_spring(lua_State* L);
 void register_excitation(lua_State* L);
@@ -32,7 +31,6 @@ extern const lua::Class system_functions;    // system, nondimensional
 extern const lua::Class system_class;        // sys
 extern const lua::Class rig_class;           // what system{ bodies } returns
 extern const lua::Class bodies_run_class;    // its run
-extern const lua::Class rig_energy_class;    // what rig_run:energy() returns
 extern const lua::Class friction_module;     // friction.stribeck ...
 extern const lua::Class friction_class;      // what they return
 extern const lua::Class spring_module;       // spring.polynomial

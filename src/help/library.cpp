@@ -16,13 +16,11 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_bodies,     api::register_friction,
-    api::register_spring, api::register_excitation, api::register_run,
-    api::register_energy, api::register_load,       api::register_theory,
-    api::register_vector, api::register_data,       api::register_progress,
-    api::register_plot,   api::register_steady,     api::register_identify,
-    api::register_sweep,  api::register_integrator, api::register_lab,
-    api::register_report, api::register_rig_energy, register_help,
+    api::register_system,     api::register_bodies, api::register_friction, api::register_spring,
+    api::register_excitation, api::register_run,    api::register_energy,   api::register_load,
+    api::register_theory,     api::register_vector, api::register_data,     api::register_progress,
+    api::register_plot,       api::register_steady, api::register_identify, api::register_sweep,
+    api::register_integrator, api::register_lab,    api::register_report,   register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -69,7 +67,6 @@ const Section all_sections[] = {
     {"A run", "run", &api::run_class},
     {"A steady motion", "s", &api::steady_class},
     {"The energy of a run", "energy", &api::energy_class},
-    {"The energy of several bodies", "rig_energy", &api::rig_energy_class},
     {"Files", "", &api::load_functions},
     {"Theory", "theory", &api::theory_module},
     {"Vectors", "vector", &api::vector_module},
