@@ -174,10 +174,35 @@ void write_animation(const lua::Options& options, const std::string& name, const
     if (animation_viewer != nullptr) animation_viewer(drawn, Shown::in_file);
 }
 
-Animation animation_of(lua_State* L, const lua::Options& options, const AnimateOptions& asked, const RunHandle& run) {
-    const auto take = asked_take(options, asked, run->trajectory, most_frames_in_file);
-    const animation::Scene scene = asked_scene(L, options, run, take, asked_units(L, options).value_or(units_of(*run)));
+std::vector<animation::Scene> one_below_the_other(const animation::Scene& scene) {
+    return {scene};
+}
+
+Animation drawn(const animation::Scene& scene) {
     return {animation::animated_svg(scene), animation::title_of(scene)};
+}
+
+Animation drawn(const animation::RigScene& rig) {
+    return {animation::animated_svg(rig), animation::title_of(rig.bodies.front())};
+}
+
+/// Into the file, to whoever views animations, or into the terminal; `make` makes the scene of a part of the run.
+template <class Make>
+int animate(lua_State* L, const lua::Options& options, const motion::Trajectory& run, const Make& make) {
+    AnimateOptions asked;
+    options.fill(asked);
+    const bool writes = asked.file || animation_viewer != nullptr;
+    if (!writes) refuse_no_terminal(options);
+    const animation::Take take = asked_take(options, asked, run, writes ? most_frames_in_file : most_frames);
+    if (asked.file) {
+        write_animation(options, *asked.file, [&] { return drawn(make(take)); });
+    } else if (writes) {
+        animation_viewer(drawn(make(take)), Shown::here);
+    } else {
+        play(one_below_the_other(make(take)), asked);
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);
+    }
+    return 0;
 }
 
 }  // namespace
@@ -191,57 +216,26 @@ Animation animation_at(lua_State* L, int index) {
     const lua::Options options(L, index + 1, report_animate_call);
     AnimateOptions asked;
     options.fill(asked);
-    return animation_of(L, options, asked, run);
+    const auto take = asked_take(options, asked, run->trajectory, most_frames_in_file);
+    return drawn(asked_scene(L, options, run, take, asked_units(L, options).value_or(units_of(*run))));
 }
 
 int animate_run(lua_State* L) {
     lua::refuse_in_worker(L, "run:animate");
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:animate()");
     const lua::Options options(L, 2, animate_call);
-    AnimateOptions asked;
-    options.fill(asked);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
-    if (!asked.file && animation_viewer != nullptr) {
-        animation_viewer(animation_of(L, options, asked, run), Shown::here);
-        return 0;
-    }
-    if (!asked.file) {
-        refuse_no_terminal(options);
-        const auto take = asked_take(options, asked, run->trajectory, most_frames);
-        play({asked_scene(L, options, run, take, units)}, asked);
-        if (lua::interrupt_requested()) {
-            lua::raise_interrupted(L);
-        }
-        return 0;
-    }
-    write_animation(options, *asked.file, [&] { return animation_of(L, options, asked, run); });
-    return 0;
+    return animate(L, options, run->trajectory,
+                   [&](const animation::Take& take) { return asked_scene(L, options, run, take, units); });
 }
 
 int animate_bodies(lua_State* L) {
     lua::refuse_in_worker(L, "run:animate");
     const BodiesRunHandle run = lua::self<BodiesRunHandle>(L, 1, "run:animate()");
     const lua::Options options(L, 2, animate_call);
-    AnimateOptions asked;
-    options.fill(asked);
     const model::Units units = asked_units(L, options).value_or(run->system->units);
-    const bool writes = asked.file || animation_viewer != nullptr;
-    if (!writes) refuse_no_terminal(options);
-    const auto take =
-        asked_take(options, asked, part_of(run, 0)->trajectory, writes ? most_frames_in_file : most_frames);
-    const auto made = [&] {
-        const animation::RigScene rig = asked_rig(L, options, run, take, units);
-        return Animation{animation::animated_svg(rig), animation::title_of(rig.bodies.front())};
-    };
-    if (asked.file) {
-        write_animation(options, *asked.file, made);
-    } else if (writes) {
-        animation_viewer(made(), Shown::here);
-    } else {
-        play(one_below_the_other(asked_rig(L, options, run, take, units)), asked);
-        if (lua::interrupt_requested()) lua::raise_interrupted(L);
-    }
-    return 0;
+    return animate(L, options, part_of(run, 0)->trajectory,
+                   [&](const animation::Take& take) { return asked_rig(L, options, run, take, units); });
 }
 
 }  // namespace dinal::api

@@ -63,36 +63,23 @@ std::vector<std::string> body_names(const model::Assembly& system) {
 
 // ---- system{ bodies, links }
 
-/// The names in the table on the top, in their order: a table has none of its own.
-std::vector<std::string> sorted_names(lua_State* L, const lua::Options& options, const char* option) {
-    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
-    std::vector<std::string> names;
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        if (lua_type(L, -2) != LUA_TSTRING) options.wrong(option);
-        if (lua_type(L, -1) != LUA_TTABLE) {
-            const std::string name = fmt::format("{}.{}", option, lua_tostring(L, -2));
+/// The names under the option, each of a table; that stays on the top.
+std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& options, const char* option) {
+    options.push(option);
+    std::vector<std::string> names = names_in_table(L, options, option);
+    for (const std::string& name : names) {
+        check_name(options, option, name, bodies_run_class);
+        if (lua_getfield(L, -1, name.c_str()) != LUA_TTABLE) {
             options.fail(
-                {.sentence = fmt::format(
-                     "{} must be a table such as {}, got {}", name,
-                     std::string_view(option) == "links" ? "{ \"motor\", \"load\", k = 90 }" : "{ I = 1, Rd = 0.4 }",
-                     lua::describe(L, -1)),
+                {.sentence = fmt::format("{}.{} must be a table such as {}, got {}", option, name,
+                                         *option == 'l' ? "{ \"motor\", \"load\", k = 90 }" : "{ I = 1, Rd = 0.4 }",
+                                         lua::describe(L, -1)),
                  .option = option,
                  .culprit = lua::written(L, -1)});
         }
-        names.emplace_back(lua_tostring(L, -2));
+        lua_pop(L, 1);
     }
-    std::sort(names.begin(), names.end());
     return names;
-}
-
-void check_name(const lua::Options& options, const char* option, const std::string& name) {
-    const auto refuse = [&](std::string_view why) {
-        options.fail({.sentence = fmt::format("{}: {}", option, why), .option = option, .culprit = name});
-    };
-    if (!lua::is_name(name)) refuse(fmt::format("'{}' is not a name; use letters, digits and _", name));
-    for (const lua::Member& member : bodies_run_class.members) {
-        if (name == member.name) refuse(fmt::format("'{}' is a name that a run has already; take another", name));
-    }
 }
 
 /// All of a joint but its bodies, from the table on the top.
@@ -131,8 +118,7 @@ int body_index(const lua::Options& options, const model::Assembly& system, const
 }  // namespace
 
 int push_bodies(lua_State* L, const lua::Options& options) {
-    options.push("bodies");
-    const std::vector<std::string> names = sorted_names(L, options, "bodies");
+    const std::vector<std::string> names = tables_by_name(L, options, "bodies");
     if (names.empty()) options.wrong("bodies");
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
@@ -142,7 +128,6 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     model::Assembly system;
     system.units = asked_units(L, options).value_or(model::Units());
     for (std::size_t i = 0; i < names.size(); ++i) {
-        check_name(options, "bodies", names[i]);
         lua_getfield(L, -1, names[i].c_str());
         BodyNumbers numbers;
         model::Joint joint = read_joint(L, "system: bodies." + names[i], body_options, numbers);
@@ -153,9 +138,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     }
     lua_pop(L, 1);
     if (options.has("links")) {
-        options.push("links");
-        for (const std::string& name : sorted_names(L, options, "links")) {
-            check_name(options, "links", name);
+        for (const std::string& name : tables_by_name(L, options, "links")) {
             if (std::find(names.begin(), names.end(), name) != names.end()) {
                 options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
             }
@@ -208,12 +191,8 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
     const auto number = [&](const char* name) -> std::optional<double> {
         options.push(name);
         const bool is = lua_type(L, -1) == LUA_TNUMBER;
-        const double value = lua_tonumber(L, -1);
         lua_pop(L, 1);
-        if (!is) return {};
-        if (!std::isfinite(value)) options.fail(name, fmt::format("{} = {} must be finite", name, value));
-        if (value < 0) options.fail(name, fmt::format("{} = {:.6g} must not be negative", name, value));
-        return value;
+        return is ? std::optional(options.number(name)) : std::nullopt;
     };
     friction.normal = varying("normal");
     options.push("friction");
@@ -292,10 +271,8 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
     lua_pop(L, 1);
 }
 
-/// What relays look at must be there.
-void check_relays_of(const lua::Options& options, const model::Assembly& system, const engine::Drive& drive,
-                     std::size_t body) {
-    using Of = model::RelayController::Of;
+/// What relays can look at: theta.load, velocity.load and the states.
+std::vector<std::string> names_for_relays(const model::Assembly& system, const engine::Drive& drive) {
     std::vector<std::string> known;
     if (!system.named) known = {"theta", "velocity"};
     for (const char* kind : {"theta.", "velocity."}) {
@@ -304,18 +281,7 @@ void check_relays_of(const lua::Options& options, const model::Assembly& system,
         }
     }
     for (const model::OwnState& state : drive.states) known.push_back(state.name);
-    for (const model::Component& component : drive.loads[body].components()) {
-        const auto* relay = model::controller_of<model::RelayController>(component);
-        if (relay == nullptr || relay->of == Of::function) continue;
-        const std::string of = relay->of == Of::theta ? "theta" : relay->of == Of::velocity ? "velocity" : relay->state;
-        if (std::find(known.begin(), known.end(), of) != known.end()) continue;
-        options.fail(
-            {.sentence = fmt::format("M{}{}: the relay looks at '{}'; in this run it may look at {}",
-                                     system.named ? "." : "", system.bodies[body].name, of, fmt::join(known, ", ")),
-             .option = "M",
-             .culprit = of,
-             .cure = text::did_you_mean(of, known)});
-    }
+    return known;
 }
 
 }  // namespace
@@ -368,7 +334,8 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
     drive.base = read_motion(L, options, "base");
     drive.states = read_states(L, options);
     drive.events = read_events(L, options);
-    for (std::size_t i = 0; i < n; ++i) check_relays_of(options, system, drive, i);
+    for (std::size_t i = 0; i < n; ++i)
+        check_relays(options, drive.loads[i], names_for_relays(system, drive), part("M", i));
     return drive;
 }
 
@@ -493,11 +460,9 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     part.on_belt = system.named || !run.drive.belts[joint].components().empty();
     if (system.joints[joint].walls) part.restitution = system.joints[joint].walls->restitution;
     if (run.run.history != nullptr && run.run.history->bytes() > 0) {
-        model::OscillatorParameters parameters;
-        parameters.inertia = system.bodies[first].inertia;
-        parameters.stiffness = system.joints[joint].stiffness, parameters.damping = system.joints[joint].damping;
+        model::OscillatorParameters parameters = parameters_of(system, joint);
         parameters.friction = system.joints[joint].friction.law, parameters.spring = system.joints[joint].spring;
-        parameters.walls = system.joints[joint].walls, parameters.units = system.units;
+        parameters.walls = system.joints[joint].walls;
         auto oscillator = model::Oscillator::make(parameters);
         if (oscillator) part.course = std::make_shared<PartCourse>(oscillator.value(), whole, joint);
     }
@@ -505,6 +470,14 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
 }
 
 }  // namespace
+
+model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint) {
+    const model::Joint& own = system.joints[joint];
+    model::OscillatorParameters parameters;
+    parameters.inertia = system.bodies[static_cast<std::size_t>(own.first)].inertia;
+    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
+    return parameters;
+}
 
 lua::Vector table_column(const BodiesRunHandle& run, std::size_t column) {
     const bool empty = run->run.table.size() == 0;
@@ -581,10 +554,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
     push_bodies_run(L, run);
     note(run.get());
     if (call.failed() || interrupted) {
-        lua::push_dinal_table(L);
-        lua_insert(L, -2);
-        lua_setfield(L, -2, "partial");
-        lua_pop(L, 1);
+        set_partial(L);
         call.failed() ? call.raise_error() : lua::raise_interrupted(L);
     }
     return 1;

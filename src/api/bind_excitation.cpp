@@ -232,37 +232,28 @@ int values(lua_State* L) {
     return lua::push_vector(L, std::move(result));
 }
 
-int next_break(lua_State* L) {
-    const model::Excitation& excitation = self_excitation(L, "e:next_break(t)");
-    const double t = lua::finite_argument(L, 2, "e:next_break(t): t");
+double next_break(lua_State* L, const model::Excitation& excitation, double t) {
     const lua::CallState call(L);
-    lua_pushnumber(L, excitation.next_break(t));
-    return 1;
+    return excitation.next_break(t);
 }
 
-int obstacle(lua_State* L) {
-    const model::Excitation& excitation = self_excitation(L, "e:obstacle()");
+std::optional<std::string> obstacle(lua_State* L, const model::Excitation& excitation) {
     const lua::CallState call(L);
     for (const model::Component& component : excitation.components()) {
         const auto* script = std::get_if<model::Scripted>(&component.term);
         if (script == nullptr) continue;
         auto* function = dynamic_cast<lua::LuaFunction*>(script->function.get());
-        const std::string why = function == nullptr ? "it has a memory" : function->obstacle();
-        if (!why.empty()) return lua::push_text(L, why);
+        if (function == nullptr) return "it has a memory";
+        if (std::string why = function->obstacle(); !why.empty()) return why;
     }
-    lua_pushnil(L);
-    return 1;
+    return {};
 }
 
-int delay(lua_State* L) {
-    const model::Excitation& excitation = self_excitation(L, "e:delay(1.5)");
-    if (model::has_memory(excitation)) {
-        lua::fail(L, "e:delay(d)",
-                  {"an excitation with memory cannot be delayed as a whole; excitation.sampled has an "
-                   "option delay, and excitation.delayed uses the past motion"});
-    }
-    lua::push(L, excitation.delayed(lua::finite_argument(L, 2, "e:delay(d): d")));
-    return 1;
+text::Expected<model::Excitation> delay(const model::Excitation& excitation, double d) {
+    if (!model::has_memory(excitation)) return excitation.delayed(d);
+    return text::Error{
+        "an excitation with memory cannot be delayed as a whole; excitation.sampled has an option delay, and "
+        "excitation.delayed uses the past motion"};
 }
 
 double window_edge(lua_State* L, int index, std::string_view name) {
@@ -343,15 +334,15 @@ constexpr lua::Member excitation_members[] = {
     {lua::a_method<values>,
      {"e:values(times) -> vector", "The torques at all these times (a table or a vector), without feedback.",
       "print(excitation.ramp{ slope = 3 }:values{ 0, 1, 2 })  --> vector{ 0, 3, 6 }"}},
-    {lua::a_method<next_break>,
+    {lua::a_typed_method<next_break>,
      {"e:next_break(t) -> number", "The first known jump or kink of M after t; math.huge if there is none.",
       "print(excitation.pulse{ at = 1, width = 2 }:next_break(1))  --> 3.0"}},
-    {lua::a_method<obstacle>,
+    {lua::a_typed_method<obstacle>,
      {"e:obstacle() -> string or nil",
       "Why a function in it cannot be read as a formula: the line and the reason. nil if every function is read; "
       "it is then evaluated without Lua, and its conditions on t are breaks.",
       "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):obstacle())  --> nil"}},
-    {lua::a_method<delay>,
+    {lua::a_typed_method<delay>,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
     {lua::a_method<window>,
      {"e:window(from, to) -> excitation", "The excitation for from <= t < to, and 0 outside. The ends may be infinite.",

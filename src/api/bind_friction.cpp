@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "api/classes.hpp"
+#include "api/system_options.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
@@ -48,19 +49,11 @@ int law_of_options(lua_State* L) {
 
 /// One side of asymmetric friction: a table { Rd, Re } of its own.
 laws::Coulomb law_of_side(lua_State* L, const lua::Options& options, const char* name) {
-    options.push(name);
-    if (lua_isnil(L, -1)) {
-        options.missing(name);
-    }
-    if (lua_type(L, -1) != LUA_TTABLE) {
-        options.wrong(name);
-    }
     const std::string call = fmt::format("{}: {}", laws::asymmetric_call.name, name);
     const text::Call own{call.c_str(), "{ Rd = 0.3, Re = 0.4 }", laws::coulomb_options};
-    laws::CoulombTorques torques;
-    lua::Options(L, lua_gettop(L), own).fill(torques);
-    lua_pop(L, 1);
-    return torques.law();
+    const auto torques = asked_table<laws::CoulombTorques>(L, options, name, own);
+    if (!torques) options.missing(name);
+    return torques->law();
 }
 
 int asymmetric_law(lua_State* L) {
@@ -88,15 +81,12 @@ int law_of_function(lua_State* L) {
     return push_law(L, options, law);
 }
 
-int law_torque(lua_State* L) {
-    const model::Friction& law = lua::self<model::Friction>(L, 1, "law:torque(velocity)");
-    const double velocity = lua::finite_argument(L, 2, "law:torque(velocity): velocity");
+double law_torque(lua_State* L, const model::Friction& law, double velocity) {
     lua::CallState call(L);
     const double torque =
         law.sliding(velocity < 0 ? model::Motion::backward : model::Motion::forward, std::fabs(velocity));
     call.check();
-    lua_pushnumber(L, torque);
-    return 1;
+    return torque;
 }
 
 constexpr lua::Member friction_module_members[] = {
@@ -147,7 +137,7 @@ constexpr lua::Member friction_module_members[] = {
 };
 
 constexpr lua::Member friction_members[] = {
-    {lua::a_method<law_torque>,
+    {lua::a_typed_method<law_torque>,
      {"law:torque(velocity) -> number",
       "The friction torque at this velocity (rad per time unit); at 0 the limit from above.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }:torque(-2))  --> 0.3"}},

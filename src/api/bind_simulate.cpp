@@ -62,7 +62,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                       .integrator = {},
                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
-    check_relays(options, task.excitation, task.extras);
+    check_relays(options, task.excitation, seen_by_relays(task.extras));
     if (!asked.t_end && asked.times.empty()) {
         options.missing("t_end");
     }
@@ -190,13 +190,6 @@ void note_readings(Run& run) {
     if (all_seen) run.trajectory.gap = 0;
 }
 
-void set_partial(lua_State* L) {
-    lua::push_dinal_table(L);
-    lua_insert(L, -2);
-    lua_setfield(L, -2, "partial");
-    lua_pop(L, 1);
-}
-
 }  // namespace
 
 std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
@@ -283,41 +276,36 @@ std::shared_ptr<model::UserFunction> function_at(lua_State* L, const lua::Option
     return function;
 }
 
-void check_state_name(const lua::Options& options, const std::string& name) {
+}  // namespace
+
+void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of_run) {
     const auto refuse = [&](std::string_view why) {
-        options.fail({.sentence = fmt::format("states: {}", why), .option = "states", .culprit = name});
+        options.fail({.sentence = fmt::format("{}: '{}' {}", option, name, why), .option = option, .culprit = name});
     };
-    if (!lua::is_name(name)) {
-        refuse(fmt::format("'{}' is not a name; use letters, digits and _", name));
-    }
-    for (const lua::Member& member : run_class.members) {
-        if (name == member.name) {
-            refuse(fmt::format("'{}' is a name that a run has already; take another", name));
-        }
+    if (!lua::is_name(name)) refuse("is not a name; use letters, digits and _");
+    for (const lua::Member& member : of_run.members) {
+        if (name == member.name) refuse("is a name that a run has already; take another");
     }
 }
 
-}  // namespace
+std::vector<std::string> names_in_table(lua_State* L, const lua::Options& options, const char* option) {
+    if (!lua_istable(L, -1) || lua_rawlen(L, -1) > 0) options.wrong(option);
+    return lua::text_keys(L, -1);
+}
+
+void set_partial(lua_State* L) {
+    lua::push_dinal_table(L);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "partial");
+    lua_pop(L, 1);
+}
 
 std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options) {
     std::vector<model::OwnState> states;
     if (!options.has("states")) return states;
     options.push("states");
-    if (lua_type(L, -1) != LUA_TTABLE) {
-        options.wrong("states");
-    }
-    std::vector<std::string> names;
-    lua_pushnil(L);
-    while (lua_next(L, -2) != 0) {
-        if (lua_type(L, -2) != LUA_TSTRING) {
-            options.wrong("states");
-        }
-        names.emplace_back(lua_tostring(L, -2));
-        lua_pop(L, 1);
-    }
-    std::sort(names.begin(), names.end());  // a table has no order
-    for (const std::string& name : names) {
-        check_state_name(options, name);
+    for (const std::string& name : names_in_table(L, options, "states")) {
+        check_name(options, "states", name, run_class);
         const std::string of = "states." + name, call = fmt::format("{}: {}", options.call(), of);
         lua_getfield(L, -1, name.c_str());
         if (lua_type(L, -1) != LUA_TTABLE) {
@@ -403,6 +391,12 @@ model::Extras read_extras(lua_State* L, const lua::Options& options) {
             .base = read_motion(L, options, "base")};
 }
 
+std::vector<std::string> seen_by_relays(const model::Extras& extras) {
+    std::vector<std::string> names = names_of(extras);
+    names.insert(names.begin(), {"theta", "velocity"});
+    return names;
+}
+
 std::vector<std::string> names_of(const model::Extras& extras) {
     std::vector<std::string> names;
     for (const model::OwnState& state : extras.states) {
@@ -411,18 +405,19 @@ std::vector<std::string> names_of(const model::Extras& extras) {
     return names;
 }
 
-void check_relays(const lua::Options& options, const model::Excitation& excitation, const model::Extras& extras) {
-    if (!excitation.has_script()) return;
-    const std::vector<std::string> names = names_of(extras);
-    for (const model::Component& c : excitation.components()) {
-        const auto* relay = model::controller_of<model::RelayController>(c);
-        if (relay == nullptr || relay->of != model::RelayController::Of::state ||
-            std::find(names.begin(), names.end(), relay->state) != names.end()) {
-            continue;
-        }
-        options.fail("states", fmt::format("M has a relay of '{}', which is not a state of this run; its states are "
-                                           "{{ {} }}",
-                                           relay->state, fmt::join(names, ", ")));
+void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,
+                  const std::string& M) {
+    using Of = model::RelayController::Of;
+    for (const model::Component& component : excitation.components()) {
+        const auto* relay = model::controller_of<model::RelayController>(component);
+        if (relay == nullptr || relay->of == Of::function) continue;
+        const std::string of = relay->of == Of::theta ? "theta" : relay->of == Of::velocity ? "velocity" : relay->state;
+        if (std::find(known.begin(), known.end(), of) != known.end()) continue;
+        options.fail({.sentence = fmt::format("{}: the relay looks at '{}'; in this run it may look at {}", M, of,
+                                              fmt::join(known, ", ")),
+                      .option = "M",
+                      .culprit = of,
+                      .cure = text::did_you_mean(of, known)});
     }
 }
 

@@ -65,14 +65,11 @@ int polynomial_spring(lua_State* L) {
 
 /// What a function of theta answers that may be a user's.
 template <double (model::Spring::*get)(double) const>
-int at_theta(lua_State* L) {
-    const model::Spring& spring = lua::self<model::Spring>(L, 1, "spring:torque(theta)");
-    const double theta = lua::finite_argument(L, 2, "spring:torque(theta): theta");
+double at_theta(lua_State* L, const model::Spring& spring, double theta) {
     lua::CallState call(L);
     const double value = (spring.*get)(theta);
     call.check();
-    lua_pushnumber(L, value);
-    return 1;
+    return value;
 }
 
 constexpr lua::Member spring_module_members[] = {
@@ -86,10 +83,10 @@ constexpr lua::Member spring_module_members[] = {
 };
 
 constexpr lua::Member spring_members[] = {
-    {lua::a_method<at_theta<&model::Spring::torque>>,
+    {lua::a_typed_method<at_theta<&model::Spring::torque>>,
      {"spring:torque(theta) -> number", "The restoring torque at theta (rad).",
       "print(spring.polynomial{ [1] = -1, [3] = 1 }:torque(0.5))  --> -0.375"}},
-    {lua::a_method<at_theta<&model::Spring::energy>>,
+    {lua::a_typed_method<at_theta<&model::Spring::energy>>,
      {"spring:energy(theta) -> number",
       "The stored energy at theta (rad): the integral of the torque from 0, torque times rad.",
       "print(spring.polynomial{ [3] = 0.5 }:energy(1))  --> 0.125"}},

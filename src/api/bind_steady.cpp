@@ -430,7 +430,7 @@ int steady_of_system(lua_State* L) {
                                       .initial = {asked.theta0, asked.velocity0},
                                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
-    check_relays(options, question.excitation, question.extras);
+    check_relays(options, question.excitation, seen_by_relays(question.extras));
     if (!asked.period) find_period(L, question);
     question.drive = drive_or_fail(L, options, question, asked.period);
     return push_steady(L, options, std::move(question));

@@ -116,10 +116,6 @@ int nondimensional(lua_State* L) {
     return push_system(L, options, parameters);
 }
 
-const model::Oscillator& system_self(lua_State* L, const char* call) {
-    return lua::self<model::Oscillator>(L, 1, call);
-}
-
 /// What a spring gives: nil without one.
 template <auto get>
 std::optional<double> with_spring(const model::Oscillator& system) {
@@ -134,28 +130,16 @@ std::optional<lua::NamedNumbers> walls_of(const model::Oscillator& system) {
     return numbers;
 }
 
-int friction_ratio(lua_State* L) {
-    const model::Oscillator& sys = system_self(L, "sys:friction_ratio(Mc)");
-    const double torque = lua::finite_argument(L, 2, "sys:friction_ratio(Mc): Mc");
-    if (torque == 0) {
-        lua::fail(L, "sys:friction_ratio(Mc)",
-                  {.sentence = "Mc = 0 must not be zero; for a free motion it is "
-                               "sys:characteristic_torque(theta0, velocity0)",
-                   .culprit = lua::written(L, 2)});
-    }
-    lua_pushnumber(L, sys.friction_ratio(torque));
-    return 1;
+text::Expected<double> friction_ratio(const model::Oscillator& sys, double Mc) {
+    if (Mc != 0) return sys.friction_ratio(Mc);
+    return text::Error{.sentence =
+                           "Mc = 0 must not be zero; for a free motion it is "
+                           "sys:characteristic_torque(theta0, velocity0)",
+                       .culprit = "0"};
 }
 
-int characteristic_torque(lua_State* L) {
-    const model::Oscillator& sys = system_self(L, "sys:characteristic_torque(theta0, velocity0)");
-    model::State initial;
-    initial.theta = lua::finite_argument(L, 2, "sys:characteristic_torque(theta0, velocity0): theta0");
-    if (!lua_isnoneornil(L, 3)) {
-        initial.velocity = lua::finite_argument(L, 3, "sys:characteristic_torque(theta0, velocity0): velocity0");
-    }
-    lua_pushnumber(L, sys.characteristic_torque(initial));
-    return 1;
+double characteristic_torque(const model::Oscillator& sys, double theta0, std::optional<double> velocity0) {
+    return sys.characteristic_torque({theta0, velocity0.value_or(0)});
 }
 
 constexpr lua::Member system_module_members[] = {
@@ -185,10 +169,10 @@ constexpr lua::Member system_members[] = {
       "A copy of the system with some parameters changed.",
       "sys = system{ I = 1, k = 4, Rd = 0.5 }\nprint(sys:with{ Rd = 1 })  --> system{ I = 1, k = 4, Rd = 1, Re = 1 }",
       {&with_call}}},
-    {lua::a_method<friction_ratio>,
+    {lua::a_typed_method<friction_ratio>,
      {"sys:friction_ratio(Mc) -> number", "The dry friction ratio gamma = Rd/|Mc| for the characteristic torque Mc.",
       "print(system{ I = 1, k = 4, Rd = 0.5 }:friction_ratio(2))  --> 0.25"}},
-    {lua::a_method<characteristic_torque>,
+    {lua::a_typed_method<characteristic_torque>,
      {"sys:characteristic_torque(theta0, velocity0 = 0) -> number",
       "The characteristic torque Mc = k sqrt(theta0^2 + (velocity0/omega0)^2) of the free motion that starts at theta0 "
       "(rad) with velocity0 (rad per time unit).",
@@ -312,23 +296,12 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
 }
 
 std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options) {
+    const int top = lua_gettop(L);
     options.push("walls");
-    if (lua_isnil(L, -1)) {
-        lua_pop(L, 1);
-        return std::nullopt;
-    }
-    if (lua_type(L, -1) != LUA_TTABLE) {
-        options.wrong("walls");
-    }
     lua_pushnil(L);
-    if (lua_next(L, -2) == 0) {
-        lua_pop(L, 1);
-        return std::nullopt;
-    }
-    lua_pop(L, 2);
-    const auto walls = lua::read<model::Walls>(L, lua_gettop(L), model::walls_call);
-    lua_pop(L, 1);
-    return walls;
+    const bool is_empty = lua_istable(L, -2) && lua_next(L, -2) == 0;
+    lua_settop(L, top);
+    return is_empty ? std::nullopt : asked_table<model::Walls>(L, options, "walls", model::walls_call);
 }
 
 /// A new Rd or Re makes another law one of Coulomb's again; Re goes with Rd where the two were one number.
@@ -370,18 +343,8 @@ int system_with(lua_State* L) {
 }
 
 std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options) {
-    if (!options.has("units")) {
-        return std::nullopt;
-    }
-    options.push("units");
-    if (lua_type(L, -1) != LUA_TTABLE) {
-        options.wrong("units");
-    }
-    auto units = lua::read<model::Units>(L, lua_gettop(L), model::units_call);
-    lua_pop(L, 1);
-    if (const auto wrong = units.complaint()) {
-        options.fail(*wrong);
-    }
+    auto units = asked_table<model::Units>(L, options, "units", model::units_call);
+    if (const auto wrong = units ? units->complaint() : std::nullopt) options.fail(*wrong);
     return units;
 }
 

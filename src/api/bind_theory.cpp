@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -192,13 +192,13 @@ constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 /// A number, or the numbers of a vector.
 class Quantity {
 public:
-    explicit Quantity(double number) : number_(number) {}
-    explicit Quantity(std::span<const double> values) : values_(values.data()) {}
-    double operator[](std::size_t i) const { return values_ != nullptr ? values_[i] : number_; }
+    explicit Quantity(double number) : Quantity(std::vector{number}) {}
+    explicit Quantity(std::vector<double> values)
+        : values_(std::make_shared<const std::vector<double>>(std::move(values))) {}
+    double operator[](std::size_t i) const { return (*values_)[values_->size() == 1 ? 0 : i]; }
 
 private:
-    const double* values_ = nullptr;
-    double number_ = 0;
+    std::shared_ptr<const std::vector<double>> values_;
 };
 
 class TheoryArguments {
@@ -296,31 +296,19 @@ private:
     }
 
     Quantity given(std::string_view name) {
-        const text::Range& range = options_.row(name).range;
         options_.push(name);
-        if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
-            lua_pop(L_, 1);  // the table of options holds it on
-            check_size(name, vector->size());
-            check(name, range, vector->values());
-            return remembered(Quantity(vector->values()));
-        }
-        const bool is_table = lua_type(L_, -1) == LUA_TTABLE;
-        if (!is_table && lua_type(L_, -1) != LUA_TNUMBER && !lua_isnil(L_, -1)) {
+        const bool number = lua_type(L_, -1) == LUA_TNUMBER;
+        if (!number && !lua_istable(L_, -1) && lua::test<lua::Vector>(L_, -1) == nullptr) {
             options_.wrong(name, "a finite number or a vector");
         }
+        std::vector<double> values =
+            number ? std::vector{options_.number(name)} : lua::numbers_with_gaps_at(L_, -1, options_.call(), name);
         lua_pop(L_, 1);
-        if (is_table) {
-            tables_.push_back(options_.numbers(name));
-            check_size(name, tables_.back().size());
-            check(name, range, tables_.back());
-            return remembered(Quantity(tables_.back()));
+        if (!number) {
+            check_size(name, values.size());
+            check(name, options_.row(name).range, values);
         }
-        return remembered(Quantity(options_.number(name)));
-    }
-
-    Quantity remembered(const Quantity& quantity) {
-        quantities_.push_back(quantity);
-        return quantity;
+        return quantities_.emplace_back(std::move(values));
     }
 
     [[nodiscard]] bool has_nan(std::size_t i) const {
@@ -347,7 +335,6 @@ private:
     lua_State* L_;
     const text::Call& call_;
     lua::Options options_;
-    std::deque<std::vector<double>> tables_;  // numbers of Lua tables; a deque does not move them
     std::vector<Quantity> quantities_;
     std::size_t size_ = 1;
     std::string_view sized_by_;  // the first option that is a vector

@@ -23,12 +23,14 @@ inline constexpr text::Option friction_options[] = {
     {.name = "Rd",
      .unit = "torque",
      .otherwise = "0",
+     .range = text::not_negative,
      .meaning = "dry friction while sliding: a number, an excitation or a function of t, theta, velocity, z",
      .object = "excitation",
      .wanted = varying_wanted},
     {.name = "Re",
      .unit = "torque",
      .otherwise = "Rd",
+     .range = text::not_negative,
      .meaning = "breakaway torque: a number, at least Rd, an excitation or a function of t, theta, velocity, z",
      .object = "excitation",
      .wanted = varying_wanted},
@@ -106,6 +108,8 @@ struct BodiesRun {
     mutable std::shared_ptr<const motion::engine::History> legs = {};  ///< with them: the motion with its torques
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+/// As of one mass on the ground, with the linear spring and damping of the joint alone.
+model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
 /// A column of its table.
 lua::Vector table_column(const BodiesRunHandle& run, std::size_t column);
 /// The columns of a run: the first state, and the acceleration of a body.

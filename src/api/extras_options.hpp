@@ -74,8 +74,20 @@ model::Excitation read_motion(lua_State* L, const lua::Options& options, const c
 model::Extras read_extras(lua_State* L, const lua::Options& options);
 
 std::vector<std::string> names_of(const model::Extras& extras);
+/// What a relay can look at in a run of one body.
+std::vector<std::string> seen_by_relays(const model::Extras& extras);
 
-/// Raises when a relay looks at a state that is not among these.
-void check_relays(const lua::Options& options, const model::Excitation& excitation, const model::Extras& extras);
+/// Raises when a relay in M looks at something else than these; `M` is how the excitation is called.
+void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,
+                  const std::string& M = "M");
+
+/// Raises when the name under the option is no name of Lua, or one that a run of the class has.
+void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of_run);
+
+/// The names in the table on the top, sorted, since a table has no order.
+std::vector<std::string> names_in_table(lua_State* L, const lua::Options& options, const char* option);
+
+/// Sets dinal.partial to the value on the top, which is popped.
+void set_partial(lua_State* L);
 
 }  // namespace dinal::api

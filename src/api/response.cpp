@@ -311,7 +311,7 @@ public:
         question.initial = {asked.theta0, asked.velocity0};
         question.periods = asked.periods.value_or(0);
         question.extras = read_extras(L_, own);
-        check_relays(own, question.excitation, question.extras);
+        check_relays(own, question.excitation, seen_by_relays(question.extras));
         const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
         // Between the values M is taken for what it is at them.
         const auto known = is_value ? std::nullopt : drive_between(question);

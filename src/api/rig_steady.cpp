@@ -27,15 +27,6 @@ void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work wor
     call.check();
 }
 
-/// As of one mass on the ground: what sentences and columns want to know of it.
-model::Oscillator oscillator_of(const model::Assembly& system, std::size_t joint) {
-    model::OscillatorParameters parameters;
-    parameters.inertia = system.bodies[static_cast<std::size_t>(system.joints[joint].first)].inertia;
-    parameters.stiffness = system.joints[joint].stiffness, parameters.damping = system.joints[joint].damping;
-    parameters.units = system.units;
-    return model::Oscillator::make(parameters).value();
-}
-
 analysis::Drive repeats_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
                                 const std::optional<double>& period) {
     std::optional<analysis::Drive> drive;
@@ -59,7 +50,7 @@ SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion mot
 SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint) {
     const model::Assembly& system = *rig->question.system;
     const analysis::RigMotion& whole = rig->motion;
-    analysis::SteadyQuestion question{.system = oscillator_of(system, joint),
+    analysis::SteadyQuestion question{.system = model::Oscillator::make(parameters_of(system, joint)).value(),
                                       .excitation = {},
                                       .drive = rig->question.repeats,
                                       .periods = rig->question.periods};
@@ -111,9 +102,11 @@ SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion mot
         rig->run = std::move(run);
     }
     if (!question.system->named) return seen_from(rig, 0);
-    auto whole = std::make_shared<Steady>(
-        Steady{{.system = oscillator_of(*question.system, 0), .excitation = {}, .drive = question.repeats},
-               rig->motion.facts});
+    auto whole =
+        std::make_shared<Steady>(Steady{{.system = model::Oscillator::make(parameters_of(*question.system, 0)).value(),
+                                         .excitation = {},
+                                         .drive = question.repeats},
+                                        rig->motion.facts});
     whole->rig = std::move(rig);
     return whole;
 }

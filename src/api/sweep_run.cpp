@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "api/classes.hpp"
+#include "api/extras_options.hpp"
 #include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "lua/foreign.hpp"
@@ -548,25 +549,20 @@ private:
         return told(std::move(columns));
     }
 
-    void set_partial() const {
-        lua::push_dinal_table(L_);
-        push_data(L_, told());
-        lua_setfield(L_, -2, "partial");
-        lua_pop(L_, 1);
-    }
-
     [[noreturn]] void stop() {
         if (files_ && lua::stop_requested() != lua::Stop::memory) {
             const WritesOn writes;
             static_cast<void>(files_->write_incomplete());
         }
         if (!files_) keep_unfinished(L_, print_, results_);
-        set_partial();
+        push_data(L_, told());
+        set_partial(L_);
         lua::raise_interrupted(L_);
     }
 
     [[noreturn]] void fail() {
-        set_partial();
+        push_data(L_, told());
+        set_partial(L_);
         trouble_->sentence += fmt::format(
             "; finished points are kept in '{}' and dinal.partial, and the same call continues", files_->folder());
         lua::fail(L_, task_.call, *trouble_);

@@ -20,6 +20,17 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
 /// What the option `spring` says; none when it is absent.
 std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options);
 
+/// What an option says that is a table of options; none when it is absent.
+template <class T>
+std::optional<T> asked_table(lua_State* L, const lua::Options& options, const char* name, const text::Call& call) {
+    if (!options.has(name)) return {};
+    options.push(name);
+    if (!lua_istable(L, -1)) options.wrong(name);
+    auto read = lua::read<T>(L, lua_gettop(L), call);
+    lua_pop(L, 1);
+    return read;
+}
+
 /// What the option `walls` says; none when it is absent, or an empty table.
 std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options);
 

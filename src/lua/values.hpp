@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -194,7 +195,10 @@ void push_result(lua_State* L, Result result) {
 
 template <auto function, class Result, class... T, std::size_t... i>
 int call_with_state(lua_State* L, Result (* /*type*/)(lua_State*, T...), std::index_sequence<i...> /*places*/) {
-    push_result(L, function(L, argument<std::remove_cvref_t<T>>(L, static_cast<int>(i) + 1)...));
+    // Braces: the object is looked at before its arguments.
+    const std::tuple<decltype(argument<std::remove_cvref_t<T>>(L, 1))...> arguments{
+        argument<std::remove_cvref_t<T>>(L, static_cast<int>(i) + 1)...};
+    push_result(L, std::apply([L](const auto&... each) { return function(L, each...); }, arguments));
     return 1;
 }
 template <auto function, class Result, class... T>

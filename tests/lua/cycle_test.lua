@@ -161,7 +161,7 @@ test("a function of the time needs a period, and one that does not depend on it 
     raises_here(function() sys:steady{ states = { e = { rate = 3 } } } end, "sys:steady: states.e: rate must be")
     equal(sys:steady{ belt = function() return 0 end, theta0 = 2 }.status, "rest")
     raises_here(function() sys:steady{ M = excitation.relay{ on = 1, off = 2, amplitude = { 1, 2 }, of = "x" } } end,
-        "not a state of this run")
+        "the relay looks at 'x'")
 end)
 
 finish()

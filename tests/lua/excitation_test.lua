@@ -54,7 +54,7 @@ assert(e.ramp{}:window(0, 3):delay(2)(4) == 2 and e.ramp{}:delay(2):window(0, 3)
 assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
 raises(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
 raises(function() return step:window(3) end, "to must be a number, got nil")
-raises(function() return step.delay(1) end, "use a colon: e:delay(1.5)")
+raises(function() return step.delay(1) end, "use a colon: e:delay(d)")
 
 -- Samples may be splines, and periodic.
 do

@@ -133,7 +133,7 @@ test("what is wrong is one sentence with the name of the option", function()
         { { events = { { when = math.sin, act = 1 } } }, "events[1]: act must be a function" },
         { { belt = function(t, theta) return theta end }, "belt must be a number, an excitation or a function of t alone" },
         { { integrator = integrator.dinal1989 { h = 0.1 }, belt = 1 }, "integrator.dinal1989" },
-        { { M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is not a state of this run" },
+        { { M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M: the relay looks at 'heat'; in this run it may look at theta, velocity" },
     })
     raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
     refuses(excitation.relay, {

@@ -61,7 +61,7 @@ end)
 
 test("dinal is a table whose members are globals, and a user may overwrite these", function()
     equal(require "dinal", dinal)
-    for _, name in ipairs { "system", "nondimensional", "excitation", "integrator", "trajectory", "theory", "vector", "help" } do
+    for _, name in ipairs { "system", "nondimensional", "excitation", "integrator", "theory", "vector", "help" } do
         assert(_G[name] ~= nil and rawget(dinal, name) == _G[name], name)
     end
     local saved = {}
