@@ -103,33 +103,20 @@ constexpr text::Call spectrum_call{
     "run:spectrum", "run:spectrum{ of = \"theta\", window = \"hann\" }", spectrum_options, true, nullptr, "of"};
 
 struct PoincareOptions {
-    std::optional<double> period = {}, frequency = {}, omega = {};
     std::optional<double> from = {};
 };
 
-constexpr text::Option poincare_options[] = {
-    {.name = "period",
-     .unit = "time units",
-     .otherwise = "that of M",
-     .range = text::positive,
-     .meaning = "time between samples; needed if the period of M is not known, as for a Lua function",
-     .filled = text::fills<&PoincareOptions::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .range = text::positive,
-     .meaning = "1/period, instead of period",
-     .filled = text::fills<&PoincareOptions::frequency>},
-    {.name = "omega",
-     .unit = "rad per time unit",
-     .range = text::positive,
-     .meaning = "2 pi/period, instead of period",
-     .filled = text::fills<&PoincareOptions::omega>},
+constexpr text::Option poincare_period[] = {
+    period_row("time between samples; needed if the period of M is not known, as for a Lua function", "that of M"),
+};
+constexpr text::Option poincare_from[] = {
     {.name = "from",
      .unit = "time units",
      .otherwise = "the beginning",
      .meaning = "the time of the first sample, after the transient; it also chooses the phase",
      .filled = text::fills<&PoincareOptions::from>},
 };
+constexpr auto poincare_options = text::joined(poincare_period, instead_of_period, poincare_from);
 
 constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }", poincare_options};
 
@@ -239,8 +226,7 @@ int poincare_of_run(lua_State* L) {
     PoincareOptions asked;
     options.fill(asked);
     const motion::Trajectory& trajectory = run->trajectory;
-    const double period =
-        period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(period_of_run(*run));
+    const double period = asked_period(options).value_or(period_of_run(*run));
     if (!(period > 0)) {
         options.fail("period", "give a period: the M of this run has no known one");
     }

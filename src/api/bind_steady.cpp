@@ -294,13 +294,8 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
     asking(L, steady->question.extras, [&](const motion::Monitor& monitor) {
         steady->motion = analysis::steady_motion(steady->question, monitor);
     });
-    const model::Outcome outcome = steady->motion.outcome;
-    if (outcome == model::Outcome::unresolved || outcome == model::Outcome::chattering ||
-        outcome == model::Outcome::excitation_not_finite) {
-        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
-    }
+    check_motion(options, steady->motion);
     note(nullptr);
-    check_function(options, steady->motion);
     lua::push<SteadyHandle>(L, steady);
     return 1;
 }
@@ -317,7 +312,12 @@ model::State state_at_period(const motion::Trajectory& trajectory, const analysi
 
 }  // namespace
 
-void check_function(const lua::Options& options, const analysis::SteadyMotion& motion) {
+void check_motion(const lua::Options& options, const analysis::SteadyMotion& motion) {
+    using model::Outcome;
+    if (motion.outcome == Outcome::unresolved || motion.outcome == Outcome::chattering ||
+        motion.outcome == Outcome::excitation_not_finite) {
+        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(motion.outcome))});
+    }
     if (motion.contradiction) options.fail({model::sentence_with_cure(*motion.contradiction)});
 }
 
@@ -397,14 +397,15 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const a
     return *drive;
 }
 
-std::optional<double> period_or_fail(const lua::Options& options, const std::optional<double>& period,
-                                     const std::optional<double>& frequency, const std::optional<double>& omega) {
-    if ((period ? 1 : 0) + (frequency ? 1 : 0) + (omega ? 1 : 0) > 1) {
+std::optional<double> asked_period(const lua::Options& options) {
+    PeriodOptions asked;
+    options.fill(asked);
+    if ((asked.period ? 1 : 0) + (asked.frequency ? 1 : 0) + (asked.omega ? 1 : 0) > 1) {
         options.fail("period", "period, frequency and omega exclude each other; give one of them");
     }
-    if (frequency) return 1 / *frequency;
-    if (omega) return 2 * std::numbers::pi / *omega;
-    return period;
+    if (asked.frequency) return 1 / *asked.frequency;
+    if (asked.omega) return 2 * std::numbers::pi / *asked.omega;
+    return asked.period;
 }
 
 /// Functions in M that repeat say so, as native terms or by themselves.
@@ -418,7 +419,7 @@ int steady_of_system(lua_State* L) {
     const lua::Options options(L, 2, steady_call);
     SteadyOptions asked;
     options.fill(asked);
-    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
+    const std::optional<double> period = asked_period(options);
     if (const auto& walls = system.walls()) {
         if (const auto beyond = walls->crossed_by(asked.theta0)) options.fail(*beyond);
     }
@@ -431,8 +432,8 @@ int steady_of_system(lua_State* L) {
                                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
     check_relays(options, question.excitation, seen_by_relays(question.extras));
-    if (!asked.period) find_period(L, question);
-    question.drive = drive_or_fail(L, options, question, asked.period);
+    if (!period) find_period(L, question);
+    question.drive = drive_or_fail(L, options, question, period);
     return push_steady(L, options, std::move(question));
 }
 
@@ -442,7 +443,7 @@ int steady_of_run(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     if (run->whole) options.fail({"ask the system for its steady motion: rig:steady{ ... } with the M of this run"});
-    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
+    const std::optional<double> period = asked_period(options);
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
     const source::Task& task = *run->origin;
     analysis::SteadyQuestion question{.system = task.system,
@@ -453,8 +454,8 @@ int steady_of_run(lua_State* L) {
                                       .extras = task.extras};
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
-    if (!asked.period) find_period(L, question);
-    question.drive = drive_or_fail(L, options, question, asked.period);
+    if (!period) find_period(L, question);
+    question.drive = drive_or_fail(L, options, question, period);
     if (question.extras.any()) {
         question.drive.start = std::max(question.drive.start, ended.t_stop);
     } else if (!question.is_timeless()) {

@@ -37,7 +37,6 @@ namespace {
 struct BifurcationOptions {
     double skip = 200;
     double keep = 100;
-    std::optional<double> period = {}, frequency = {}, omega = {};
 };
 
 constexpr text::Option bifurcation_only_options[] = {
@@ -47,21 +46,9 @@ constexpr text::Option bifurcation_only_options[] = {
          "a function of a point, a table such as { a = 0.5 }, that returns options of sys:simulate, with system = "
          "... and, if need be, another period; for several bodies also of = \"load\", the body to record",
      .wanted = "a function of a point that returns { system = ..., M = ... }"},
-    {.name = "period",
-     .unit = "time units",
-     .range = text::positive,
-     .meaning = "time between samples; needed unless `at` returns { period = ... }; or frequency, or omega, instead",
-     .filled = text::fills<&BifurcationOptions::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .range = text::positive,
-     .meaning = "1/period",
-     .filled = text::fills<&BifurcationOptions::frequency>},
-    {.name = "omega",
-     .unit = "rad per time unit",
-     .range = text::positive,
-     .meaning = "2 pi/period",
-     .filled = text::fills<&BifurcationOptions::omega>},
+    period_row("time between samples; needed unless `at` returns { period = ... }"),
+    instead_of_period[0],
+    instead_of_period[1],
     {.name = "skip",
      .range = {"be a whole number from 0 to 1e6", [](double x) { return text::is_whole(x, 0, 1e6); }},
      .meaning = "periods to skip while the motion settles",
@@ -248,7 +235,7 @@ int bifurcation(lua_State* L) {
         }
     }
     check_file_of_sweep(options, of_workers);
-    const double period = period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(0);
+    const double period = asked_period(options).value_or(0);
     const auto keep = static_cast<std::size_t>(asked.keep);
     const auto adapt = [&](lua_State* worker) {
         lua_pushnumber(worker, period);

@@ -303,7 +303,7 @@ public:
         const lua::Options own(L_, lua_gettop(L_), at_call);
         SteadyOptions asked{.theta0 = asked_.theta0, .velocity0 = asked_.velocity0};
         own.fill(asked);
-        asked.period = period_or_fail(own, asked.period, asked.frequency, asked.omega);
+        const std::optional<double> period = asked_period(own);
         if (const auto* system = own.object<model::Oscillator>("system")) question.system = *system;
         own.push("M");
         question.excitation = to_excitation(L_, -1, "sys:response: at: M", "M");
@@ -316,9 +316,9 @@ public:
         // Between the values M is taken for what it is at them.
         const auto known = is_value ? std::nullopt : drive_between(question);
         if (known) {
-            question.drive = {known->start, asked.period.value_or(known->period)};
+            question.drive = {known->start, period.value_or(known->period)};
         } else {
-            question.drive = drive_or_fail(L_, own, question, asked.period);
+            question.drive = drive_or_fail(L_, own, question, period);
         }
         lua_pop(L_, 1);
         return question;

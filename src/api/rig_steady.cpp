@@ -118,10 +118,9 @@ int steady_of_rig(lua_State* L) {
     const lua::Options options(L, 2, rig_steady_call);
     SteadyOptions asked;
     options.fill(asked);
-    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     question.drive = asked_drive(L, options, *question.system);
     question.periods = asked.periods.value_or(0);
-    question.repeats = repeats_or_fail(L, options, question, asked.period);
+    question.repeats = repeats_or_fail(L, options, question, asked_period(options));
     const auto settles = [](const model::Excitation& load) {
         return model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load);
     };
@@ -137,12 +136,7 @@ int steady_of_rig(lua_State* L) {
     analysis::RigMotion found;
     asking_bodies(L, question,
                   [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
-    const model::Outcome outcome = found.facts.outcome;
-    if (outcome == model::Outcome::unresolved || outcome == model::Outcome::chattering ||
-        outcome == model::Outcome::excitation_not_finite) {
-        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
-    }
-    check_function(options, found.facts);
+    check_motion(options, found.facts);
     lua::push<SteadyHandle>(L, made(question, std::move(found)));
     return 1;
 }

@@ -19,9 +19,35 @@
 
 namespace dinal::api {
 
+/// A period in one of three ways.
+struct PeriodOptions {
+    std::optional<double> period = {}, frequency = {}, omega = {};
+};
+constexpr text::Option period_row(const char* meaning, const char* otherwise = text::its_own) {
+    return {.name = "period",
+            .unit = "time units",
+            .otherwise = otherwise,
+            .range = text::positive,
+            .meaning = meaning,
+            .filled = text::fills<&PeriodOptions::period>};
+}
+inline constexpr text::Option instead_of_period[] = {
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .range = text::positive,
+     .meaning = "1/period, instead of period",
+     .filled = text::fills<&PeriodOptions::frequency>},
+    {.name = "omega",
+     .unit = "rad per time unit",
+     .range = text::positive,
+     .meaning = "2 pi/period, instead of period",
+     .filled = text::fills<&PeriodOptions::omega>},
+};
+/// The period that they say. Raises when there are more of them.
+std::optional<double> asked_period(const lua::Options& options);
+
 /// What is asked besides M.
 struct SteadyOptions {
-    std::optional<double> period = {}, frequency = {}, omega = {};
     std::optional<int> periods = {};
     double theta0 = 0;
     double velocity0 = 0;
@@ -29,23 +55,11 @@ struct SteadyOptions {
 inline constexpr text::Range whole_periods{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
 inline constexpr text::Option period_options[] = {
-    {.name = "period",
-     .unit = "time units",
-     .range = text::positive,
-     .meaning =
-         "the period of M, belt and base, needed if one of them is a Lua function of t; the period of a limit cycle "
-         "is found",
-     .filled = text::fills<&SteadyOptions::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .range = text::positive,
-     .meaning = "1/period, instead of period",
-     .filled = text::fills<&SteadyOptions::frequency>},
-    {.name = "omega",
-     .unit = "rad per time unit",
-     .range = text::positive,
-     .meaning = "2 pi/period, instead of period",
-     .filled = text::fills<&SteadyOptions::omega>},
+    period_row(
+        "the period of M, belt and base, needed if one of them is a Lua function of t; the period of a limit cycle "
+        "is found"),
+    instead_of_period[0],
+    instead_of_period[1],
     {.name = "periods",
      .range = whole_periods,
      .meaning = "periods of M in one of the motion, for a subharmonic one; by default as many as are found, up to 32",
@@ -147,12 +161,8 @@ void asking(lua_State* L, Work work) {
 analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
                               const std::optional<double>& period);
 
-/// The period as given by one of three options. Raises when there are more of them.
-std::optional<double> period_or_fail(const lua::Options& options, const std::optional<double>& period,
-                                     const std::optional<double>& frequency, const std::optional<double>& omega);
-
-/// Raises when M was found to be no function of its arguments.
-void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);
+/// Raises when the motion could not be followed, or M was found to be no function of its arguments.
+void check_motion(const lua::Options& options, const analysis::SteadyMotion& motion);
 
 /// sys:steady{ ... } and run:steady{ ... }
 int steady_of_system(lua_State* L);
