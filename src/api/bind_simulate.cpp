@@ -293,6 +293,13 @@ std::vector<std::string> names_in_table(lua_State* L, const lua::Options& option
     return lua::text_keys(L, -1);
 }
 
+int push_function(lua_State* L, const lua::Options& options, const char* name) {
+    options.push(name);
+    if (lua_isnil(L, -1)) options.missing(name);
+    if (!lua::is_callable(L, -1)) options.wrong(name);
+    return lua_gettop(L);
+}
+
 void set_partial(lua_State* L) {
     lua::push_dinal_table(L);
     lua_insert(L, -2);

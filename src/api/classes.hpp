@@ -20,11 +20,8 @@ void register_vector(lua_State* L);
 void register_data(lua_State* L);
 void register_steady(lua_State* L);
 void register_identify(lua_State* L);
-void register_report(lua_State* L);
-void register_sweep(lua_State* L);
 void register_progress(lua_State* L);
 void register_plot(lua_State* L);
-void register_lab(lua_State* L);
 
 // Defined in the bind_*.cpp of that name.
 extern const lua::Class system_functions;    // system, nondimensional
@@ -48,15 +45,10 @@ extern const lua::Class vector_class;        // v
 extern const lua::Class steady_class;        // what sys:steady{ ... } returns
 extern const lua::Class identify_functions;  // identify
 extern const lua::Class fit_class;           // what it returns
-extern const lua::Class report_functions;    // report
-extern const lua::Class report_class;        // r
 extern const lua::Class data_module;         // data{ ... }
 extern const lua::Class data_class;          // d
-extern const lua::Class sweep_functions;     // sweep
 extern const lua::Class plot_functions;      // plot
 extern const lua::Class picture_class;       // what plot{ ..., show = false } returns
 extern const lua::Class progress_functions;  // progress
-extern const lua::Class lab_module;          // lab.number ...
-extern const lua::Class check_functions;     // check
 
 }  // namespace dinal::api

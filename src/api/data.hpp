@@ -13,6 +13,7 @@
 
 #include "files/csv.hpp"
 #include "lua/bind.hpp"
+#include "lua/options.hpp"
 #include "lua/vector.hpp"
 #include "model/event.hpp"
 #include "model/units.hpp"
@@ -125,6 +126,12 @@ DataColumn read_column(lua_State* L, const char* call, const std::string& name);
 /// item i is no such pair.
 std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<DataColumn(const std::string&)>& read,
                                    const std::function<void(lua_Integer)>& no_pair);
+
+/// The parameters that the option `over` names, with their values: one at least, with different names.
+std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& options);
+
+/// The one or two names under `over` of a response, and their lists of numbers; raises errors.
+std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options);
 
 /// The data as a Lua object on the top of the stack; returns 1, as a function with one result.
 int push_data(lua_State* L, Data data);

@@ -87,6 +87,9 @@ void check_name(const lua::Options& options, const char* option, const std::stri
 /// The names in the table on the top, sorted, since a table has no order.
 std::vector<std::string> names_in_table(lua_State* L, const lua::Options& options, const char* option);
 
+/// Pushes the option of this name, a function, and returns its index.
+int push_function(lua_State* L, const lua::Options& options, const char* name);
+
 /// Sets dinal.partial to the value on the top, which is popped.
 void set_partial(lua_State* L);
 

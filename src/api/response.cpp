@@ -15,7 +15,6 @@
 #include "api/bind_excitation.hpp"
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
-#include "api/sweep_options.hpp"
 #include "model/lowered.hpp"
 #include "text/sentences.hpp"
 #include "theory/den_hartog.hpp"

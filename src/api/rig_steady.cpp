@@ -9,7 +9,6 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
-#include "api/sweep_options.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 

@@ -4,11 +4,14 @@
 #include "api/classes.hpp"
 #include "errors/error_remarks.hpp"
 #include "help/help.hpp"
+#include "lab/lab_course.hpp"
+#include "lab/report.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
 #include "source/value_text.hpp"
+#include "sweep/sweep_run.hpp"
 #include "text/version.hpp"
 
 namespace dinal::help {
@@ -19,8 +22,8 @@ constexpr void (*register_functions[])(lua_State*) = {
     api::register_system,     api::register_bodies, api::register_friction, api::register_spring,
     api::register_excitation, api::register_run,    api::register_energy,   api::register_load,
     api::register_theory,     api::register_vector, api::register_data,     api::register_progress,
-    api::register_plot,       api::register_steady, api::register_identify, api::register_sweep,
-    api::register_integrator, api::register_lab,    api::register_report,   register_help,
+    api::register_plot,       api::register_steady, api::register_identify, sweep::register_sweep,
+    api::register_integrator, lab::register_lab,    lab::register_report,   register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -75,14 +78,14 @@ const Section all_sections[] = {
     {"Named columns", "d", &api::data_class},
     {"Identification", "", &api::identify_functions},
     {"A fit", "fit", &api::fit_class},
-    {"Sweeps", "", &api::sweep_functions},
-    {"Reports", "", &api::report_functions},
-    {"A report", "r", &api::report_class},
+    {"Sweeps", "", &sweep::sweep_functions},
+    {"Reports", "", &lab::report_functions},
+    {"A report", "r", &lab::report_class},
     {"Progress", "", &api::progress_functions},
     {"Plots", "", &api::plot_functions},
     {"A picture", "picture", &api::picture_class},
-    {"The lab", "lab", &api::lab_module},
-    {"Answers in the lab", "", &api::check_functions},
+    {"The lab", "lab", &lab::lab_module},
+    {"Answers in the lab", "", &lab::check_functions},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };

@@ -1,5 +1,5 @@
 -- The lab course: the systems of a student number, and the verdict on an answer.
--- This file and the sheets (sheets/*.lua) run in a Lua state that no script of a student can reach (src/api/lab_course.cpp).
+-- This file and the sheets (sheets/*.lua) run in a Lua state that no script of a student can reach (src/lab/lab_course.cpp).
 course = { sheets = {} }
 
 --- Adds a sheet; sheets/template.lua explains its fields.

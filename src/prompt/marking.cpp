@@ -21,8 +21,8 @@
 #include <thread>
 #include <vector>
 
-#include "api/lab_course.hpp"
 #include "files/file.hpp"
+#include "lab/lab_course.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"
@@ -412,7 +412,7 @@ int mark(const Arguments& arguments) {
     if (arguments.student.empty() || !fs::is_directory(arguments.student, wrong)) {
         return fail(fmt::format("'{}' is not a folder; for example dinal --mark hand-ins", shown));
     }
-    const auto names = api::lab_question_names();
+    const auto names = lab::lab_question_names();
     if (!names) return fail(names.error().message());
     fs::path folder = fs::absolute(arguments.student).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
@@ -456,10 +456,10 @@ text::Expected<std::string> solutions_of(const std::string& student) {
         return text::Error{"--lab-solutions is for instructors: it needs their file " +
                            (file.empty() ? "~/.config/dinal/lab-course.lua" : file) + " (docs/lab/instructor.md)"};
     }
-    if (*text != api::lab_course_text()) {
+    if (*text != lab::lab_course_text()) {
         return text::Error{file + " is not the course of this program: make it again, as docs/lab/instructor.md says"};
     }
-    return api::lab_solutions(student);
+    return lab::lab_solutions(student);
 }
 
 std::optional<text::Error> add_sheets(const std::string& folder) {
@@ -473,21 +473,21 @@ std::optional<text::Error> add_sheets(const std::string& folder) {
         return text::Error{"--sheets: there is no sheet in '" + folder + "'" + (wrong ? ": " + wrong.message() : "")};
     }
     std::sort(names.begin(), names.end());
-    std::vector<api::LabSheet> sheets;
+    std::vector<lab::LabSheet> sheets;
     for (const std::string& name : names) {
         auto text = files::read_file(name);
         if (!text) return text.error();
         sheets.push_back({name, std::move(text).value()});
     }
-    api::add_lab_sheets(std::move(sheets));
+    lab::add_lab_sheets(std::move(sheets));
     return std::nullopt;
 }
 
 text::Expected<std::string> test_sheet(const std::string& file) {
     auto text = files::read_file(file);
     if (!text) return text.error();
-    api::add_lab_sheets({{file, std::move(text).value()}});
-    auto tested = api::lab_sheet_test();
+    lab::add_lab_sheets({{file, std::move(text).value()}});
+    auto tested = lab::lab_sheet_test();
     if (!tested) return tested.error();
     std::string seen = std::move(tested).value();
     const std::string name = fs::path(file).filename().string();

@@ -13,11 +13,11 @@
 #include <memory>
 #include <string_view>
 
-#include "api/lab_course.hpp"
-#include "api/report.hpp"
 #include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "help/library.hpp"
+#include "lab/lab_course.hpp"
+#include "lab/report.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_headers.hpp"
@@ -206,7 +206,7 @@ bool run_reported_script(lua_State* L, const Arguments& arguments) {
         return run_script(L, arguments);  // there is nothing to report
     }
     std::string errors;
-    api::ScriptReport report(script, errors);
+    lab::ScriptReport report(script, errors);
     bool fine = false;
     {
         const ErrorsInto collected(errors);
@@ -221,7 +221,7 @@ bool run_reported_script(lua_State* L, const Arguments& arguments) {
         return false;
     }
     say(saved.value() + "\n");
-    if (const std::string note = other_number(script, api::lab_number_of(L)); !note.empty()) say_error(note);
+    if (const std::string note = other_number(script, lab::lab_number_of(L)); !note.empty()) say_error(note);
     return fine;
 }
 
@@ -305,12 +305,12 @@ void close_state(lua_State* L) {
 int run(const Arguments& arguments, Kernel kernel) {
     if (!arguments.lab_marks.empty()) {
         const char* script = arguments.has_script() ? arguments.words[arguments.script] : "-";
-        if (const auto wrong = api::note_lab_answers(arguments.lab_marks, script)) {
+        if (const auto wrong = lab::note_lab_answers(arguments.lab_marks, script)) {
             complain(wrong->sentence);
             return exit_code::script_error;
         }
     } else {
-        api::keep_lab_tries([] { return state_file("lab-tries"); });
+        lab::keep_lab_tries([] { return state_file("lab-tries"); });
     }
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
     lua_State* L = state.get();
@@ -327,7 +327,7 @@ int run(const Arguments& arguments, Kernel kernel) {
         complain(take_text(L));
         return failure();
     }
-    if (const auto lost = api::lost_lab_mark()) {
+    if (const auto lost = lab::lost_lab_mark()) {
         complain(lost->sentence);
         program.code = exit_code::script_error;
     }

@@ -13,7 +13,7 @@ MOST_ONE_USER_HEADERS = 41
 
 # The floors of the house, from the top: a room includes itself and rooms below it. Rooms within a room (motion/rk4) stand
 # on the same floor as the room around them.
-FLOORS = ["main", "notebook", "prompt", "python", "help", "api", "errors", "source", "lua", "plots", "files", "analysis", "theory",
+FLOORS = ["main", "notebook", "prompt", "python", "help", "lab", "sweep", "api", "errors", "source", "lua", "plots", "files", "analysis", "theory",
           "motion", "model", "algebra", "terminal", "text"]
 MATHEMATICS = ("text", "algebra", "model", "motion", "theory", "analysis")  # know neither Lua nor the world around them
 WITHOUT_LUA = MATHEMATICS + ("terminal", "files", "plots")

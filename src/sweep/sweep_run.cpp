@@ -1,4 +1,4 @@
-#include "api/sweep_run.hpp"
+#include "sweep/sweep_run.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,6 @@
 #include <thread>
 #include <vector>
 
-#include "api/classes.hpp"
 #include "api/extras_options.hpp"
 #include "files/confinement.hpp"
 #include "files/file.hpp"
@@ -38,7 +37,9 @@
 #include "text/characters.hpp"
 #include "text/words.hpp"
 
-namespace dinal::api {
+namespace dinal::sweep {
+
+using namespace api;
 
 namespace {
 
@@ -1054,4 +1055,4 @@ std::vector<DataColumn> SweepGrid::columns(const std::vector<std::size_t>& point
     return columns;
 }
 
-}  // namespace dinal::api
+}  // namespace dinal::sweep

@@ -14,7 +14,12 @@
 #include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
 
-namespace dinal::api {
+namespace dinal::lab {
+
+/// lab.NAME and check.
+void register_lab(lua_State* L);
+extern const lua::Class lab_module;
+extern const lua::Class check_functions;
 
 class LabCourse {
 public:
@@ -86,4 +91,4 @@ const std::vector<LabMark>& lab_answers();
 /// The wrong values that earlier sessions kept for this question.
 std::vector<double> earlier_wrong_values(std::int64_t number, const std::string& question);
 
-}  // namespace dinal::api
+}  // namespace dinal::lab

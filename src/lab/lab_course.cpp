@@ -1,4 +1,4 @@
-#include "api/lab_course.hpp"
+#include "lab/lab_course.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,9 @@
 #include "lua/worker_state.hpp"
 #include "terminal/progress.hpp"
 
-namespace dinal::api {
+namespace dinal::lab {
+
+using namespace api;
 
 namespace {
 
@@ -586,4 +588,4 @@ void register_lab(lua_State* L) {
     lua::add_functions(L, check_functions);
 }
 
-}  // namespace dinal::api
+}  // namespace dinal::lab

@@ -8,16 +8,12 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "api/classes.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
-#include "api/sweep_options.hpp"
-#include "api/sweep_run.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
@@ -26,9 +22,13 @@
 #include "lua/vector.hpp"
 #include "model/assembly.hpp"
 #include "model/oscillator.hpp"
+#include "sweep/sweep_options.hpp"
+#include "sweep/sweep_run.hpp"
 #include "text/option.hpp"
 
-namespace dinal::api {
+namespace dinal::sweep {
+
+using namespace api;
 
 namespace {
 
@@ -258,7 +258,7 @@ int bifurcation(lua_State* L) {
                                   }}));
 }
 
-int sweep(lua_State* L) {
+int run_sweep(lua_State* L) {
     const lua::Options options(L, 1, sweep_call);
     SweepOptions asked;
     options.fill(asked);
@@ -278,7 +278,7 @@ int sweep(lua_State* L) {
 }
 
 constexpr lua::Member sweep_members[] = {
-    {lua::a_function<sweep>, sweep_doc},
+    {lua::a_function<run_sweep>, sweep_doc},
     {lua::a_function<bifurcation>, bifurcation_doc},
     {lua::a_function<minimise>, minimise_doc},
 };
@@ -455,75 +455,4 @@ int minimise(lua_State* L) {
     return 1;
 }
 
-namespace {
-
-/// The values on the top of the stack.
-DataColumn parameter_on_top(lua_State* L, const lua::Options& options, const std::string& name) {
-    if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {
-        options.fail("over",
-                     fmt::format("over.{} must be a vector or a table of values, got {}", name, lua::describe(L, -1)));
-    }
-    if (lua_istable(L, -1)) {
-        const bool of_words = lua_rawgeti(L, -1, 1) == LUA_TSTRING;
-        lua_pop(L, 1);
-        if (of_words) return read_column(L, options.call(), name);
-    }
-    std::vector<double> numbers = lua::numbers_at(L, -1, options.call(), name);
-    if (numbers.empty()) options.fail("over", fmt::format("{} has no values", name));
-    return column_of(name, std::move(numbers));
-}
-
-}  // namespace
-
-std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& options) {
-    options.push("over");
-    if (lua_isnil(L, -1)) options.missing("over");
-    if (!lua_istable(L, -1)) options.wrong("over");
-    std::vector<DataColumn> parameters = columns_in(
-        L, lua_gettop(L), [&](const std::string& name) { return parameter_on_top(L, options, name); },
-        [&](lua_Integer i) {
-            options.fail("over",
-                         fmt::format("over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", i));
-        });
-    if (parameters.empty()) options.wrong("over");
-    lua_pop(L, 1);
-    double points = 1;
-    std::set<std::string> names;
-    for (const DataColumn& parameter : parameters) {
-        if (parameter.name == "error") {
-            options.fail("over", "'error' is the column of messages: give the parameter another name");
-        }
-        if (!names.insert(parameter.name).second) {
-            options.fail("over", fmt::format("there are two parameters '{}'", parameter.name));
-        }
-        points *= static_cast<double>(parameter.size());
-    }
-    constexpr double most = 1e9;
-    if (points > most) {
-        options.fail({fmt::format("{:.3g} points are more than the {:.0e} that one sweep can hold", points, most)});
-    }
-    return parameters;
-}
-
-std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options) {
-    std::vector<DataColumn> parameters = asked_parameters(L, options);
-    if (parameters.size() > 2) {
-        options.fail("over", fmt::format("over has {} names: a response varies one or two, and sweep varies more",
-                                         parameters.size()));
-    }
-    for (const DataColumn& parameter : parameters) {
-        if (parameter.numbers() == nullptr) {
-            options.fail("over", fmt::format("over.{} must be a list of numbers", parameter.name));
-        }
-    }
-    return parameters;
-}
-
-int push_function(lua_State* L, const lua::Options& options, const char* name) {
-    options.push(name);
-    if (lua_isnil(L, -1)) options.missing(name);
-    if (!lua::is_callable(L, -1)) options.wrong(name);
-    return lua_gettop(L);
-}
-
-}  // namespace dinal::api
+}  // namespace dinal::sweep

@@ -16,13 +16,15 @@
 #include <vector>
 
 #include "api/data.hpp"
-#include "api/sweep_options.hpp"
 #include "files/csv.hpp"
 #include "files/share.hpp"
 #include "lua/options.hpp"
+#include "sweep/sweep_options.hpp"
 #include "text/expected.hpp"
 
-namespace dinal::api {
+namespace dinal::sweep {
+
+using api::Data, api::DataColumn;
 
 // What the points of a sweep gave: named columns that several threads fill, each its own points.
 
@@ -133,6 +135,9 @@ void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked)
 /// program unless it was the last.
 Data swept(lua_State* L, const SweepTask& task);
 
+/// sweep, bifurcation and minimise; in bind_sweep.cpp.
+void register_sweep(lua_State* L);
+extern const lua::Class sweep_functions;
 void register_unfinished_sweep(lua_State* L);
 
 // A sweep in files: chunks that have their final names only when they are whole, in a folder beside the file of the
@@ -193,4 +198,4 @@ private:
     std::optional<std::vector<DataColumn>> result_;
 };
 
-}  // namespace dinal::api
+}  // namespace dinal::sweep

@@ -1,4 +1,4 @@
-#include "api/report.hpp"
+#include "lab/report.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "api/classes.hpp"
-#include "api/lab_course.hpp"
 #include "api/run.hpp"
 #include "files/file.hpp"
+#include "lab/lab_course.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/values.hpp"
@@ -29,7 +29,9 @@
 #include "text/sentences.hpp"
 #include "text/words.hpp"
 
-namespace dinal::api {
+namespace dinal::lab {
+
+using namespace api;
 
 namespace {
 
@@ -567,4 +569,4 @@ void register_report(lua_State* L) {
     lua::add_functions(L, report_functions);
 }
 
-}  // namespace dinal::api
+}  // namespace dinal::lab

@@ -3,14 +3,11 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "api/data.hpp"
 #include "lua/bind.hpp"
-#include "lua/options.hpp"
 #include "text/option.hpp"
 
-namespace dinal::api {
+namespace dinal::sweep {
 
 struct SweepOptions {
     std::optional<double> workers = {};
@@ -115,15 +112,4 @@ inline constexpr lua::Doc sweep_doc{
     "-->   6  0.6  1.5       0.4      0",
     {&sweep_call}};
 
-// The table that sweep and its like take: parameters with values, among options.
-
-/// The parameters that the option `over` names, with their values: one at least, with different names.
-std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& options);
-
-/// The one or two names under `over` of a response, and their lists of numbers; raises errors.
-std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options);
-
-/// Pushes the option of this name, a function, and returns its index.
-int push_function(lua_State* L, const lua::Options& options, const char* name);
-
-}  // namespace dinal::api
+}  // namespace dinal::sweep

@@ -12,7 +12,7 @@
 #include "api/picture.hpp"
 #include "text/expected.hpp"
 
-namespace dinal::api {
+namespace dinal::lab {
 
 struct ReportHeading {
     std::string text;
@@ -31,7 +31,7 @@ struct ReportPicture {
     std::string text;  ///< the same for those who see no pictures
     std::string title = {};
 };
-using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, DataHandle>;
+using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, api::DataHandle>;
 
 struct Report {
     std::string title;
@@ -40,13 +40,18 @@ struct Report {
 };
 using ReportHandle = std::shared_ptr<Report>;
 
+/// report{ ... }.
+void register_report(lua_State* L);
+extern const lua::Class report_functions;
+extern const lua::Class report_class;
+
 /// Calls this with each report that is saved, which then writes no file: --report puts its parts into the page of the
 /// script.
 void take_saved_reports_by(void (*take)(const Report& report));
 
 /// The picture as a report keeps it.
-ReportPicture drawn(const Picture& picture);
-ReportPicture drawn(const Animation& animation);
+ReportPicture drawn(const api::Picture& picture);
+ReportPicture drawn(const api::Animation& animation);
 
 /// One page that needs nothing else: pictures are SVG in it, and it prints on A4.
 std::string html_of(const Report& report);
@@ -85,4 +90,4 @@ private:
     std::size_t taken_ = 0;
 };
 
-}  // namespace dinal::api
+}  // namespace dinal::lab
