@@ -298,7 +298,7 @@ def build():
     """All that Lua has, by its names here. Vectors are arrays, and loops of Python show no progress."""
     made = {}
     for title, name, signature, summary, example, prefix, members in _dinal.sections:
-        is_module = bool(prefix) and any(m["kind"] == "function" for m in members)
+        is_module = bool(prefix) and any(m["kind"] == "function" or (prefix, m["name"]) == (name, "__call") for m in members)
         functions = {python_name(m["name"]): callable_of(m, False, name if is_module else "") for m in members
                      if m["kind"] == "function"}
         if is_module:
