@@ -220,4 +220,38 @@ std::string html_of(const Data& data, std::size_t rows) {
     return data.size() <= rows ? all : all + fmt::format("<p>{} of {}</p>\n", rows, text::counted(data.size(), "row"));
 }
 
+PointGrid::PointGrid(std::vector<DataColumn> parameters)
+    : parameters_(std::move(parameters)), strides_(parameters_.size()) {
+    for (std::size_t i = parameters_.size(); i-- > 0;) {
+        strides_[i] = size_;
+        size_ *= parameters_[i].size();
+    }
+}
+
+std::string PointGrid::text(std::size_t point) const {
+    std::string text;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        text += (i == 0 ? "" : ", ") + parameters_[i].name + " = " + parameters_[i].text(place(i, point));
+    }
+    return text;
+}
+
+void PointGrid::set_fields(lua_State* L, std::size_t point) const {
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        lua::push_text(L, parameters_[i].name);
+        parameters_[i].push(L, place(i, point));
+        lua_rawset(L, -3);
+    }
+}
+
+std::vector<DataColumn> PointGrid::columns(const std::vector<std::size_t>& points) const {
+    std::vector<DataColumn> columns;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        std::vector<std::size_t> places;
+        for (const std::size_t point : points) places.push_back(place(i, point));
+        columns.push_back(parameters_[i].rows(places));
+    }
+    return columns;
+}
+
 }  // namespace dinal::api

@@ -127,6 +127,31 @@ DataColumn read_column(lua_State* L, const char* call, const std::string& name);
 std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<DataColumn(const std::string&)>& read,
                                    const std::function<void(lua_Integer)>& no_pair);
 
+/// The points of a sweep: every combination of the values of its parameters, the last parameter changing fastest.
+class PointGrid {
+public:
+    /// Each column is a parameter with at least one value.
+    explicit PointGrid(std::vector<DataColumn> parameters);
+
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const std::vector<DataColumn>& parameters() const { return parameters_; }
+    /// Which value of the parameter this point has.
+    [[nodiscard]] std::size_t place(std::size_t parameter, std::size_t point) const {
+        return point / strides_[parameter] % parameters_[parameter].size();
+    }
+    /// "r = 0.5, g = 1"
+    [[nodiscard]] std::string text(std::size_t point) const;
+    /// Sets the table on the top of the stack to the parameters of this point.
+    void set_fields(lua_State* L, std::size_t point) const;
+    /// The parameters as columns with a row for each of these points.
+    [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
+
+private:
+    std::vector<DataColumn> parameters_;
+    std::vector<std::size_t> strides_;
+    std::size_t size_ = 1;
+};
+
 /// The parameters that the option `over` names, with their values: one at least, with different names.
 std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& options);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "analysis/steady_facts.hpp"
 #include "api/classes.hpp"
@@ -178,24 +179,6 @@ int body_of_steady(lua_State* L) {
 
 namespace {
 
-using Point = std::vector<double>;  // a value of each parameter
-
-/// All of them, the last parameter fastest.
-std::vector<Point> points_of(const std::vector<DataColumn>& parameters) {
-    std::vector<Point> points{{}};
-    for (const DataColumn& parameter : parameters) {
-        std::vector<Point> longer;
-        for (const Point& point : points) {
-            for (const double x : parameter.numbers()->values()) {
-                longer.push_back(point);
-                longer.back().push_back(x);
-            }
-        }
-        points = std::move(longer);
-    }
-    return points;
-}
-
 /// Options theta0 and velocity0 at `options`, from a motion that was found nearby, where the user gives neither.
 void start_near(lua_State* L, int options, const analysis::RigMotion& near, const model::Assembly& system) {
     for (const char* name : {"theta0", "velocity0"}) {
@@ -214,18 +197,16 @@ void start_near(lua_State* L, int options, const analysis::RigMotion& near, cons
 }
 
 /// What at(point) says, as options of rig:steady, with the system where that is another one: system, options.
-void push_point(lua_State* L, const lua::Options& options, const std::vector<DataColumn>& parameters,
-                const Point& point) {
+void push_point(lua_State* L, const lua::Options& options, const PointGrid& grid, std::size_t point) {
     lua_pushvalue(L, 1);
     options.push("at");
     lua_newtable(L);
-    for (std::size_t i = 0; i < point.size(); ++i) lua::set_number(L, parameters[i].name.c_str(), point[i]);
+    grid.set_fields(L, point);
     lua_call(L, 1, 1);
     if (!lua_istable(L, -1)) {
-        options.fail("at",
-                     fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of rig:steady, "
-                                 "such as {{ belt = {{ load = p.speed }} }}",
-                                 lua::describe(L, -1), parameters.back().name, point.back()));
+        options.fail("at", fmt::format("at returned {} for {}; it must return a table of options of rig:steady, "
+                                       "such as {{ belt = {{ load = p.speed }} }}",
+                                       lua::describe(L, -1), grid.text(point)));
     }
     lua::push_copy(L, -1);  // the user's table stays as it is
     lua_remove(L, -2);
@@ -248,17 +229,18 @@ int response_of_rig(lua_State* L) {
     const AssemblyHandle first = lua::self<AssemblyHandle>(L, 1, rig_response_call.example);
     const lua::Options options(L, 2, rig_response_call);
     push_function(L, options, "at");
-    const std::vector<DataColumn> parameters = varied_in(L, options);
-    const std::vector<Point> points = points_of(parameters);
+    const PointGrid grid(varied_in(L, options));
     if (!first->named) options.fail("over", "a response is of several bodies, or of one with constant Rd and Re");
     constexpr std::array<const char*, 5> kinds{"amplitude", "peak", "lag", "stops", "stuck"};
     std::vector<std::vector<double>> numbers(kinds.size() * first->joints.size());
     std::vector<double> stable;
     std::vector<std::string> status;
     SteadyHandle near;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (i % parameters.back().size() == 0) near = nullptr;
-        push_point(L, options, parameters, points[i]);
+    std::vector<std::size_t> points(grid.size());
+    std::iota(points.begin(), points.end(), std::size_t{0});
+    for (const std::size_t point : points) {
+        if (point % grid.parameters().back().size() == 0) near = nullptr;
+        push_point(L, options, grid, point);
         const int asked = lua_gettop(L);
         if (near) start_near(L, asked, near->rig->motion, *first);
         lua_pushcfunction(L, lua::guarded<steady_of_rig>);
@@ -289,12 +271,9 @@ int response_of_rig(lua_State* L) {
     }
     Data data;
     const ColumnUnits in(first->units);
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-        std::vector<double> values(points.size());
-        std::transform(points.begin(), points.end(), values.begin(), [k](const Point& point) { return point[k]; });
-        data.columns.push_back(column_of(parameters[k].name, std::move(values)));
-        if (parameters.size() > 1) data.parameters.push_back(parameters[k].name);
-    }
+    data.columns = grid.columns(points);
+    for (const DataColumn& parameter : grid.parameters()) data.parameters.push_back(parameter.name);
+    if (data.parameters.size() == 1) data.parameters.clear();
     for (std::size_t j = 0; j < first->joints.size(); ++j) {
         for (std::size_t k = 0; k < kinds.size(); ++k) {
             data.columns.push_back(column_of(fmt::format("{}.{}", first->joints[j].name, kinds[k]),

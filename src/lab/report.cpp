@@ -198,15 +198,6 @@ namespace {
 
 ScriptReport* picture_taker = nullptr;
 
-/// While it lives, files are read and written to their end although the script was stopped.
-class InSpiteOfStop {
-public:
-    InSpiteOfStop() { files::set_stop_question(nullptr); }
-    ~InSpiteOfStop() { files::set_stop_question(lua::interrupt_requested); }
-    InSpiteOfStop(const InSpiteOfStop&) = delete;
-    InSpiteOfStop& operator=(const InSpiteOfStop&) = delete;
-};
-
 std::string stem_of(const std::string& script) {
     const std::string name = script.substr(script.rfind('/') + 1);
     if (name == "-") return "stdin";
@@ -283,7 +274,7 @@ void ScriptReport::take_printed() {
 }
 
 text::Expected<std::string> ScriptReport::save() {
-    const InSpiteOfStop going_on;
+    const lua::InSpiteOfStop going_on;
     take_printed();
     give_back();
     const std::string stem = stem_of(script_);

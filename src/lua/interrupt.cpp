@@ -331,4 +331,12 @@ TimeAllowance::~TimeAllowance() {
     }
 }
 
+InSpiteOfStop::InSpiteOfStop() {
+    files::set_stop_question(nullptr);
+}
+
+InSpiteOfStop::~InSpiteOfStop() {
+    files::set_stop_question(interrupt_requested);
+}
+
 }  // namespace dinal::lua

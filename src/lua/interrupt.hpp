@@ -129,6 +129,15 @@ private:
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.
 void open_coroutines(lua_State* L);
 
+/// While it lives, files are read and written to their end although the script was stopped.
+class InSpiteOfStop {
+public:
+    InSpiteOfStop();
+    ~InSpiteOfStop();
+    InSpiteOfStop(const InSpiteOfStop&) = delete;
+    InSpiteOfStop& operator=(const InSpiteOfStop&) = delete;
+};
+
 /// Which Lua thread runs, for the handler of Ctrl-C: while it lives, `callee` does, called from `caller`.
 class RunningThread {
 public:

@@ -194,7 +194,7 @@ int looks_of_point(lua_State* L) {
 }
 
 /// A row for each look at each of these points; one for a point that failed.
-std::vector<DataColumn> looks_as_rows(const SweepGrid& grid, const SweepResults& results,
+std::vector<DataColumn> looks_as_rows(const PointGrid& grid, const SweepResults& results,
                                       const std::vector<std::size_t>& done, std::size_t keep) {
     std::vector<std::size_t> points;
     std::vector<double> theta, velocity;
@@ -227,7 +227,7 @@ int bifurcation(lua_State* L) {
     options.fill(asked);
     options.fill(of_workers);
     const int function = push_function(L, options, "at");
-    const SweepGrid grid(asked_parameters(L, options));
+    const PointGrid grid(asked_parameters(L, options));
     for (const DataColumn& parameter : grid.parameters()) {
         if (parameter.name == "theta" || parameter.name == "velocity") {
             options.fail(
@@ -263,7 +263,7 @@ int run_sweep(lua_State* L) {
     SweepOptions asked;
     options.fill(asked);
     const int function = push_function(L, options, "run");
-    const SweepGrid grid(asked_parameters(L, options));
+    const PointGrid grid(asked_parameters(L, options));
     check_file_of_sweep(options, asked);
     Data form;
     for (const DataColumn& parameter : grid.parameters()) form.parameters.push_back(parameter.name);

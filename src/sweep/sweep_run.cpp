@@ -47,7 +47,7 @@ namespace {
 
 /// What the workers share.
 struct SweepWork {
-    const SweepGrid& grid;
+    const PointGrid& grid;
     SweepResults& results;
     std::vector<std::size_t> points;  ///< to be done
     long long seed = 0;               ///< of math.random, with the number of the point
@@ -421,7 +421,7 @@ std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
     source::Fingerprint print(L, add_data);
     print.add(std::string_view(task.call));
     for (const double number : task.settings) print.add(number);
-    const SweepGrid& grid = task.grid;
+    const PointGrid& grid = task.grid;
     for (const DataColumn& parameter : grid.parameters()) add_column(print, parameter);
     print.add(task.seed);
     print.add_value(task.function);
@@ -433,7 +433,7 @@ struct Failures {
     std::string place, message;  ///< of the first one: "r = 0.5, g = 1"
 };
 
-Failures failures_in(const Data& data, const SweepGrid& grid) {
+Failures failures_in(const Data& data, const PointGrid& grid) {
     Failures found;
     const std::vector<std::string>& errors = data.columns.back().words();
     for (std::size_t row = 0; row < errors.size(); ++row) {
@@ -453,17 +453,6 @@ std::size_t worker_count(const std::optional<double>& asked, std::size_t points)
 }
 
 const lua::Class unfinished_class = {"unfinished sweep", {"", "", ""}, std::span<const lua::Member>()};
-
-/// Ctrl-C must not stop what is written because of it.
-class WritesOn {
-public:
-    WritesOn() {
-        files::set_stop_question([]() noexcept { return false; });
-    }
-    ~WritesOn() { files::set_stop_question(lua::interrupt_requested); }
-    WritesOn(const WritesOn&) = delete;
-    WritesOn& operator=(const WritesOn&) = delete;
-};
 
 class SweepRun {
 public:
@@ -519,7 +508,7 @@ private:
                        .adapt = task_.adapt};
         if (files_) {
             work.look = [this] {
-                trouble_ = files_->write_complete();
+                trouble_ = files_->write_chunks(false);
                 return !trouble_;
             };
         }
@@ -552,8 +541,8 @@ private:
 
     [[noreturn]] void stop() {
         if (files_ && lua::stop_requested() != lua::Stop::memory) {
-            const WritesOn writes;
-            static_cast<void>(files_->write_incomplete());
+            const lua::InSpiteOfStop writes;
+            static_cast<void>(files_->write_chunks(true));
         }
         if (!files_) keep_unfinished(L_, print_, results_);
         push_data(L_, told());
@@ -710,7 +699,7 @@ std::size_t chunk_size_for(std::size_t points) {
     return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
 }
 
-SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
+SweepFiles::SweepFiles(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
                        std::size_t looks)
     : file_(std::move(file)),
       folder_(file_ + ".parts"),
@@ -885,19 +874,12 @@ std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
     return taken ? std::nullopt : std::optional(written.error());
 }
 
-std::optional<text::Error> SweepFiles::write_complete() {
+std::optional<text::Error> SweepFiles::write_chunks(bool incomplete) {
     for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
-        if (written_[chunk] || !results_.is_complete(chunk)) continue;
+        const bool complete = results_.is_complete(chunk);
+        if (written_[chunk] || !(complete || incomplete)) continue;
         if (auto wrong = write(chunk)) return wrong;
-        written_[chunk] = true;
-    }
-    return std::nullopt;
-}
-
-std::optional<text::Error> SweepFiles::write_incomplete() {
-    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
-        if (written_[chunk]) continue;
-        if (auto wrong = write(chunk)) return wrong;
+        written_[chunk] = complete;
     }
     return std::nullopt;
 }
@@ -1026,32 +1008,6 @@ std::vector<DataColumn> SweepResults::columns(const std::vector<std::size_t>& po
         errors.push_back(failed != failures_.end() ? failed->second : "");
     }
     columns.push_back(column_of("error", std::move(errors)));
-    return columns;
-}
-
-SweepGrid::SweepGrid(std::vector<DataColumn> parameters)
-    : parameters_(std::move(parameters)), strides_(parameters_.size()) {
-    for (std::size_t i = parameters_.size(); i-- > 0;) {
-        strides_[i] = size_;
-        size_ *= parameters_[i].size();
-    }
-}
-
-void SweepGrid::set_fields(lua_State* L, std::size_t point) const {
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        lua::push_text(L, parameters_[i].name);
-        parameters_[i].push(L, place(i, point));
-        lua_rawset(L, -3);
-    }
-}
-
-std::vector<DataColumn> SweepGrid::columns(const std::vector<std::size_t>& points) const {
-    std::vector<DataColumn> columns;
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        std::vector<std::size_t> places;
-        for (const std::size_t point : points) places.push_back(place(i, point));
-        columns.push_back(parameters_[i].rows(places));
-    }
     return columns;
 }
 

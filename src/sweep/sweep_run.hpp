@@ -24,33 +24,9 @@
 
 namespace dinal::sweep {
 
-using api::Data, api::DataColumn;
+using api::Data, api::DataColumn, api::PointGrid;
 
 // What the points of a sweep gave: named columns that several threads fill, each its own points.
-
-// The points of a sweep: every combination of the values of its parameters, the last parameter changing fastest.
-
-class SweepGrid {
-public:
-    /// Each column is a parameter with at least one value.
-    explicit SweepGrid(std::vector<DataColumn> parameters);
-
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const std::vector<DataColumn>& parameters() const { return parameters_; }
-    /// Which value of the parameter this point has.
-    [[nodiscard]] std::size_t place(std::size_t parameter, std::size_t point) const {
-        return point / strides_[parameter] % parameters_[parameter].size();
-    }
-    /// Sets the table on the top of the stack to the parameters of this point.
-    void set_fields(lua_State* L, std::size_t point) const;
-    /// The parameters as columns with a row for each of these points.
-    [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
-
-private:
-    std::vector<DataColumn> parameters_;
-    std::vector<std::size_t> strides_;
-    std::size_t size_ = 1;
-};
 
 class SweepResults {
 public:
@@ -110,7 +86,7 @@ private:
 
 struct SweepTask {
     const char* call;  ///< heads sentences
-    const SweepGrid& grid;
+    const PointGrid& grid;
     int function;  ///< its index on the stack
     std::optional<double> workers = {};
     double seed = 0;
@@ -152,7 +128,7 @@ std::size_t chunk_size_for(std::size_t points);
 class SweepFiles {
 public:
     /// `mark` is that of what is asked. The file has so many rows for each point.
-    SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
+    SweepFiles(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
                std::size_t looks);
 
     /// Makes the folder, and takes what is done, or the result if the file is there. Fails when something of
@@ -163,10 +139,8 @@ public:
     /// The points that are left in our share of the chunks.
     [[nodiscard]] std::vector<std::size_t> points(const files::Share& share) const;
 
-    /// Writes the chunks that were completed since it was last asked. Also while others work.
-    std::optional<text::Error> write_complete();
-    /// Writes what there is of the others.
-    std::optional<text::Error> write_incomplete();
+    /// Writes the chunks that were completed since it was last asked, also while others work; or what there is of all.
+    std::optional<text::Error> write_chunks(bool incomplete);
 
     /// Takes what others have done meanwhile; all is done. Of several that ask at once only one is told so.
     text::Expected<bool> take_all();
@@ -190,7 +164,7 @@ private:
     void remove_folder(const std::string& folder);
 
     std::string file_, folder_, mark_;
-    const SweepGrid& grid_;
+    const PointGrid& grid_;
     SweepResults& results_;
     std::size_t looks_;
     std::vector<bool> written_;  // chunks
