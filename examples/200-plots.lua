@@ -27,17 +27,13 @@ for i, zeta in ipairs{ 0.15, 0.3, 0.7 } do
 end
 plot(small(family))
 
--- The same calls write figures as wide as the column of a paper, when they have a file: .svg, .png and .pdf are drawn
--- by gnuplot, response.gp is what it was told, to be restyled.
-run:plot{ file = "response.gp" }
+-- The same calls write figures as wide as the column of a paper, when they have a file: .svg, .png, .pdf or .txt.
+run:plot{ file = "response.pdf" }
 family.file, family.width, family.height, family.ascii = "resonance.svg", nil, nil, nil
-if pcall(plot, family) then
-  -- side by side, in the width of a page
-  plot{ run:plot{ show = false }, run:phase_plot{ show = false }, file = "both.svg", size = { 17, 7 } }
-  print "written: response.gp, resonance.svg, both.svg"
-else
-  print "written: response.gp; figures need the Debian package gnuplot-nox"
-end
+plot(family)
+-- side by side, in the width of a page
+plot{ run:plot{ show = false }, run:phase_plot{ show = false }, file = "both.svg", size = { 17, 7 } }
+print "written: response.pdf, resonance.svg, both.svg"
 
 --[[ prints
   Mc/k   a theta   b M/k
@@ -88,5 +84,5 @@ magnification   a zeta = 0.15   b zeta = 0.3   c zeta = 0.7
   ++----------+-----------+----------+-----------+----------+
   0.0        0.5         1.0        1.5         2.0        2.5
                          frequency ratio
-written: response.gp, resonance.svg, both.svg
+written: response.pdf, resonance.svg, both.svg
 ]]

@@ -11,15 +11,10 @@ local function default_folder()
 end
 
 local folder = ... or default_folder()
-local figures, undrawn = {}, 0
+local figures = {}
 for name in ([[03 03bis 04 05a 05b 06 07 08 09 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 24bis 25 26 27]]):gmatch "%S+" do
   local figure = assert(loadfile(here .. "fig" .. name .. ".lua"))(folder, true) -- true: no numbers
   print(string.format("%-14s %s", figure.file:match "[^/]*$", figure.title))
-  if figure.undrawn then undrawn = undrawn + 1 end
   figures[#figures + 1] = figure
-end
-if undrawn > 0 then
-  print(string.format("gnuplot is not installed (Debian package gnuplot-nox), so %d pictures are left as their commands "
-    .. "and data", undrawn))
 end
 return figures

@@ -249,19 +249,11 @@ function Figure:quote(numbers)
   self.quoted = numbers
 end
 
--- Draws what plot{ ... } takes. Without gnuplot the picture stays what gnuplot would have been told.
+-- Draws what plot{ ... } takes.
 function Figure:draw(picture)
-  local path = self.folder .. "/fig" .. self.name
-  picture.file = path .. ".svg"
-  local drawn, problem = pcall(plot, picture)
-  if not drawn then
-    if not tostring(problem):find("gnuplot-nox", 1, true) then error(problem, 0) end
-    picture.file = path .. ".gp"
-    plot(picture)
-    self.undrawn = true
-    self:say("gnuplot is not installed (Debian package gnuplot-nox), so the picture is left as its commands and data")
-  end
-  self.file = picture.file
+  self.file = self.folder .. "/fig" .. self.name .. ".svg"
+  picture.file = self.file
+  plot(picture)
   self:say(picture.file:match("[^/]*$"))
   return self
 end

@@ -20,7 +20,7 @@
 #include "lua/vector.hpp"
 #include "lua/worker_state.hpp"
 #include "plots/figure.hpp"
-#include "plots/gnuplot.hpp"
+#include "plots/painter.hpp"
 #include "plots/run_figure.hpp"
 #include "plots/svg_words.hpp"
 #include "terminal/display.hpp"
@@ -429,14 +429,13 @@ plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& as
     return {size[0], size[1]};
 }
 
-enum class FileKind { svg, png, pdf, gp, txt };
+enum class FileKind { svg, png, pdf, txt };  // the first ones as in plots::PictureKind
 
 FileKind kind_of(const lua::Options& options, std::string_view file) {
-    constexpr std::array<std::string_view, 5> endings{".svg", ".png", ".pdf", ".gp", ".txt"};
+    constexpr std::array<std::string_view, 4> endings{".svg", ".png", ".pdf", ".txt"};
     const auto* const known = std::find(endings.begin(), endings.end(), text::ending_of(file));
     if (known == endings.end()) {
-        options.fail({.sentence = fmt::format(
-                          "the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file),
+        options.fail({.sentence = fmt::format("the name '{}' must end in .svg, .png, .pdf or .txt", file),
                       .option = "file",
                       .culprit = std::string(file)});
     }
@@ -449,14 +448,8 @@ text::Expected<std::string> content(const std::vector<plots::Figure>& figures, F
         format.colours = false;
         return plots::text_plot(figures, format);
     }
-    if (kind == FileKind::gp) {
-        return plots::gnuplot_file(figures, size);
-    }
-    const plots::Terminal terminal = kind == FileKind::svg   ? plots::Terminal::svg
-                                     : kind == FileKind::png ? plots::Terminal::png
-                                                             : plots::Terminal::pdf;
-    auto picture = drawn_by_gnuplot(plots::gnuplot_input(figures, terminal, size));
-    return picture && kind == FileKind::svg ? plots::with_words(std::move(picture).value(), figures) : picture;
+    return plots::paint(figures, static_cast<plots::PictureKind>(kind), size,
+                        [] { return !lua::interrupt_requested(); });
 }
 
 void write_picture(lua_State* L, const lua::Options& options, const TargetOptions& asked,
@@ -503,12 +496,6 @@ PictureViewer picture_viewer = nullptr;
 
 void show_pictures_by(PictureViewer viewer) {
     picture_viewer = viewer;
-}
-
-text::Expected<std::string> drawn_by_gnuplot(const std::string& commands) {
-    return plots::run_gnuplot(commands,
-                              {.go_on = [] { return !lua::interrupt_requested(); },
-                               .memory = lua::memory_limit() == 0 ? 0 : std::max<std::size_t>(lua::memory_left(), 1)});
 }
 
 text::Expected<std::string> svg_of(const Picture& picture) {

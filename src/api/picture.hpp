@@ -10,7 +10,6 @@
 #include "lua/options.hpp"
 #include "model/units.hpp"
 #include "plots/figure.hpp"
-#include "plots/gnuplot_script.hpp"
 #include "plots/text_plot.hpp"
 #include "text/option.hpp"
 
@@ -39,10 +38,7 @@ enum class Shown { here, in_file };
 using PictureViewer = void (*)(const Picture& picture, Shown where);
 void show_pictures_by(PictureViewer viewer);
 
-/// What gnuplot makes of these commands, within the limits of the script.
-text::Expected<std::string> drawn_by_gnuplot(const std::string& commands);
-
-/// The picture as an element <svg> for a page or a notebook, by gnuplot.
+/// The picture as an element <svg> for a page or a notebook.
 text::Expected<std::string> svg_of(const Picture& picture);
 
 /// The text of the picture without the last line end.
@@ -87,7 +83,7 @@ struct TargetOptions {
 inline constexpr text::Option target_options[] = {
     {.name = "file",
      .meaning = "file to write instead of printing; the ending of the name chooses the format: .svg, .png, "
-                ".pdf (these need gnuplot), .gp (gnuplot commands with the data, to be restyled) or .txt",
+                ".pdf or .txt",
      .filled = text::fills<&TargetOptions::file>},
     {.name = "size",
      .unit = "cm",

@@ -27,7 +27,7 @@ struct ReportLines {
     std::string caption = {};  ///< for what is long: it is folded under this
 };
 struct ReportPicture {
-    std::string svg;   ///< empty when gnuplot could not draw it
+    std::string svg;   ///< empty when it was not drawn
     std::string text;  ///< the same for those who see no pictures
     std::string title = {};
 };

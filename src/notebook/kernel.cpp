@@ -157,7 +157,7 @@ private:
     std::string read_;
 };
 
-/// A picture by gnuplot, or as text where it is not there.
+/// A picture as SVG, and as text for what shows no SVG.
 Json shown_picture(const api::Picture& picture) {
     Json forms{{"text/plain", api::text_of_picture(picture)}};
     if (auto svg = api::svg_of(picture)) {

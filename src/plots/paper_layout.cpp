@@ -138,7 +138,7 @@ constexpr double bar_gap = 1.0 * em, bar_width = 1.1 * em, bar_ticks = 0.5 * em;
 
 /// Bands of one number have it in their middle, others the number where the next one begins.
 ColourBar bar_of(const Shades& shades) {
-    const std::vector<ShadeBand> bands = paper_bands(shades);
+    const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
     ColourBar colours{.cells = bands.size()};
     for (std::size_t i = 0; i < bands.size(); ++i) {
         const std::string& text = bands[i].text;
@@ -262,15 +262,12 @@ PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
     return size;
 }
 
-void raise_panel(PaperPanel& panel, double by) {
-    panel.bottom += by;
-    panel.top += by;
-    for (Words* words : {&panel.title, &panel.x_label, &panel.y_label, &panel.bar_label}) {
-        words->y += by;
-    }
-    for (LegendEntry& entry : panel.legend) {
-        entry.y += by;
-    }
+/// All heights in a panel; the layout counts them from below.
+std::vector<double*> heights_of(PaperPanel& panel) {
+    std::vector<double*> all{&panel.bottom,    &panel.top,       &panel.title.y,
+                             &panel.x_label.y, &panel.y_label.y, &panel.bar_label.y};
+    for (LegendEntry& entry : panel.legend) all.push_back(&entry.y);
+    return all;
 }
 
 /// One below the other, with their axes below each other, too.
@@ -284,7 +281,7 @@ void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, 
         for (std::size_t i = 0; i < pile.size(); ++i) {
             placed.push_back({.figure = pile[i], .view = view_of(*pile[i])});
             place(placed.back(), left, width, height, inset, beside);
-            raise_panel(placed.back(), whole - static_cast<double>(i + 1) * height);
+            for (double* y : heights_of(placed.back())) *y += whole - static_cast<double>(i + 1) * height;
         }
         if (pile.size() == 1) {
             break;
@@ -326,6 +323,9 @@ Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     }
     if (any_height && figures.size() == 1 && sheet.panels.front().unused > 1) {
         return lay_out(figures, {size.width, size.height - sheet.panels.front().unused / pixels_per_cm});
+    }
+    for (PaperPanel& panel : sheet.panels) {
+        for (double* y : heights_of(panel)) *y = sheet.height - *y;
     }
     return sheet;
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "plots/figure.hpp"
-#include "plots/gnuplot_script.hpp"
 #include "plots/ticks.hpp"
 
 namespace dinal::plots {
@@ -15,6 +14,12 @@ namespace dinal::plots {
 inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
 inline constexpr double pixels_per_cm = 96 / 2.54;
+
+/// Centimetres. Zero: as wide as a column of a paper (two panels: as its text), and as high as that needs.
+struct PaperSize {
+    double width = 0;
+    double height = 0;
+};
 
 enum class Sample { curve, mark, dead_zone, stuck, none };
 
@@ -43,7 +48,7 @@ struct Words {
     double x = 0, y = 0;  // their middle
 };
 
-/// All places in pixels from the lower left corner of the sheet.
+/// All places in pixels from the upper left corner of the sheet.
 struct PaperPanel {
     const Figure* figure;
     View view;

@@ -83,16 +83,6 @@ std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z
     return next == bands.begin() ? 0 : static_cast<std::size_t>(next - bands.begin()) - 1;
 }
 
-std::vector<ShadeBand> paper_bands(const Shades& shades) {
-    constexpr std::size_t most_boxes = 3000;  // of a hundred bytes each in an SVG
-    std::vector<ShadeBand> bands;
-    for (const int most : {10, 7, 5, 3}) {
-        bands = bands_of(shades, most);
-        if (boxes_of(shades, bands).size() <= most_boxes) break;
-    }
-    return bands;
-}
-
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic) {
     const auto forth = [logarithmic](double v) { return logarithmic ? std::log(v) : v; };
     const auto back = [logarithmic](double v) { return logarithmic ? std::exp(v) : v; };
@@ -108,41 +98,12 @@ std::vector<double> edges_between(const std::vector<double>& values, bool logari
     return edges;
 }
 
-std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand>& bands) {
-    std::vector<ShadeBox> boxes;
-    std::vector<std::size_t> below;  // those that end at this row, by their left ends
-    const std::size_t columns = shades.x.size();
-    for (std::size_t j = 0; j < shades.y.size(); ++j) {
-        std::vector<std::size_t> now;
-        std::size_t known = 0;
-        for (std::size_t i = 0; i < columns;) {
-            const auto band = band_of(bands, shades.at(i, j));
-            std::size_t end = i + 1;
-            while (end < columns && band_of(bands, shades.at(end, j)) == band) ++end;
-            if (band) {
-                while (known < below.size() && boxes[below[known]].left < i) ++known;
-                ShadeBox* under = known < below.size() ? &boxes[below[known]] : nullptr;
-                if (under != nullptr && under->left == i && under->right == end && under->band == *band) {
-                    under->top = j + 1;
-                    now.push_back(below[known]);
-                } else {
-                    now.push_back(boxes.size());
-                    boxes.push_back({*band, i, j, end, j + 1});
-                }
-            }
-            i = end;
-        }
-        below = std::move(now);
-    }
-    return boxes;
-}
-
-std::string shade_colour(std::size_t band, std::size_t count) {
+std::uint32_t shade_colour(std::size_t band, std::size_t count) {
     // viridis of matplotlib (van der Walt and Smith, 2015), every ninth part
-    constexpr std::array<std::string_view, 10> colours{"#440154", "#482878", "#3E4A89", "#31688E", "#26828E",
-                                                       "#1F9E89", "#35B779", "#6DCD59", "#B4DE2C", "#FDE725"};
+    constexpr std::array<std::uint32_t, 10> colours{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,
+                                                    0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
     const std::size_t place = count < 2 ? colours.size() / 2 : band * (colours.size() - 1) / (count - 1);
-    return std::string(colours[std::min(place, colours.size() - 1)]);
+    return colours[std::min(place, colours.size() - 1)];
 }
 
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii) {

@@ -1,6 +1,7 @@
 // Values over a grid, seen from above: areas of one shade each, and lines of equal value.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,28 +28,19 @@ struct ShadeBand {
 /// A band for each value when these are a few whole numbers; else at most `most`, between round numbers. A few very
 /// large or very small values, as near a resonance, do not take the shades from all others.
 std::vector<ShadeBand> bands_of(const Shades& shades, int most);
-/// Those on paper, where they may be as many as one can tell apart and a file of decent size can hold.
-std::vector<ShadeBand> paper_bands(const Shades& shades);
 /// Which band has the value; none for nan, and for an infinite value where each band is one number.
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z);
 
 /// Half way between the values, and as far beyond the first and the last.
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
 
-/// Neighbours of one band as one rectangle, in places of the grid.
-struct ShadeBox {
-    std::size_t band;
-    std::size_t left, bottom, right, top;  // [left, right) x [bottom, top)
-};
-std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand>& bands);
-
 /// The line along which z has this value, with nan between its pieces.
 Curve contour(const Shades& shades, double level);
 
-/// "#440154" to "#FDE725": from dark to bright, also for the colour-blind and in grey print.
-std::string shade_colour(std::size_t band, std::size_t count);
+/// 0x440154 to 0xFDE725: from dark to bright, also for the colour-blind and in grey print.
+std::uint32_t shade_colour(std::size_t band, std::size_t count);
 /// A character for the band: its digit when all are digits, else a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);
-inline constexpr int most_text_bands = 5;
+inline constexpr int most_text_bands = 5, most_paper_bands = 10;
 
 }  // namespace dinal::plots

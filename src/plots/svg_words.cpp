@@ -163,23 +163,15 @@ std::string description_of(const Figure& figure) {
     return text;
 }
 
-/// What stands between two marks of the SVG, replaced; it stays where the marks are not there.
-void replace_between(std::string& svg, std::string_view from, std::string_view to, const std::string& words) {
-    const std::size_t begin = svg.find(from);
-    const std::size_t end = begin == std::string::npos ? begin : svg.find(to, begin);
-    if (end != std::string::npos) {
-        svg.replace(begin + from.size(), end - begin - from.size(), text::html(text::displayable(words)));
-    }
-}
-
 }  // namespace
 
 std::string element_of(std::string svg) {
     svg.erase(0, std::min(svg.find("<svg"), svg.size()));
-    constexpr std::string_view from = "<title>gnuplot_plot_", to = "</title>";
-    for (std::size_t at = svg.find(from); at != std::string::npos; at = svg.find(from, at)) {
-        const std::size_t end = svg.find(to, at);
-        svg.erase(at, end == std::string::npos ? end : end + to.size() - at);
+    const std::string own = fmt::format("p{:x}-", std::hash<std::string>()(svg));
+    for (const std::string_view mark : {"id=\"", "href=\"#", "url(#"}) {
+        for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + own.size())) {
+            svg.insert(at += mark.size(), own);
+        }
     }
     return svg;
 }
@@ -203,21 +195,10 @@ std::string with_words(std::string svg, std::span<const Figure> figures) {
         if (figures.size() > 1) description += fmt::format("Panel {}. ", &figure - figures.data() + 1);
         description += description_of(figure);
     }
-    replace_between(svg, "<title>", "</title>", title);
-    replace_between(svg, "<desc>", "</desc>", description);
-    // gnuplot knows one font only; a machine without it shall take another one without serifs.
-    constexpr std::string_view font = "font-family=\"Arial\"";
-    for (std::size_t at = svg.find(font); at != std::string::npos; at = svg.find(font, at + font.size())) {
-        svg.insert(at + font.size() - 1, ", Helvetica, sans-serif");
-    }
-    if (const std::size_t root = svg.find("<svg"); root != std::string::npos) {
-        svg.insert(root + 4, " role=\"img\" aria-label=\"" + text::html(title) + "\"");
-    }
-    // gnuplot leaves > as it is in labels, and XML has this only at the end of CDATA, which gnuplot does not write.
-    constexpr std::string_view end_of_data = "]]>";
-    for (std::size_t at = svg.find(end_of_data); at != std::string::npos; at = svg.find(end_of_data, at)) {
-        svg.replace(at, end_of_data.size(), "]]&gt;");
-    }
+    const std::size_t root = svg.find("<svg") + 4;
+    svg.insert(svg.find('>', root) + 1, fmt::format("\n<title>{}</title>\n<desc>{}</desc>", text::html(title),
+                                                    text::html(text::displayable(description))));
+    svg.insert(root, fmt::format(" role=\"img\" aria-label=\"{}\"", text::html(title)));
     return svg;
 }
 

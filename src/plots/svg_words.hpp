@@ -11,11 +11,11 @@ namespace dinal::plots {
 /// The titles of the figures, or what is drawn over what: "θ, M/k over t".
 std::string title_of(std::span<const Figure> figures);
 
-/// The SVG of these figures that gnuplot wrote, with title, description and label for screen readers.
+/// The SVG of these figures with title, description and label for screen readers.
 std::string with_words(std::string svg, std::span<const Figure> figures);
 
-/// The element <svg> for a page, out of such a file: without its head, and without the titles of gnuplot's curves,
-/// which a browser would show under the mouse and read aloud.
+/// The element <svg> of such a file for a page: without its head, and with names that no other picture of the page
+/// has.
 std::string element_of(std::string svg);
 
 }  // namespace dinal::plots

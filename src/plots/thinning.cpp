@@ -10,16 +10,17 @@
 namespace dinal::plots {
 namespace {
 
-constexpr double far = 1e7;  // pixels; what is further away is far enough
-
 class Projected {
 public:
     Projected(const Curve& curve, const Paper& paper) : curve_(curve), paper_(paper) {}
 
+    /// Whether the place has a point: it is finite, and positive on a logarithmic axis.
     [[nodiscard]] bool has(std::size_t i) const {
-        return paper_.view.x.has(curve_.x.values[i]) && paper_.view.y.has(curve_.y.values[i]);
+        return paper_.view.x.has(curve_.x.values[i]) && paper_.view.y.has(curve_.y.values[i]) &&
+               (!curve_.base || paper_.view.y.has(curve_.base->values[i]));
     }
     [[nodiscard]] Point operator()(std::size_t i) const {
+        constexpr double far = 1e7;  // pixels; what is further away is far enough
         return {std::clamp(paper_.view.x(curve_.x.values[i]) * paper_.pixels.width, -far, far),
                 std::clamp(paper_.view.y(curve_.y.values[i]) * paper_.pixels.height, -far, far)};
     }
@@ -98,91 +99,14 @@ private:
     double middle_ = 0, low_ = 0, high_ = 0, reach_ = 0;
 };
 
-/// A grid of square cells over the sheet, and how often each was touched: a million lines above one another are no more
-/// ink than a few.
-class Cells {
-public:
-    Cells(Box pixels, double size)
-        : size_(size),
-          columns_(static_cast<std::size_t>(std::ceil(pixels.width / size)) + 1),
-          rows_(static_cast<std::size_t>(std::ceil(pixels.height / size)) + 1),
-          counts_(columns_ * rows_, 0) {}
-
-    /// Tells whether its cell was blank before.
-    bool dot(Point point) {
-        const double column = std::floor(point.x / size_), row = std::floor(point.y / size_);
-        if (!(column >= 0 && row >= 0 && column < static_cast<double>(columns_) && row < static_cast<double>(rows_))) {
-            return false;
-        }
-        return counts_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)]++ == 0;
-    }
-
-    /// What is outside of the sheet is left out.
-    void line(Line line) {
-        const Box sheet{static_cast<double>(columns_) * size_, static_cast<double>(rows_) * size_};
-        if (!clip(line, sheet, 0)) return;
-        const double dx = line.to.x - line.from.x, dy = line.to.y - line.from.y;
-        const double steps = std::ceil(std::max(std::fabs(dx), std::fabs(dy)) / size_);
-        walked_ += steps;
-        for (int i = 0; i < static_cast<int>(steps); ++i) {
-            const double part = i / steps;
-            dot({line.from.x + part * dx, line.from.y + part * dy});
-        }
-        dot(line.to);
-    }
-
-    /// Through how many cells lines have gone, the same one as often as a line went there.
-    [[nodiscard]] double walked() const { return walked_; }
-    [[nodiscard]] double size() const { return size_; }
-
-    /// The same in cells that are twice as wide and high.
-    [[nodiscard]] Cells coarser() const {
-        Cells result({static_cast<double>(columns_) * size_, static_cast<double>(rows_) * size_}, 2 * size_);
-        for (std::size_t i = 0; i < counts_.size(); ++i) {
-            result.counts_[i / columns_ / 2 * result.columns_ + i % columns_ / 2] += counts_[i];
-        }
-        return result;
-    }
-
-    /// How often the part `fraction` of all inked cells was touched, or less often.
-    [[nodiscard]] std::size_t quantile(double fraction) const {
-        std::vector<std::size_t> sorted = counts_;
-        std::erase(sorted, 0);
-        if (sorted.empty()) return 0;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size()))];
-    }
-
-    /// The runs of cells that were touched more than so often.
-    [[nodiscard]] Strokes touched_more_than(std::size_t count) const {
-        Strokes strokes{{}, size_};
-        for (std::size_t i = 0; i < counts_.size(); ++i) {
-            if (counts_[i] <= count) continue;
-            const double from = static_cast<double>(i % columns_) * size_;
-            if (i % columns_ > 0 && counts_[i - 1] > count) {
-                strokes.all.back().to = from + size_;
-            } else {
-                const auto row = i / columns_;
-                strokes.all.push_back({from, from + size_, (static_cast<double>(row) + 0.5) * size_});
-            }
-        }
-        return strokes;
-    }
-
-private:
-    double size_;
-    std::size_t columns_, rows_;
-    std::vector<std::size_t> counts_;
-    double walked_ = 0;
-};
-
 /// The points of one column of pixels that are drawn.
 struct ColumnOfPixels {
-    std::size_t first = gap, last = gap, lowest = gap, highest = gap;
+    static constexpr auto none = std::numeric_limits<std::size_t>::max();
+    std::size_t first = none, last = none, lowest = none, highest = none;
     double low = 0, high = 0;
 
     void add(std::size_t i, double y) {
-        if (first == gap) {
+        if (first == none) {
             *this = {i, i, i, i, y, y};
             return;
         }
@@ -198,33 +122,27 @@ struct ColumnOfPixels {
     }
 
     void flush(std::vector<std::size_t>& kept) {
-        if (first == gap) {
+        if (first == none) {
             return;
         }
         std::array<std::size_t, 4> points{first, lowest, highest, last};
         std::sort(points.begin(), points.end());
         const auto* end = std::unique(points.begin(), points.end());
         kept.insert(kept.end(), points.begin(), points.begin() + (end - points.begin()));
-        first = gap;
+        first = none;
     }
 };
-
-void lift(std::vector<std::size_t>& kept) {
-    if (!kept.empty() && kept.back() != gap) {
-        kept.push_back(gap);
-    }
-}
 
 std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
     const Projected project(curve, paper);
     std::vector<std::size_t> kept;
     ColumnOfPixels column;
-    const double columns = std::ceil(paper.pixels.width / paper.coarseness);
+    const double columns = std::ceil(paper.pixels.width);
     double current = 0;
     for (std::size_t i = 0; i < curve.size(); ++i) {
         if (!project.has(i)) {
             column.flush(kept);
-            lift(kept);
+            kept.push_back(i);
             continue;
         }
         const double x = paper.view.x(curve.x.values[i]) * columns;
@@ -241,7 +159,7 @@ std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
 }
 
 std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
-    const double tolerance = 0.1 * paper.coarseness;  // of a pixel; up to twice of that is lost
+    const double tolerance = 0.1;  // of a pixel; up to twice of that is lost
     const Projected project(curve, paper);
     std::vector<std::size_t> corners;
     Corners piece(corners, tolerance);
@@ -250,27 +168,33 @@ std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
             piece.add(i, project(i));
         } else {
             piece.finish();
-            lift(corners);
+            corners.push_back(i);
         }
     }
     piece.finish();
     return corners;
 }
 
+/// The first point in each square of the sheet.
 std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
     const Projected project(curve, paper);
     std::vector<std::size_t> kept;
-    Cells cells(paper.pixels, paper.coarseness);
+    const auto columns = static_cast<std::size_t>(std::ceil(paper.pixels.width)) + 1;
+    const auto rows = static_cast<std::size_t>(std::ceil(paper.pixels.height)) + 1;
+    std::vector<bool> taken(columns * rows, false);
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (project.has(i) && cells.dot(project(i))) {
-            kept.push_back(i);
-        }
+        if (!project.has(i)) continue;
+        const Point point = project(i);
+        if (!(point.x >= 0 && point.y >= 0 && point.x <= paper.pixels.width && point.y <= paper.pixels.height))
+            continue;
+        const auto place = static_cast<std::size_t>(point.y) * columns + static_cast<std::size_t>(point.x);
+        if (!taken[place]) kept.push_back(i);
+        taken[place] = true;
     }
     return kept;
 }
 
-}  // namespace
-
+/// A line or an area whose x never falls.
 bool has_columns(const Curve& curve) {
     const auto x = curve.x.values.first(curve.size());
     double before = -std::numeric_limits<double>::infinity();
@@ -281,47 +205,20 @@ bool has_columns(const Curve& curve) {
            });
 }
 
-std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
-    if (curve.style == Style::points) {
-        return by_pixels(curve, paper);
-    }
-    return has_columns(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
-}
+}  // namespace
 
-std::vector<Strokes> inked(const Curve& curve, const Paper& paper, std::size_t most) {
-    constexpr double finest = 1.3;      // pixels: half of what a line is wide
-    constexpr double most_cells = 4e6;  // of a large sheet
-    // A million lines across the sheet leave it black in the coarsest cells, too, and sooner.
-    constexpr double most_walked = 2e7;
-    constexpr std::size_t crowd = 10'000;                   // of points, whose ink alone would be solid blocks
-    constexpr std::array<double, 3> denser{0.4, 0.7, 0.9};  // than this part of the cells that have points
-    const bool cloud = curve.style == Style::points;
-    const Projected project(curve, paper);
-    Cells cells(paper.pixels, std::max(finest, std::sqrt(paper.pixels.width * paper.pixels.height / most_cells)));
-    bool down = false;
-    Point last{};
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (project.has(i)) {
-            const Point point = project(i);
-            down && !cloud ? cells.line({last, point}) : static_cast<void>(cells.dot(point));
-            if (cells.walked() > most_walked) cells = cells.coarser();
-            last = point;
-        }
-        down = project.has(i);
+std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
+    if (curve.style == Style::points) return by_pixels(curve, paper);
+    std::vector<std::size_t> kept = has_columns(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
+    if (curve.base) {
+        Curve other = curve;
+        std::swap(other.y, *other.base);
+        const std::vector<std::size_t> more = has_columns(other) ? by_columns(other, paper) : by_corners(other, paper);
+        std::vector<std::size_t> both;
+        std::set_union(kept.begin(), kept.end(), more.begin(), more.end(), std::back_inserter(both));
+        kept = std::move(both);
     }
-    while (true) {
-        std::vector<Strokes> layers{cells.touched_more_than(0)};
-        std::size_t strokes = layers.front().all.size(), before = 0;
-        for (const double fraction : denser) {
-            const std::size_t count = cloud && curve.size() > crowd ? cells.quantile(fraction) : 0;
-            if (count == std::exchange(before, count)) continue;
-            layers.push_back(cells.touched_more_than(count));
-            strokes += layers.back().all.size();
-            if (layers.back().all.empty()) layers.pop_back();
-        }
-        if (strokes <= std::max<std::size_t>(most, 16)) return layers;  // no more than 4 in the coarsest
-        cells = cells.coarser();
-    }
+    return kept;
 }
 
 }  // namespace dinal::plots

@@ -244,7 +244,7 @@ without a script: a prompt on a terminal, otherwise standard input is run as a s
   --strict   make an undefined variable an error, and an option whose value is
              nil by a misspelt name
   --safe     for scripts of strangers: no files outside the current folder, no
-             processes except gnuplot, no modules, and limits:
+             processes, no modules, and limits:
              --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
   --max-time SECONDS end a script that runs longer; at the prompt, an input

@@ -139,7 +139,7 @@ py::object operated(py::handle operation, py::handle left, py::handle right) {
     });
 }
 
-/// For a page: of a picture an <svg>, of data a table; None where there is none, or no gnuplot.
+/// For a page: of a picture an <svg>, of data a table; None where there is none.
 py::object drawn(py::handle self) {
     constexpr std::size_t rows_shown = 50;
     return in_lua([&](lua_State* L) -> py::object {

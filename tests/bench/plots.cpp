@@ -1,4 +1,4 @@
-// Plots of a million rows, by the wall clock: gnuplot is a process of its own.
+// Plots of a million rows.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -7,8 +7,7 @@
 
 #include "dinal_runs.hpp"
 #include "items.hpp"
-#include "plots/gnuplot.hpp"
-#include "plots/gnuplot_script.hpp"
+#include "plots/painter.hpp"
 #include "plots/run_figure.hpp"
 #include "plots/text_plot.hpp"
 
@@ -36,7 +35,7 @@ void measure(benchmark::State& state, const Draw& draw) {
         const bool drawn = draw(*pictures);
         state.SetIterationTime(std::chrono::duration<double>(Clock::now() - began).count());
         if (!drawn) {
-            state.SkipWithError("nothing was drawn; is gnuplot installed?");
+            state.SkipWithError("nothing was drawn");
             break;
         }
     }
@@ -47,8 +46,7 @@ bool in_terminal(const dinal::plots::Figure& figure) {
 }
 
 bool in_svg(const dinal::plots::Figure& figure) {
-    return static_cast<bool>(
-        dinal::plots::run_gnuplot(dinal::plots::gnuplot_input({&figure, 1}, dinal::plots::Terminal::svg, {})));
+    return static_cast<bool>(dinal::plots::paint({&figure, 1}, dinal::plots::PictureKind::svg, {}));
 }
 
 }  // namespace

@@ -55,11 +55,11 @@ TEST_CASE("figures below others have their boxes below theirs, as wide", "[plots
     figures[1].below = true;
     figures[1].y.limits = Interval{-123456, 123456};
     const Sheet sheet = lay_out(figures, {});
-    CHECK(sheet.panels[1].top < sheet.panels[0].bottom);
+    CHECK(sheet.panels[1].top > sheet.panels[0].bottom);
     CHECK(sheet.panels[1].left == sheet.panels[0].left);
     CHECK(sheet.panels[1].right == sheet.panels[0].right);
     CHECK(sheet.panels[2].left > sheet.panels[0].right);
-    CHECK(sheet.panels[2].bottom < sheet.panels[1].top);
+    CHECK(sheet.panels[2].bottom > sheet.panels[1].top);
 }
 
 TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
@@ -124,7 +124,7 @@ TEST_CASE("many entries of a legend are read downwards, in columns of one length
     const std::vector<LegendEntry> legend = lay_out({&figure, 1}, {12, 9}).panels[0].legend;
     REQUIRE(legend.size() == 10);
     CHECK(legend[1].x == legend[0].x);
-    CHECK(legend[1].y < legend[0].y);
+    CHECK(legend[1].y > legend[0].y);
     CHECK(legend[9].x > legend[0].x);
 }
 

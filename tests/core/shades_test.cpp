@@ -1,4 +1,4 @@
-// Maps: which values have one shade, rectangles, and lines of equal value.
+// Maps: which values have one shade, and lines of equal value.
 #include "plots/shades.hpp"
 #include "support/catch.hpp"
 
@@ -92,26 +92,6 @@ TEST_CASE("a resonance does not take the shades from all the rest", "[shades]") 
     const auto bands = bands_of(shades_over(101, [](double x, double) { return 1 / std::fabs(x + 1e-6); }), 8);
     CHECK(bands.back().from < 20);  // the largest value is a million
     CHECK(bands.size() >= 3);
-}
-
-TEST_CASE("rectangles cover each place of the grid once", "[shades]") {
-    const Shades shades =
-        shades_over(30, [](double x, double y) { return x * y > 0.9 ? std::nan("") : std::floor(4 * x * y); });
-    const auto bands = bands_of(shades, 10);
-    const auto boxes = boxes_of(shades, bands);
-    for (std::size_t j = 0; j < 30; ++j) {
-        for (std::size_t i = 0; i < 30; ++i) {
-            std::size_t hits = 0;
-            for (const ShadeBox& box : boxes) {
-                if (box.left <= i && i < box.right && box.bottom <= j && j < box.top) {
-                    ++hits;
-                    CHECK(box.band == band_of(bands, shades.at(i, j)));
-                }
-            }
-            CHECK(hits == (std::isnan(shades.at(i, j)) ? 0U : 1U));
-        }
-    }
-    CHECK(boxes.size() < 900 / 3);
 }
 
 TEST_CASE("edges lie half way between the values, on logarithmic axes by ratio", "[shades]") {

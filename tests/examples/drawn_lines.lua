@@ -1,6 +1,6 @@
--- What is drawn in an SVG file of gnuplot: its words in their order, and where there is ink of each colour. Two such
+-- What is drawn in an SVG file of plot: its words in their order, and where there is ink of each colour. Two such
 -- drawings are the same when an eye could not tell them apart: the same words, and no ink further than a pixel (a quarter
--- of a millimetre) from ink of the same colour. So another version of gnuplot, or a rounding that lets the thinning of
+-- of a millimetre) from ink of the same colour. So another version of cairo, or a rounding that lets the thinning of
 -- a curve choose a neighbouring point, is no difference; another motion is.
 
 local drawn_lines = {}
@@ -15,34 +15,29 @@ local function paint(cells, x0, y0, x1, y1)
   end
 end
 
--- "M1,2 L3,4 M5,6 ..." or "1,2 3,4 ...": without a letter the pen stays down.
+-- "M 1 2 L 3 4 C 1 2 3 4 5 6 Z": of a curve, the line to its end.
 local function paint_path(cells, path)
   local x0, y0
-  for letter, x, y in path:gmatch "(%a?)%s*(-?[%d.]+),(-?[%d.]+)" do
+  for letter, numbers in path:gmatch "([MLC])([^MLCZ]*)" do
+    local x, y = numbers:match "(%-?[%d.]+)[%s,]+(%-?[%d.]+)%s*$"
     x, y = tonumber(x), tonumber(y)
     if letter ~= "M" and x0 then paint(cells, x0, y0, x, y) end
     x0, y0 = x, y
   end
 end
 
-local function colour(kind, text) return kind .. text:gsub("%s", "") end
-
---- { words = { ... }, ink = { ["line rgb(0,114,178)"] = cells, ... } } of the text of an SVG file.
+--- { words = { ... }, ink = { ["stroke rgb(0%,45%,70%)"] = cells, ... } } of the text of an SVG file.
 function drawn_lines.read(svg)
   local words, ink = {}, setmetatable({}, { __index = function(all, key)
     all[key] = {}
     return all[key]
   end })
-  for word in svg:gmatch "<text>(.-)</text>" do words[#words + 1] = word end
-  for stroke, path in svg:gmatch "<path%s+stroke%s*=%s*'([^']*)'[^>]-%sd%s*=%s*'([^']*)'" do
-    paint_path(ink[colour("line ", stroke)], path)
-  end
-  for fill, points in svg:gmatch "<polygon%s+fill%s*=%s*'([^']*)'[^>]-points%s*=%s*'([^']*)'" do
-    paint_path(ink[colour("fill ", fill)], points)
-  end
-  local point = "<use xlink:href='#(%w+)' transform='translate%(([%d.]+),([%d.]+)%)[^']*' color='([^']*)'"
-  for shape, x, y, own in svg:gmatch(point) do
-    paint(ink[colour(shape .. " ", own)], x, y, x, y)
+  for word in svg:gmatch "<text[^>]*>(.-)</text>" do words[#words + 1] = word end
+  for path in svg:gmatch "<path[^>]*>" do
+    for _, kind in ipairs{ "stroke", "fill" } do -- one of them; as style, or as attributes in newer versions of cairo
+      local colour = path:match("%f[%a]" .. kind .. "[:=]\"?(rgb%b())")
+      if colour then paint_path(ink[kind .. " " .. colour:gsub("%s", ""):gsub("%.%d+", "")], path:match " d=\"([^\"]*)\"") end
+    end
   end
   return { words = words, ink = setmetatable(ink, nil) }
 end

@@ -196,7 +196,7 @@ constexpr std::array<std::string_view, 42> statements{
     "print($r:phase_plot{ equal = true, ascii = $a, show = false })",
     "print(plot{ { $v, $v, style = 'points' }, { $v, $v, base = $a }, ylim = { $n, $n }, yticks = $v, show = false })",
     "print(plot{ { $v, $v, label = $w }, xlog = true, ylog = $a, title = $w, width = $n, show = false })",
-    "$r:plot{ file = 'p.txt', size = { $n, $n } } $r:plot{ file = 'p.gp', title = $w, xlabel = $w }",
+    "$r:plot{ file = 'p.txt', size = { $n, $n } } $r:plot{ file = 'p.svg', title = $w, xlabel = $w }",
     "print(plot{ $g, $r:plot{ show = false }, show = false })",
     "$g = $a .. $w",
     "$g = $a + $a",

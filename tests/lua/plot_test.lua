@@ -51,13 +51,17 @@ test("a phase plane without k is that of the velocity, and has corners where a w
     -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
     local ball = system { I = 1, k = 1, walls = { upper = 0, restitution = 0.5 } }
     local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1 }
-    local gp = temporary ".gp"
-    run:phase_plot { file = gp }
-    local before, corner
-    for x, y in read(gp):gmatch "(%S+) (%S+)\n" do
-        local at_wall = tonumber(x) and math.abs(x) < 1e-9 and tonumber(y) -- as exact as the file writes it
-        corner = corner or (before and at_wall and math.abs(before - 1) < 1e-9 and math.abs(at_wall + 0.5) < 1e-9)
-        before = at_wall
+    local file = temporary ".svg"
+    run:phase_plot { file = file, xlim = { -1, 1 }, ylim = { -1, 1 }, axes = false }
+    local points, wall = {}, 0
+    for x, y in read(file):match("rgb%(0%%, ?44[^>]*"):gmatch "[ML] ([%d.]+) ([%d.]+)" do
+        points[#points + 1] = { x = tonumber(x), y = tonumber(y) }
+        wall = math.max(wall, points[#points].x)
+    end
+    local unit, corner = wall - points[1].x, false -- the run starts at theta = -1, velocity = 0; the wall is at 0
+    for i = 2, #points do
+        local before, after = (points[1].y - points[i - 1].y) / unit, (points[1].y - points[i].y) / unit
+        corner = corner or math.abs(before - 1) < 1e-3 and math.abs(after + 0.5) < 1e-3 and points[i - 1].x == wall
     end
     assert(corner, "the velocity does not jump at the wall")
 end)
@@ -175,7 +179,7 @@ test("wrong options are told with their limits", function()
         { { size = { 8, 6 } }, "size is for files" },
         { { file = "x.svg", size = { 1, 6 } }, "size must be width and height in cm" },
         { { file = "x.svg", show = false }, "file and show = false exclude each other" },
-        { { file = "x.jpg" }, "'x.jpg' must end in .svg, .png, .pdf, .gp", ".txt" },
+        { { file = "x.jpg" }, "'x.jpg' must end in .svg, .png, .pdf or .txt" },
         { { file = "x" }, "'x' must end in .svg" },
         { { file = "/nowhere/at/all.svg" }, "there is no folder '/nowhere/at'" },
         { { file = "x\0.svg" }, "NUL" },
@@ -183,7 +187,7 @@ test("wrong options are told with their limits", function()
 end)
 
 test("files begin as files of their kind begin, and an old one is replaced as a whole", function()
-    local heads = { svg = "<?xml", png = "\x89PNG", pdf = "%PDF-", gp = "# A figure of dinal" }
+    local heads = { svg = "<?xml", png = "\x89PNG", pdf = "%PDF-" }
     for ending, head in pairs(heads) do
         local name = temporary("." .. ending)
         write(name, ("old "):rep(100000))

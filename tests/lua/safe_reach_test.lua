@@ -98,7 +98,7 @@ end
 for _, name in ipairs { "../secret.csv", "../new.csv", folder .. "/../new.csv", "/tmp/dinal-safe-mode.csv", "write.csv", "read.csv", "up/new.csv", "up/new.dat", "out.csv", "loop.csv", "/dev/fd/1.csv", "sub/../../new.csv", "../lab2/x.csv" } do
     refused["writing " .. name] = saves(name)
 end
-for _, name in ipairs { "../new.svg", folder .. "/../new.gp", "up/new.png", "/tmp/dinal-safe-mode.txt", "sub/../../new.pdf", "../lab2/x.svg" } do
+for _, name in ipairs { "../new.svg", folder .. "/../new.svg", "up/new.png", "/tmp/dinal-safe-mode.txt", "sub/../../new.pdf", "../lab2/x.svg" } do
     refused["drawing " .. name] = draws(name)
 end
 local results = strangers.run(refused, options, folder)
@@ -122,17 +122,8 @@ for _, name in ipairs { "a.csv", "sub/b.csv", "./c.dat", folder .. "/d.csv", "su
 end
 strangers.check(fine, options, 0, "saved\nread\n.*", folder)
 strangers.check({
-    ["drawing within the folder"] = draws "a.svg" .. draws "sub/b.png" .. draws "c.pdf" .. draws "d.gp" .. draws "e.txt",
-}, options, 0, ("saved\n"):rep(5), folder)
-
--- What gnuplot is told: the script's words and numbers are none of its commands.
-local words = run .. [[
-    for _, attack in ipairs { "`touch ../new`", "'; system('touch ../new'); '", "'\n!touch ../new\n", "\"`touch ../new`\"", "\\'\nsystem 'touch ../new' #", "$(touch ../new)", "@GPVAL_PWD" } do
-        run:plot{ title = attack, xlabel = attack, ylabel = attack, file = "words.svg" }
-        plot{ { { 0, 1 }, { 0, 1 }, label = attack }, file = "words.svg" }
-    end
-    print "drawn"]]
-strangers.check({ ["words are no commands of gnuplot"] = words }, options, 0, "drawn\n", folder)
+    ["drawing within the folder"] = draws "a.svg" .. draws "sub/b.png" .. draws "c.pdf" .. draws "e.txt",
+}, options, 0, ("saved\n"):rep(4), folder)
 
 test("what stands outside of the folder is as it was", function()
     local listing = io.popen(("cd '%s' && ls && cat secret.csv"):format(outer)):read "a"

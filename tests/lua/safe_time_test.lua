@@ -28,7 +28,7 @@ strangers.check({
     ["an iterator that never ends"] = "for _ in function() return 1 end do end",
     ["__index, __newindex and __call that go on for ever"] = "local t = setmetatable({}, {}) getmetatable(t).__index = function(t, k) return t[k + 1] or 1 end while true do pcall(function() return t[1] end) end",
     ["pictures in the terminal"] = "local p = plot{ { vector.linspace(0, 1, 1e5), vector.linspace(0, 1, 1e5) }, show = false } while true do tostring(p) end",
-    ["pictures in files, behind pcall"] = "local file = os.date 'dinal-safe-mode-test-%H%M%S.gp' while true do pcall(plot, { { { 0, 1 }, { 0, 1 } }, file = 'no/such/folder/' .. file }) end",
+    ["pictures in files, behind pcall"] = "local file = os.date 'dinal-safe-mode-test-%H%M%S.svg' while true do pcall(plot, { { { 0, 1 }, { 0, 1 } }, file = 'no/such/folder/' .. file }) end",
     ["__eq, __lt, __concat, __len that loop"] = "local m = {} for _, n in ipairs { 'eq', 'lt', 'concat', 'len', 'unm' } do m['__' .. n] = function() while true do end end end local a, b = setmetatable({}, m), setmetatable({}, m) local x = a == b",
     ["an error object whose __tostring loops"] = "error(setmetatable({}, { __tostring = function() while true do end end }))",
     ["print of what does not stop"] = "print(setmetatable({}, { __tostring = function() while true do end end }))",

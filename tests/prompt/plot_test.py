@@ -1,16 +1,11 @@
 """Plots on a terminal: as wide as it is, in colour. Usage: plot_test.py PROGRAM [unittest arguments]"""
 
-import os
-import pathlib
 import sys
-import tempfile
-import time
 import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
 from home import AtHome
-from session import CTRL_C, PATIENCE
 
 RUN = "run = nondimensional{ zeta = 0.1 }:simulate{ M = 3, theta0 = 1, t_end = 3, dt = 0.01 }"
 
@@ -44,21 +39,6 @@ class PlotTest(AtHome):
     def test_curves_have_colours_unless_the_user_or_the_terminal_has_none(self):
         self.assertIn("\x1b[36m", self.raw(self.start(), "run:plot()"))
         self.assertNotIn("\x1b[36m", self.raw(self.start(NO_COLOR="1"), "run:plot()"))
-
-    def test_ctrl_c_stops_a_gnuplot_that_does_not_heed_it(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        impostor = pathlib.Path(folder.name) / "gnuplot"
-        impostor.write_text(f"#!/bin/sh\ntrap '' INT\n: >{folder.name}/started\nexec sleep 120\n")
-        impostor.chmod(0o700)
-        session = self.start(PATH=f"{folder.name}:{os.environ['PATH']}")
-        session.press("run:plot{ file = 'run.svg' }\r")
-        until = time.monotonic() + PATIENCE
-        while not (impostor.parent / "started").exists() and time.monotonic() < until:
-            time.sleep(0.01)
-        session.press(CTRL_C)
-        self.assertIn("interrupted", session.until_prompt())
-        self.assertEqual(session.enter("6 * 7"), "42")
 
     def test_a_dumb_terminal_gets_ascii(self):
         # readline says nothing of pasting to a dumb terminal, so the prompt is only known by its text
