@@ -80,24 +80,8 @@ std::vector<std::string_view> paragraphs(std::string_view text) {
     return all;
 }
 
-void replace_all(std::string& text, std::string_view what, std::string_view by) {
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-        text.replace(at, what.size(), by);
-    }
-}
-
-/// From <svg on, and with names of its own: on a page with several pictures they would else be mixed up.
-std::string svg_in_page(const std::string& svg, std::size_t number) {
-    std::string own = svg;
-    for (const char* mark : {" id=\"", " id='", "href=\"#", "href='#", "url(#"}) {
-        replace_all(own, mark, fmt::format("{}p{}-", mark, number));
-    }
-    return own;
-}
-
 struct HtmlWriter {
     std::string page;
-    std::size_t pictures = 0;
 
     void operator()(const ReportHeading& item) { page += "<h2>" + text::html(item.text) + "</h2>\n"; }
     void operator()(const ReportText& item) {
@@ -112,7 +96,7 @@ struct HtmlWriter {
     }
     void operator()(const ReportPicture& item) {
         page += item.svg.empty() ? "<pre>" + text::html(item.text) + "</pre>\n"
-                                 : "<figure>\n" + svg_in_page(item.svg, ++pictures) + "</figure>\n";
+                                 : "<figure>\n" + plots::element_of(item.svg) + "</figure>\n";
     }
     void operator()(const DataHandle& item) { page += html_of(*item, most_table_rows); }
 };
