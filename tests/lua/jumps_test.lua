@@ -44,6 +44,7 @@ test("a belt that sets off from rest takes the mass along until spring, inertia 
     local I, k, Rd, Re, rate = 2, 3, 2.6, 4, 1.25 -- Rd alone, with a load of -0.25, would give less than I rate
     for _, case in ipairs {
         { 0, function(t) return rate * t end }, { 0, excitation.ramp { slope = rate } }, { 0.5, excitation.ramp { slope = rate, at = 0.5 } },
+        { 0.5, function(t) return rate * math.max(0, t - 0.5) end },
     } do
         local start, belt = table.unpack(case)
         for _, M in ipairs { 0, -0.25 } do

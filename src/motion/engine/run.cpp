@@ -149,6 +149,7 @@ private:
     [[nodiscard]] double known() const { return mechanics_.states_of_user() > 0 ? 1 - 3e-12 : 1; }
     [[nodiscard]] double belt_heading(std::size_t joint) const;
     [[nodiscard]] BeltSlope belt_slope(std::size_t joint) const { return slopes_[joint]; }
+    [[nodiscard]] bool belt_sets_off(std::size_t joint) const;
     void find_belt_slopes(std::optional<double> x);
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
@@ -503,6 +504,12 @@ double Engine::belt_heading(std::size_t joint) const {
     return rate == 0 ? 0 : std::copysign(std::numeric_limits<double>::min(), rate);
 }
 
+/// Its velocity is 0, or what it has become in the roundings of the time.
+bool Engine::belt_sets_off(std::size_t joint) const {
+    const double v = mechanics_.belt(joint, now_.hi, side());
+    return std::fabs(v) <= 16 * rounding * std::fabs(now_.hi * belt_slope(joint).rate);
+}
+
 /// At x of the last stretch; at a break from the right, where nothing tells them but the belts.
 void Engine::find_belt_slopes(std::optional<double> x) {
     slopes_.assign(mechanics_.joints(), {0, 0});
@@ -659,8 +666,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
                 const Motion slides = mode_.friction[worst].way;
                 if (mechanics_.rubs(worst) && slides == Motion::stuck) {
                     slide(worst, way, true);
-                } else if (mechanics_.rubs(worst) && mechanics_.belt(worst, now_.hi, side()) == 0) {
-                    mode_.friction[worst].way = Motion::stuck;  // it may go with the belt, which sets off
+                } else if (mechanics_.rubs(worst) && belt_sets_off(worst)) {
+                    mode_.friction[worst].way = Motion::stuck;  // it may go with the belt
                 }
             } else {
                 slide(worst, way, true);
