@@ -268,8 +268,8 @@ private:
                 const std::size_t i = place(right, panel_.view.x.at((column + 0.5) / map.width));
                 const auto band = i < shades.x.size() ? band_of(bands, shades.at(i, j)) : std::nullopt;
                 if (!band) continue;
-                map.dots[static_cast<std::size_t>(row * map.width + column)] =
-                    0xFF000000U | shade_colour(*band, bands.size());
+                map.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.width) +
+                         static_cast<std::size_t>(column)] = 0xFF000000U | shade_colour(*band, bands.size());
             }
         }
         map.put(page_.to);
@@ -416,9 +416,9 @@ private:
     /// Whether a line from here to there would change nothing: a million lines above one another are no more ink than a
     /// few.
     static bool is_inked(Image& image, Point from, Point to, std::uint32_t colour) {
-        const double steps = std::ceil(std::max({std::fabs(to.x - from.x), std::fabs(to.y - from.y), 1.0}));
-        for (double step = 0; step <= steps; ++step) {
-            const double part = step / steps;
+        const int steps = 1 + static_cast<int>(std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y)));
+        for (int step = 0; step <= steps; ++step) {
+            const double part = static_cast<double>(step) / steps;
             const std::uint32_t* dot = image.at({from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)});
             if (dot != nullptr && *dot != (0xFF000000U | colour)) return false;
         }
