@@ -315,6 +315,15 @@ double longest_delay(const model::Excitation& excitation) {
     return most;
 }
 
+double shortest_sampling(const model::Excitation& excitation) {
+    double least = model::never;
+    for (const model::Component& c : excitation.components()) {
+        if (const auto* sampled = model::controller_of<model::SampledController>(c))
+            least = std::min(least, sampled->every);
+    }
+    return least;
+}
+
 double size_of_step(const VectorXd& step) {
     return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
 }
@@ -562,7 +571,9 @@ public:
           t_(search.question().repeats.start) {
         for (const model::Excitation& load : s_.question().drive.loads) {
             delay_ = std::max(delay_, longest_delay(load));
+            if (timeless_ && length_ > 0) beside_ = std::min(beside_, shortest_sampling(load) / 2);
         }
+        if (beside_ == model::never) beside_ = 0;
         stretch_ = 2 * std::max(s_.pace(), delay_);
     }
 
@@ -599,7 +610,7 @@ private:
     /// One return more; false when that is the end.
     bool goes_on() {
         const double start = t_;
-        t_ = length_ > 0 ? s_.question().repeats.start + static_cast<double>(sizes_.size() + 1) * length_
+        t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
                          : start + stretch_;
         run_ = s_.runs_.go_on(run_.carry, start, t_, motion::Grid::none(), passage_);
         SteadyMotion& facts = s_.facts_;
@@ -696,6 +707,7 @@ private:
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
+        if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
         s_.tell_settled(run_);
     }
 
@@ -712,6 +724,9 @@ private:
 
     ReturnSearch& s_;
     double length_, delay_ = 0, stretch_;  // of a return, or 0; of the greatest dead time; of a run to a passage
+    /// How long after the instants at which all controllers sample it is looked at: by rounding some of them sample
+    /// before such an instant and some after it. None samples half of the shortest interval later.
+    double beside_ = model::never;
     bool timeless_;
     double t_;
     std::optional<model::WantedEvent> passage_;

@@ -87,5 +87,6 @@ class Session:
 
     def exit_code(self):
         self.child.expect(pexpect.EOF)
+        self.child.wait()  # a busy machine may take a while to end what has closed its terminal
         self.child.close()
         return self.child.exitstatus
