@@ -225,7 +225,7 @@ public:
     }
 
     Quantity quantity(std::string_view name, Quantity otherwise) {
-        return options_.has(name) ? given(name) : otherwise;
+        return options_.has(name) ? given(name) : std::move(otherwise);
     }
     /// All options of a call that takes nothing else.
     template <std::size_t n>

@@ -248,6 +248,7 @@ std::vector<DataColumn> PointGrid::columns(const std::vector<std::size_t>& point
     std::vector<DataColumn> columns;
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
         std::vector<std::size_t> places;
+        places.reserve(points.size());
         for (const std::size_t point : points) places.push_back(place(i, point));
         columns.push_back(parameters_[i].rows(places));
     }

@@ -12,14 +12,12 @@
 #include <vector>
 
 #include "lua/bind.hpp"
+#include "lua/vector.hpp"
 
 namespace dinal::lua {
 
 /// What a getter returns that has pushed its value by itself.
 struct Pushed {};
-
-/// Pushes a vector; in lua/vector.hpp.
-int push_vector(lua_State* L, std::vector<double> values);
 
 /// An argument that can be called.
 struct Callable {
@@ -158,7 +156,7 @@ decltype(auto) argument(lua_State* L, int index) {
     if constexpr (requires(T t) { t.has_value(); }) {
         return lua_isnoneornil(L, index) ? T() : T(argument<typename T::value_type>(L, index));
     } else if constexpr (std::is_same_v<T, double>) {
-        const double number = lua_tonumber(L, index);
+        double number = lua_tonumber(L, index);
         if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(number)) raise_argument(L, index, "a finite number");
         return number;
     } else if constexpr (std::is_same_v<T, std::string>) {
@@ -166,7 +164,7 @@ decltype(auto) argument(lua_State* L, int index) {
         return std::string(lua_tostring(L, index));
     } else if constexpr (std::is_same_v<T, lua_Integer>) {
         int whole = 0;
-        const lua_Integer number = lua_type(L, index) == LUA_TNUMBER ? lua_tointegerx(L, index, &whole) : 0;
+        lua_Integer number = lua_type(L, index) == LUA_TNUMBER ? lua_tointegerx(L, index, &whole) : 0;
         if (whole == 0) raise_argument(L, index, "a whole number");
         return number;
     } else if constexpr (std::is_same_v<T, Callable>) {

@@ -998,6 +998,7 @@ std::vector<DataColumn> SweepResults::columns(const std::vector<std::size_t>& po
     std::vector<DataColumn> columns;
     for (const auto& [name, numbers] : columns_) {
         std::vector<double> values;
+        values.reserve(points.size());
         for (const std::size_t point : points) values.push_back(numbers[point]);
         auto words = this->words(values);
         columns.push_back(words ? column_of(name, std::move(*words)) : column_of(name, std::move(values)));
