@@ -1978,6 +1978,7 @@ void Engine::watch_conditions(Ending& ending) {
         double first = -1, last = 1;
         [[nodiscard]] double place(double x) const { return first + (x + 1) * (last - first) / 2; }
     };
+    const auto is_known = [](double v) { return std::isfinite(v); };
     // False if it has not a value everywhere in this part.
     const auto watch = [&](Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
         const bool whole = part.first == -1 && part.last == 1;
@@ -1988,7 +1989,7 @@ void Engine::watch_conditions(Ending& ending) {
             return margins[c];
         };
         if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
-        if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return false;
+        if (!std::all_of(values.begin(), values.end(), is_known)) return false;
         // What M drives back may be on the wrong side already, by no more than rounding.
         const double beyond = std::max(64 * rounding * greatest(values), 16 * rounded);
         const auto* const clear =
@@ -2026,14 +2027,12 @@ void Engine::watch_conditions(Ending& ending) {
             function.margins({segment_.times[0], segment_.side(0), y}, margins);
             for (std::size_t c = 0; c < count; ++c) {
                 const double change = std::fabs(margins[c] - values[c][0]);
-                if (std::isfinite(change)) rounded[c] += change;
+                if (is_known(change)) rounded[c] += change;
             }
             y[k] = y_[k];
         }
         for (std::size_t c = 0; c < count; ++c) {
-            if (std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) {
-                watch(function, c, values[c], rounded[c], {});
-            } else {
+            if (!watch(function, c, values[c], rounded[c], {})) {
                 not_finite.push_back({&function, c, values[c], rounded[c]});
             }
         }
@@ -2043,7 +2042,6 @@ void Engine::watch_conditions(Ending& ending) {
     const double end_of_others = earliest;
     for (const Unknown& u : not_finite) {
         constexpr double within = 1e-12;
-        const auto is_known = [](double v) { return std::isfinite(v); };
         const auto* const begin = u.values.begin() + (is_known(u.values[0]) ? 0 : 1);
         const auto* const bad = std::find_if_not(begin, u.values.end(), is_known);
         if (bad == begin) continue;
