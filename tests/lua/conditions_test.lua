@@ -170,6 +170,23 @@ test("what jumps along with a condition, or only touches its limit there, does n
     near(ends[1], ends[2], 1e-12)
 end)
 
+test("what a long stretch has crossed is crossed for the short one behind it, too", function()
+    -- behind theta = 0 the next stretch ends at t = 1
+    local ends = {}
+    for i, low in ipairs {
+        function(t, theta) return theta < 0 and math.min(-t, -1) or -t end,
+        function(t, theta) return theta < 0 and t < 1 and -1 or -t end,
+    } do
+        local run = system { I = 1, k = 4, C = 0.02, Rd = 0.1, Re = 0.15 }:simulate {
+            M = function(_, _, _, state) return state.z end, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
+            states = { z = { start = 0.1, rate = function(t, theta, _, state) return math.sin(low(t, theta)) - state.z end } },
+        }
+        equal(run.status, "end", i)
+        ends[i] = run.theta[#run.theta]
+    end
+    near(ends[1], ends[2], 1e-11)
+end)
+
 test("digits that somebody cuts off are noise, not conditions", function()
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
     near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)

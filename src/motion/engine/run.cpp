@@ -262,9 +262,11 @@ private:
         const Piecewise* function = nullptr;
         std::size_t step = 0;
         double from = 0, t = -model::never;  ///< the decision that it had until then
+        double within = 0;                   ///< so near to zero it was taken to be
     } crossed_last_;
-    int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
-    int small_in_a_row_ = 0;  ///< jumps at conditions
+    double crossed_within_ = 0;  ///< of what is about to be crossed
+    int to_and_fro_ = 0;         ///< crossings of one condition, each soon after the one before
+    int small_in_a_row_ = 0;     ///< jumps at conditions
     double greatest_crossed_ = 0;
     std::vector<double> soon_;   ///< what moves, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
@@ -1971,7 +1973,13 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
 void Engine::watch_conditions(Ending& ending) {
     const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
     const double before = ending.x - (at_standstill ? beside_standstill : 0);
-    std::vector<std::tuple<double, Piecewise*, std::size_t>> crossings;
+    struct Crossing {
+        double x;
+        Piecewise* function;
+        std::size_t condition;
+        double within;
+    };
+    std::vector<Crossing> crossings;
     double earliest = std::min(1.0, before);
     std::vector<double> y, margins;
     struct Part {
@@ -1991,7 +1999,7 @@ void Engine::watch_conditions(Ending& ending) {
         if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
         if (!std::all_of(values.begin(), values.end(), is_known)) return false;
         // What M drives back may be on the wrong side already, by no more than rounding.
-        const double beyond = std::max(64 * rounding * greatest(values), 16 * rounded);
+        const double within = 64 * rounding * greatest(values), beyond = std::max(within, 16 * rounded);
         const auto* const clear =
             std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
         const bool is_back = values[0] < -rounded && clear != values.end() && *clear < 0;
@@ -1999,7 +2007,7 @@ void Engine::watch_conditions(Ending& ending) {
         auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
         if (x && !whole) x = part.place(*x);
         if (x && *x < before) {
-            crossings.emplace_back(*x, &function, c);
+            crossings.push_back({*x, &function, c, within});
             earliest = std::min(earliest, *x);
         }
         return true;
@@ -2031,6 +2039,11 @@ void Engine::watch_conditions(Ending& ending) {
             }
             y[k] = y_[k];
         }
+        // What has just been crossed is as near to zero as it was then, also in a stretch that is shorter.
+        for (std::size_t c = 0; c < count && crossed_last_.function == &function && crossed_last_.t == now_.hi; ++c) {
+            if (function.conditions()[c].step == crossed_last_.step)
+                rounded[c] = std::max(rounded[c], crossed_last_.within);
+        }
         for (std::size_t c = 0; c < count; ++c) {
             if (!watch(function, c, values[c], rounded[c], {})) {
                 not_finite.push_back({&function, c, values[c], rounded[c]});
@@ -2054,10 +2067,12 @@ void Engine::watch_conditions(Ending& ending) {
     }
     if (crossings.empty()) return;
     ending = {earliest, By::condition};
+    crossed_within_ = 0;
     // Of a function the first step only: what follows from it, as |v| > 0 from the sign of v, may not change at all.
     std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
-    for (const auto& [x, function, condition] : crossings) {
+    for (const auto& [x, function, condition, within] : crossings) {
         if (x > earliest + one_instant) continue;
+        crossed_within_ = std::max(crossed_within_, within);
         const auto same =
             std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });
         if (same == first.end()) {
@@ -2092,7 +2107,7 @@ bool Engine::cross(const Ending& ending) {
         const bool back = crossed_last_.function == function && crossed_last_.step == step &&
                           crossed_last_.from == beyond && now_.hi - crossed_last_.t <= soon * pace_;
         to_and_fro_ = back ? to_and_fro_ + 1 : 0;
-        crossed_last_ = {function, step, function->decision(step), now_.hi};
+        crossed_last_ = {function, step, function->decision(step), now_.hi, crossed_within_};
         const double before = function->value(here());
         function->cross(condition);
         const double jump = std::fabs(function->value(here()) - before);
