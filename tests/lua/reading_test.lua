@@ -372,4 +372,16 @@ test("random functions give the same bits read as asked", function()
     assert(read > 0.8 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
 end)
 
+test("a long text is compared by its content", function()
+    local wanted = "emergency stop with a locked brake, full load"
+    for _, case in ipairs { wanted, table.concat({ "emergency stop with a locked", "brake, full load" }, " "), "emergency stop" } do
+        local function M(t) if t > 1 and case == wanted then return 1 end return t end
+        local function other(t) if t > 1 and case ~= wanted then return 0 end return t * t end
+        for _, f in ipairs { M, other } do
+            equal(excitation.scripted(f):obstacle(), nil)
+            near(system { I = 1, k = 1, C = 1 }:simulate { M = f, times = { 2 } }.M[1], f(2.0), 1e-15)
+        end
+    end
+end)
+
 finish()
