@@ -491,8 +491,11 @@ private:
                 if (fails_) return note(at), true;
                 result.of_motion = a.of_motion || b.of_motion;
                 result.folds = result.folds || a.folds || b.folds;
-                for (const std::uint64_t piece : {a.piece, s.a == s.b ? 0 : b.piece}) {
-                    if (piece != 0) result.piece = (result.piece ^ piece) * prime;
+                // The step is mixed in, or equal pieces of both operands would cancel.
+                if (a.piece != 0 || b.piece != 0) {
+                    for (const std::uint64_t piece : {at + 1, a.piece, b.piece}) {
+                        result.piece = (result.piece ^ piece) * prime;
+                    }
                 }
                 r[s.to] = result;
                 ++at;

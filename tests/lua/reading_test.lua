@@ -384,4 +384,33 @@ test("a long text is compared by its content", function()
     end
 end)
 
+test("a folded time that is used twice has its breaks in every period", function()
+    local functions = {
+        function(t) local x = t % 0.5 return x - x * x end,
+        function(t) local x = t % 0.5 return x * x - x end,
+        function(t) local x = t % 0.5 return x * (1 - x) * 4 end,
+        function(t) local x = t % 0.5 return (x + x) - x * x end,
+        function(t) local x = math.abs(t - 0.5) return x - x * x end,
+        function(t) local x = t // 0.5 return x * x - x end,
+    }
+    for i, f in ipairs(functions) do equal(excitation.scripted(f):next_break(0.1), 0.5, i) end
+end)
+
+test("a train of parabolas moves a mass as its formula does", function()
+    local sys = system { I = 1, k = 4, C = 0.2, Rd = 0.05 }
+    local trains = {
+        function(t) local x = t % 0.5 return x - x * x end,
+        function(t) local x = t % 0.04 / 0.04 return x * (1 - x) end,
+        function(t) local x = (t % 0.03) / 0.03 return x * (1 - x) * 4 end,
+    }
+    for i, f in ipairs(trains) do
+        local options = { M = f, theta0 = 0.3, t_end = 6, dt = 0.1 }
+        local run = sys:simulate(options)
+        options.M = unread(f)
+        near(run.theta, sys:simulate(options).theta, 1e-9)
+        near(run.M[4], f(run.t[4]), 1e-12)
+        equal(run.outcome, "reached the end", i)
+    end
+end)
+
 finish()
