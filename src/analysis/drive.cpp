@@ -290,8 +290,7 @@ std::complex<double> harmonic_of(const model::Excitation& excitation, const Driv
         const auto number = harmonic_number(c, drive);
         if (number == n && n > 0) {
             const auto& sine = std::get<model::Harmonic>(c.term);
-            known += std::polar(1.0, sine.omega * drive.start + sine.phase - std::numbers::pi / 2) *
-                     (c.gain * sine.amplitude);
+            known += std::polar(1.0, sine.angle(drive.start) - std::numbers::pi / 2) * (c.gain * sine.amplitude);
         }
         return number.has_value() && n > 0;
     });

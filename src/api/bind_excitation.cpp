@@ -68,20 +68,58 @@ std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
     return terms.empty() ? std::nullopt : std::optional(sum);
 }
 
+/// Whether the terms equal the formula between these times, to its own rounding and that of the times: what
+/// stands for a formula is compared with it before the run begins.
+bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon(),
+                     allowed = 1e-12;  // of a time; of the values
+    double greatest = 0, worst = 0;
+    for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {
+        const double t = to < no_end ? from + part * (to - from) : from + std::exp(10 * part);
+        const double value = formula.value(t, {}, {}), near = rounding * std::fabs(t);
+        const double slope = std::fabs(formula.value(t + near, {}, {}) - formula.value(t - near, {}, {}));
+        const double apart = std::fabs(terms.value(t) - value) - slope;
+        if (!std::isfinite(apart)) return false;
+        greatest = std::max(greatest, std::fabs(value));
+        worst = std::max(worst, apart);
+    }
+    return worst <= allowed * greatest;
+}
+
+/// The same for terms that repeat: in the middles of the pieces of the first, the second and the last period.
+bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& middles, double period,
+           double to) {
+    constexpr double allowed = 1e-12, far = 1000;  // of the values; periods, where there is no last one
+    double greatest = 0, worst = 0;
+    for (const double middle : middles) {
+        const double last = to < no_end ? std::floor((to - middle) / period) : far;
+        for (const double n : {0.0, 1.0, last}) {
+            const double t = middle + std::max(n, 0.0) * period, value = formula.value(t, {}, {});
+            const double apart = std::fabs(terms.value(t) - value);
+            if (!std::isfinite(apart)) return false;
+            greatest = std::max(greatest, std::fabs(value));
+            worst = std::max(worst, apart);
+        }
+    }
+    return worst <= allowed * greatest;
+}
+
 /// A function that is constant on each piece between two breaks, and repeats: the differences from its first piece are
 /// square waves.
-std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double period) {
+std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double to, double period) {
     constexpr int most_pieces = 50;
     constexpr double least = 1e-9;  // of a period: the last piece may seem to end a little before it
     const double first = function.next_break(from), end = first + period * (1 - least);
     std::vector<model::Term> made;
+    std::vector<double> middles;
     double base = 0, offset = 0;
     double next = first;
     while (next < end) {
         const double t = next;
         next = function.next_break(t);
         const double width = std::min(next, first + period) - t;
-        const auto terms = function.formula()->terms(t, t + width / 2);
+        middles.push_back(t + width / 2);
+        const auto terms = function.formula()->terms(t, middles.back());
         const auto* level = terms.size() == 1 ? std::get_if<model::Constant>(&terms.front()) : nullptr;
         if (level == nullptr || made.size() > most_pieces) return {};
         if (t == first) base = offset = level->amplitude;
@@ -91,18 +129,19 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         offset += half;
     }
     made.emplace_back(model::Constant{offset});
-    return sum_of(made);
+    auto sum = sum_of(made);
+    return sum && agree(*function.formula(), *sum, middles, period, to) ? sum : std::nullopt;
 }
 
 /// The function as native terms from one time to another, piece by piece.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
     if (!(function.next_break(from) < to)) {
-        const auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
-        return sum_of(terms);
+        auto terms = sum_of(function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from));
+        return terms && agree(*function.formula(), *terms, from, to) ? terms : std::nullopt;
     }
     if (const double period = function.formula()->period(); period > 0) {
-        if (auto waves = squares(function, from, period)) return waves;
+        if (auto waves = squares(function, from, to, period)) return waves;
     }
     if (!(to < no_end)) return {};
     model::Excitation sum;
@@ -111,7 +150,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
         const double next = std::min(function.next_break(t), to);
         if (function.formula() == nullptr || n == most_pieces) return {};
         const auto piece = sum_of(function.formula()->terms(t, t + (next - t) / 2));
-        if (!piece) return {};
+        if (!piece || !agree(*function.formula(), *piece, t, next)) return {};
         double until = model::never;
         if (next < to) until = next;
         sum = sum + piece->windowed(t, until);

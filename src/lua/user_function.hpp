@@ -135,7 +135,7 @@ public:
     /// The same as it was found last.
     [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
     /// Its formula, when it is read.
-    [[nodiscard]] const model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
+    [[nodiscard]] model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 

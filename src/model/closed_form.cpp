@@ -40,10 +40,7 @@ void ClosedForm::add_powers(double at, std::span<const double> coefficients) {
 
 /// The phase at the origin is a sum in two doubles: far from `at` its rounding would be that of the time.
 void ClosedForm::add_sine(double amplitude, double omega, double at, double phase) {
-    const double far = time_ - at;
-    const double back = time_ - far;
-    const double rest = ((time_ - (far + back)) + (back - at)) + rest_;
-    const auto [angle, small] = terms::angle_at(far, rest, omega, phase);
+    const auto [angle, small] = terms::angle_at(time_, rest_, omega, at, phase);
     const double s = std::sin(angle), c = std::cos(angle), a = gain_ * amplitude;
     if (omega == 0) {
         powers_[0] += a * (s + small * c);

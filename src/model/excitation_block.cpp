@@ -57,7 +57,7 @@ struct Sum {
 std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                       Spread& spread) {
     const Spread::Turn& turn = spread.turn(h.omega);
-    const Sum sum(c.gain * h.amplitude, terms::angle_at(spread.middle, spread.rest, h.omega, h.phase));
+    const Sum sum(c.gain * h.amplitude, terms::angle_at(spread.middle, spread.rest, h.omega, h.at, h.phase));
     const std::size_t last = spread.places.size() - 1, n = times.size();
     std::size_t i = 0, end = n;
     if (spread.first == 0) out[0] += c.gain * h.value(times[0]), i = 1;
@@ -85,7 +85,7 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
         cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
     }
     for (std::size_t i = 0; i < n; i += stride) {
-        const Sum sum(c.gain * h.amplitude, {h.omega * times[i] + h.phase, 0});
+        const Sum sum(c.gain * h.amplitude, {h.angle(times[i]), 0});
         const std::size_t count = std::min(stride, n - i);
         for (std::size_t j = 0; j < count; ++j) {
             out[i + j] += sum.at(sine[j], cosine[j]);

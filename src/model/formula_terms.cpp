@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t most_powers = 4;
 
-/// c[0] + c[1] t + ... + sines + exponentials.
+/// c[0] + c[1] x + ... + sines + exponentials, where x is the time since the beginning of a piece: counted from t = 0
+/// the digits of a short piece far from there would cancel.
 struct TermSum {
     struct Grown {
         double amplitude, rate;
@@ -234,7 +235,7 @@ std::vector<Term> Formula::terms(double from, double inside) const {
     if (motion_ || state_count_ != 0) return {};
     std::vector<std::optional<TermSum>> registers;
     for (const double x : registers_) registers.push_back(TermSum{.powers = {x}});
-    registers[0] = TermSum{.powers = {0, 1}};
+    registers[0] = TermSum{.powers = {from, 1}};
     std::vector<double> r = registers_;
     r[0] = inside;
     TermSum sum;
@@ -281,11 +282,14 @@ std::vector<Term> Formula::terms(double from, double inside) const {
     if (sum.is_constant()) {
         made.emplace_back(Constant{sum.power(0)});
     } else if (sum.powers.size() > 1 || sum.power(0) != 0) {
-        made.emplace_back(Polynomial{.coefficients = sum.powers});
+        made.emplace_back(Polynomial{.coefficients = sum.powers, .at = from});
     }
-    for (const Harmonic& sine : sum.sines) made.emplace_back(sine);
+    for (Harmonic sine : sum.sines) {
+        sine.at = from;
+        made.emplace_back(sine);
+    }
     for (const auto& [amplitude, rate] : sum.exponentials) {
-        made.emplace_back(Exponential{.amplitude = amplitude * std::exp(rate * from), .tau = -1 / rate, .at = from});
+        made.emplace_back(Exponential{.amplitude = amplitude, .tau = -1 / rate, .at = from});
     }
     return made;
 }

@@ -413,4 +413,38 @@ test("a train of parabolas moves a mass as its formula does", function()
     end
 end)
 
+test("native terms of a short piece far from t = 0 have the digits of their formula", function()
+    local sys = system { I = 1, k = 4, C = 0.2 }
+    local shapes = {
+        function(x) return 1 - x * x end,
+        function(x) return (1 + x) ^ 2 * (2 - x) / 4 end,
+        function(x) return math.cos(math.pi * x / 2) end,
+        function(x) return math.exp(-3 * (x + 1)) end,
+    }
+    for _, place in ipairs { { 20002, 0.01 }, { 155001.1, 0.001 }, { 1e4, 0.3 }, { -3e5, 0.01 } } do
+        local at, width = place[1], place[2]
+        for i, shape in ipairs(shapes) do
+            local function f(t)
+                local x = (t - at) / width
+                if x > -1 and x < 1 then return shape(x) / width end
+                return 0
+            end
+            local options = { M = f, t_start = at - 2, times = { at + 4 } }
+            local theta = sys:simulate(options).theta[1]
+            equal(tostring(sys:simulate(options).integrator), "integrator.exact{}")
+            options.integrator = integrator.spectral {}
+            near(theta, sys:simulate(options).theta[1], 1e-9)
+            assert(math.abs(theta) > 0.05, i)
+        end
+    end
+end)
+
+test("a formula whose native terms would lose its digits is followed itself", function()
+    local sys = system { I = 1, k = 4, C = 0.2 }
+    local function f(t) return (t - 1000) ^ 2 * 1e-6 - (t - 1000) ^ 3 * 1e-9 + 1e9 * (1e-9 * math.sin(t) + 1) - 1e9 end
+    local run = sys:simulate { M = f, t_end = 20, dt = 0.5 }
+    equal(tostring(run.integrator), "integrator.spectral{}")
+    near(run.M[11], f(run.t[11]), 5e-7)  -- to its own rounding
+end)
+
 finish()

@@ -5,22 +5,25 @@
 
 namespace dinal::model::terms {
 
-/// omega t + phase at `t` + `rest`, and what it lacks: far from t = 0 that is all a sine loses.
+/// omega (t - at) + phase at `t` + `rest`, and what it lacks: far from `at` that is all a sine loses.
 struct Angle {
     double rounded, lack;
 };
-inline Angle angle_at(double t, double rest, double omega, double phase) {
-    const double turned = omega * t, angle = turned + phase, part = angle - turned;
-    return {angle, ((turned - (angle - part)) + (phase - part)) + (std::fma(omega, t, -turned) + omega * rest)};
+inline Angle angle_at(double t, double rest, double omega, double at, double phase) {
+    const double far = t - at, back = t - far;
+    rest += (t - (far + back)) + (back - at);
+    const double turned = omega * far, angle = turned + phase, part = angle - turned;
+    return {angle, ((turned - (angle - part)) + (phase - part)) + (std::fma(omega, far, -turned) + omega * rest)};
 }
 
-/// amplitude sin(omega t + phase)
+/// amplitude sin(omega (t - at) + phase)
 struct Harmonic {
     static const TermText about;
 
-    double amplitude = 1, omega = 0, phase = 0;
+    double amplitude = 1, omega = 0, phase = 0, at = 0;
 
-    [[nodiscard]] double value(double t) const { return amplitude * std::sin(omega * t + phase); }
+    [[nodiscard]] double angle(double t) const { return omega * (t - at) + phase; }
+    [[nodiscard]] double value(double t) const { return amplitude * std::sin(angle(t)); }
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const { return omega == 0 ? -never : never; }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
@@ -28,12 +31,12 @@ struct Harmonic {
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {
-        sum.add_sine(amplitude, omega, 0, phase);
+        sum.add_sine(amplitude, omega, at, phase);
     }
     void delay_by(double d) { phase -= omega * d; }
     [[nodiscard]] std::string formula(double gain) const {
         const std::string shift = phase == 0 ? "" : (phase < 0 ? " - " : " + ") + number(std::fabs(phase));
-        return factor(gain * amplitude) + "sin(" + number(omega) + " t" + shift + ")";
+        return factor(gain * amplitude) + "sin(" + number(omega) + " " + since(at) + shift + ")";
     }
 };
 
