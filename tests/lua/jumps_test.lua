@@ -178,4 +178,12 @@ test("a belt may jump right behind the start", function()
     end
 end)
 
+test("a feedback that jumps at velocity 0 and cannot be read ends with a sentence", function()
+    local function f(_, _, v) local _ = select("#") if v < 0 then return 5 end return 0 end
+    local run = system { I = 1, k = 4, Rd = 0.1 }:simulate { M = f, t_end = 3, theta0 = 0.3 }
+    has(run.outcome, "switched endlessly")
+    equal(run.t_end, 0.0)
+    equal(run:at(0), 0.3)
+end)
+
 finish()

@@ -99,6 +99,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       m_(mechanics.states()),
       fastest_belt_(mechanics.joints()),
       fastest_rate_(m_),
+      allowed_(n_),
       noise_(n_),
       stalled_(n_),
       offset_(n_),
