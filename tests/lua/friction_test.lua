@@ -179,4 +179,21 @@ test("a system with Stribeck's law shows Rd, not the friction at standstill", fu
     has(told, "Rd = 0.3 while sliding, Re = 0.6 to break away. Friction falls from Re at rest to Rd at high speed.")
 end)
 
+test("what can hold nothing at rest goes with a torque that falls with the velocity", function()
+    local function M(t, _, v) return t - v end
+    local open = { I = 1, k = 0, Rd = 1, normal = 0 }
+    local wanted = math.exp(-1)  -- t + exp(-t) - 1 is the velocity of v' = t - v
+    for _, own in ipairs { open, { I = 1, k = 0 }, { I = 1, k = 0, friction = friction.law(function() return 0 end) } } do
+        local run = system(own):simulate { M = M, t_end = 1 }
+        equal(run.outcome, "reached the end")
+        near(select(2, run:at(1)), wanted, 1e-12)
+    end
+    local bodies = { a = { I = 1 }, b = { I = 1 } }
+    local rig = system { bodies = bodies, links = { clutch = { "a", "b", Rd = 1, normal = 0 } } }
+    local run = rig:simulate { M = { a = function(t, _, v) return t - v.a end }, t_end = 1 }
+    equal(run.outcome, "reached the end")
+    near(run.a.velocity[#run.t], wanted, 1e-12)
+    near(run.b.velocity[#run.t], 0, 1e-12)
+end)
+
 finish()

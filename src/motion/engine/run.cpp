@@ -386,7 +386,11 @@ const Frame& Engine::frame() {
 double Engine::torque_size(std::size_t joint) const {
     if (sizes_at_ != now_.hi || sizes_.empty()) {
         sizes_.assign(n(), 0);
-        for (std::size_t i = 0; i < n() && !segment_.loads.empty(); ++i) sizes_[i] = greatest(segment_.loads[i]);
+        for (std::size_t i = 0; i < n() && !segment_.loads.empty(); ++i) {
+            sizes_[i] = greatest(segment_.loads[i]);
+            // What depends on the motion may be 0 here, and would be a little later.
+            if (mechanics_.loads()[i].asks_the_motion()) sizes_[i] = std::max(sizes_[i], greatest(segment_.driven[i]));
+        }
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const Joint& own = problem_.system.joints[j];
             const double size = mechanics_.size_of(j, here());
@@ -1399,6 +1403,7 @@ bool Engine::advance() {
     decide_conditions({now_.hi, side(), departing()}, mode_);
     segment_.low = low_, sampled_.clear();
     const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
+    sizes_at_ = -model::never;  // they depend on the loads of the stretch
     const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
     if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
         return outcome_ == Outcome::reached_end;
