@@ -369,6 +369,8 @@ public:
         return {};
     }
 
+    /// By Newton's method from here.
+    std::optional<Closed> at_once(const Return& from) { return newton(from, 1, 1e6); }
     [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
     [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
 
@@ -422,7 +424,7 @@ private:
         return Closed{from.to, *from.mode, m, back.time, size_of_step(back.to - from.to)};
     }
 
-    std::optional<Closed> newton(const Return& from, int m) {
+    std::optional<Closed> newton(const Return& from, int m, double farthest = 1) {
         VectorXd x = from.to;
         std::optional<Closed> best;
         std::optional<Eigen::MatrixXd> D;
@@ -445,7 +447,6 @@ private:
             const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - *D;
             const VectorXd step = algebra::solve_shortest(left, off);
             if (!step.allFinite()) return good(best);
-            constexpr double farthest = 1;
             x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
         }
         return good(best);
@@ -517,8 +518,15 @@ void ReturnSearch::forced() {
     const auto first = stretch(now, start, period, reach);
     if (!first) return;
     now = Runs::at_stop(*first);
+    if (question().periods <= 1) {
+        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
+        ClosedSearch search(map, facts_.maps, 1);
+        const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
+        if (found && tells_closed(map, *found)) return;
+    }
     std::vector<double> ranges{greatest(reach, n())};  // of single periods
-    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one
+    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one,
+    std::size_t between = 1;    // whose ends are so many returns apart
     const double natural = runs_.natural_period();
     const int longest = question().periods > 0 ? question().periods : 32;
     for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
@@ -545,7 +553,7 @@ void ReturnSearch::forced() {
         };
         const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
         sizes.push_back(largest(0, half));
-        if (half < seen.size()) sizes.push_back(largest(half, seen.size()));
+        if (half < seen.size()) sizes.push_back(largest(half, seen.size())), between = seen.size() - half;
         now = map.moment(seen.back().to, seen.back().mode);
         if (!stretch(now, start, period, reach)) return;
         ranges.push_back(greatest(reach, n()));
@@ -554,7 +562,7 @@ void ReturnSearch::forced() {
     const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
     if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
         facts_.status = SteadyStatus::grows;
-        facts_.growth = (sizes[2] - sizes[1]) / 160;
+        facts_.growth = (sizes[2] - sizes[1]) / static_cast<double>(between);
     }
 }
 

@@ -188,4 +188,27 @@ test("bifurcation looks at one of the bodies", function()
     end, "of = \"load\"")
 end)
 
+test("what damping bounds is not said to grow near its resonance", function()
+    for _, C in ipairs { 0.1, 0.01, 0.001, 0.0001 } do
+        local own = { I = 1, k = 1, C = C, Rd = 0.01 }
+        local M = excitation.harmonic { omega = 0.999 }
+        local idle = { z = { start = 0, rate = function(_, _, _, z) return -z.z end } }
+        local wanted = system(own):steady { M = M }
+        local motions = { system(own):steady { M = M, states = idle }, system { bodies = { a = own } }:steady { M = { a = M } }.a }
+        for i, s in ipairs(motions) do
+            equal(s.status, "steady", i)
+            near(s.amplitude / wanted.amplitude, 1, 1e-8)
+        end
+    end
+end)
+
+test("the growth of bodies is that in one period", function()
+    local own = { I = 1, k = 1, Rd = 0.1 }
+    local M = excitation.harmonic { omega = 1 }
+    local s = system { bodies = { a = own } }:steady { M = { a = M } }
+    equal(s.status, "grows")
+    near(s.growth, math.pi - 0.4, 1e-3)
+    near(s.growth, system(own):steady { M = M }.growth, 1e-3)
+end)
+
 finish()
