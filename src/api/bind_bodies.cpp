@@ -571,9 +571,7 @@ int simulate_bodies(lua_State* L) {
     run->drive = asked_drive(L, options, *system);
     const motion::Window window{asked.t_start,
                                 asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
-    if (!std::isfinite(window.end) || !std::isfinite(window.start) || !(window.end > window.start)) {
-        options.fail("t_end", fmt::format("t_end = {} must be after t_start = {}", window.end, window.start));
-    }
+    if (const auto wrong = window.complaint()) options.fail(*wrong);
     constexpr double rows = 1000;
     run->dt = asked.dt.value_or((window.end - window.start) / rows);
     const motion::Grid grid = options.has("times") ? motion::Grid::at(asked.times) : motion::Grid::every(run->dt);

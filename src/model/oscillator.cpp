@@ -59,7 +59,8 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
                                     p.inertia, p.damping),
             .option = "I"};
     }
-    if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
+    // Integrators bound motions by the fourth power of the frequency.
+    if (!std::isnormal(std::pow(o.natural_frequency(), 4)) || !std::isnormal(std::pow(o.natural_period(), 4)) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
         return text::Error{.sentence = fmt::format(

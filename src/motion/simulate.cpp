@@ -134,6 +134,27 @@ std::optional<text::Error> lost_term(const model::Excitation& excitation, const 
 
 }  // namespace
 
+std::optional<text::Error> Window::complaint() const {
+    constexpr double longest = 1e70;  // time units: bounds of motions contain its fourth power
+    if (!std::isfinite(start)) {
+        return text::Error{.sentence = fmt::format("t_start = {} must be a finite number", start), .option = "t_start"};
+    }
+    if (!std::isfinite(end)) {
+        return text::Error{.sentence = fmt::format("t_end = {} must be a finite number", end), .option = "t_end"};
+    }
+    if (!(end > start)) {
+        return text::Error{.sentence = fmt::format("t_end = {} must be after t_start = {}", end, start),
+                           .option = "t_end"};
+    }
+    if (!(end - start <= longest)) {
+        return text::Error{.sentence = fmt::format("t_end = {} is more than {} after t_start = {}: choose a longer "
+                                                   "unit of time",
+                                                   end, longest, start),
+                           .option = "t_end"};
+    }
+    return std::nullopt;
+}
+
 text::Expected<Grid> Grid::within(const Window& window) const {
     Grid grid = *this;
     grid.window_ = window;
@@ -177,16 +198,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     if (!std::isfinite(initial.velocity))
         return text::Error{.sentence = fmt::format("velocity0 = {} must be a finite number", initial.velocity),
                            .option = "velocity0"};
-    if (!std::isfinite(window.start))
-        return text::Error{.sentence = fmt::format("t_start = {} must be a finite number", window.start),
-                           .option = "t_start"};
-    if (!std::isfinite(window.end))
-        return text::Error{.sentence = fmt::format("t_end = {} must be a finite number", window.end),
-                           .option = "t_end"};
-    if (!(window.end > window.start)) {
-        return text::Error{.sentence = fmt::format("t_end = {} must be after t_start = {}", window.end, window.start),
-                           .option = "t_end"};
-    }
+    if (auto wrong = window.complaint()) return *wrong;
     if (system.walls()) {
         if (auto wrong = system.walls()->crossed_by(initial.theta)) return *wrong;
     }
@@ -311,7 +323,9 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
             .sentence = fmt::format("t_end = {} must be after t = {}, where the run ended", t_end, window.start),
             .option = "t_end"};
     }
-    const auto grid = rows.within({so_far.t_start, t_end});
+    const Window all{so_far.t_start, t_end};
+    if (auto wrong = all.complaint()) return *wrong;
+    const auto grid = rows.within(all);
     if (!grid) return grid.error();
     if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
     // The last row of the first part is none of all of it when only the old t_end put it there.

@@ -21,6 +21,9 @@ namespace dinal::motion {
 struct Window {
     double start = 0;
     double end = 0;
+
+    /// A sentence when it is not that, or so long that powers of its length overflow.
+    [[nodiscard]] std::optional<text::Error> complaint() const;
 };
 
 /// The times at which rows are wanted.

@@ -70,4 +70,17 @@ test("errors of a call through pcall and in a tail call still tell a line", func
     has(message, "system: I = 0")
 end)
 
+test("times of which powers overflow are refused", function()
+    refuses(system, {
+        { { I = 1e200, k = 1 }, "I = 1e+200 and k = 1 are too far apart for double precision: choose other units" },
+        { { I = 1e-200, k = 1 }, "too far apart" },
+    })
+    for _, sys in ipairs { system { I = 1, k = 0 }, system { bodies = { a = { I = 1 } } } } do
+        refuses(function(options) return sys:simulate(options) end, {
+            { { t_end = 1e71 }, "t_end = 1e+71 is more than 1e+70 after t_start = 0: choose a longer unit of time" },
+            { { t_start = 2, t_end = 1 }, "t_end = 1 must be after t_start = 2" },
+        })
+    end
+end)
+
 finish()
