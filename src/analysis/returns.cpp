@@ -837,6 +837,7 @@ void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
 
 /// The facts about a motion that closes; false when no run stays with it.
 bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
+    if (!(found.period > 0)) return false;  // a passage at once, of what has all but come to rest
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
     std::vector<std::complex<double>> multipliers;

@@ -102,7 +102,9 @@ private:
         if (stands) facts_.unique = false;
         answer_.rest.assign(now.y.data(), now.y.data() + n());
         answer_.drive = runs_.from(now);
-        answer_.low = answer_.high = answer_.rest;
+        const Eigen::VectorXd measured = chart_.measured(now.y);
+        answer_.low.assign(measured.data(), measured.data() + n());
+        answer_.high = answer_.low;
         for (Eigen::Index i = 0; i < n(); ++i) answer_.turned.push_back(chart_.goes_round(i) ? velocity[i] : 0);
     }
 
@@ -200,14 +202,16 @@ RigMotion steady_motion(const RigQuestion& question, const motion::Monitor& moni
 std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotion& known,
                                      const motion::Monitor& monitor) {
     std::vector<RigMotion> others;
-    if (known.facts.unique.has_value() && known.facts.status == SteadyStatus::steady) return others;
+    const bool alone = known.facts.unique.has_value() && known.facts.status == SteadyStatus::steady;
+    if (!known.facts.is_found() || alone) return others;
     const std::size_t n = question.system->bodies.size();
     const auto stands = [](const RigMotion& motion) {
         return motion.facts.status == SteadyStatus::adheres || motion.facts.status == SteadyStatus::rest;
     };
     double size = 1e-300;
     for (std::size_t i = 0; i < n; ++i) {
-        size = std::max({size, known.high[i] - known.low[i], std::fabs(known.high[i]), std::fabs(known.low[i])});
+        const double speed = known.facts.period == 0 ? std::fabs(known.turned[i]) : 0;
+        size = std::max({size, known.high[i] - known.low[i], std::fabs(known.high[i]), std::fabs(known.low[i]), speed});
         if (!stands(known)) continue;
         size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
     }
@@ -220,7 +224,9 @@ std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotio
             const double ways_a = a.high[i] - a.low[i], ways_b = b.high[i] - b.low[i];
             const double ends_a = std::max(std::fabs(a.high[i]), std::fabs(a.low[i]));
             const double ends_b = std::max(std::fabs(b.high[i]), std::fabs(b.low[i]));
-            equal = equal && std::fabs(ways_a - ways_b) <= 1e-4 * size && std::fabs(ends_a - ends_b) <= 1e-4 * size;
+            const double turned = std::fabs(a.turned[i]);
+            equal = equal && std::fabs(ways_a - ways_b) <= 1e-4 * size && std::fabs(ends_a - ends_b) <= 1e-4 * size &&
+                    std::fabs(a.turned[i] - b.turned[i]) <= 1e-4 * turned;
         }
         return equal;
     };

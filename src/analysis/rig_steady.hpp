@@ -30,7 +30,7 @@ std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive
 /// Where the motion from the start of the question leads.
 RigMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor = {});
 
-/// Motions from other starts that are not this one, each once.
+/// Motions from other starts that are not this one, each once; none where no motion was found.
 std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotion& known,
                                      const motion::Monitor& monitor = {});
 

@@ -361,7 +361,7 @@ std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const Ste
                                        const motion::Monitor& monitor) {
     std::vector<OtherMotion> others;
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
-    if (known.unique.value_or(false) || family) return others;
+    if (!known.is_found() || known.unique.value_or(false) || family) return others;
     double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
     // At rest the initial state is all that says how large motions may be.
     if (stands(known)) size = std::max({size, std::fabs(question.initial.theta), std::fabs(question.initial.velocity)});

@@ -53,6 +53,9 @@ struct SteadyMotion {
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
     std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
+
+    /// Whether there is a motion or a rest, and so facts about it.
+    [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }
 };
 
 /// Where the motion from `initial` leads.
@@ -62,7 +65,7 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
 /// The motions from other starts that are not this one, each once, with the question whose start leads to it. None is
-/// looked for where the motion is known to be the only one, or one of a family.
+/// looked for where no motion was found, or it is known to be the only one, or one of a family.
 struct OtherMotion {
     SteadyQuestion question;
     SteadyMotion motion;

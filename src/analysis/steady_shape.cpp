@@ -86,7 +86,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
 SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
     SteadyShape shape;
     shape.mean = motion.start.theta;
-    if (motion.status != SteadyStatus::steady) return shape;
+    if (motion.status != SteadyStatus::steady || motion.period == 0) return shape;
     const Drive drive = question.is_timeless() ? Drive{question.drive.start, motion.period} : question.drive;
     // Half a period of a symmetric motion tells all of it.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;

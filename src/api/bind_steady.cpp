@@ -43,7 +43,6 @@ const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
 }
 
 const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHandle& s) {
-    if (!s->others && !is_found(*s)) s->others.emplace();
     if (!s->others) {
         std::vector<analysis::OtherMotion> others;
         asking(L, s->question.extras, [&](const motion::Monitor& monitor) {
@@ -157,6 +156,14 @@ std::string steady_summary(const Steady& s) {
     }
     switch (m.status) {
         case SteadyStatus::steady:
+            if (m.period == 0) {
+                return std::isnan(m.amplitude) ? "steady: rotates at constant speed"
+                                               : fmt::format("steady: theta = {}", number(m.low, in.theta));
+            }
+            if (std::isnan(m.amplitude)) {
+                return fmt::format("steady: period {}, rotates, {} a period", number(m.period, in.t),
+                                   text::counted(m.stops, "stop"));
+            }
             return fmt::format("steady: period {}, amplitude {}, {} a period{}", number(m.period, in.t),
                                number(m.amplitude, in.theta), text::counted(m.stops, "stop"),
                                m.stable || !m.differentiable ? "" : ", unstable");

@@ -416,14 +416,11 @@ struct ResponseRow {
 };
 
 Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over) {
-    using analysis::SteadyMotion, analysis::SteadyStatus;
+    using analysis::SteadyStatus;
     const VariedColumn& of = over.back();
-    const auto is_found_in = [](const SteadyMotion& m) {
-        return m.status == SteadyStatus::steady || m.status == SteadyStatus::adheres || m.status == SteadyStatus::rest;
-    };
     const auto found = [&](const ResponseRow& row, double value, bool may_grow = false) {
         const bool grows = may_grow && row.motion.status == SteadyStatus::grows;
-        return is_found_in(row.motion) ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
+        return row.motion.is_found() ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
     };
     Data data = table_of(
         rows, ListColumn{of.name, &ResponseRow::varied, of.unit},
@@ -436,7 +433,7 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
                                                                         : no_number;
                    }},
         ListColumn{"stuck", [&](const auto& row) { return found(row, row.motion.stuck); }},
-        ListColumn{"stable", [&](const auto& row) { return is_found_in(row.motion) && row.motion.stable; }},
+        ListColumn{"stable", [&](const auto& row) { return row.motion.is_found() && row.motion.stable; }},
         ListColumn{"branch", &ResponseRow::branch},
         ListColumn{"status", [](const auto& row) { return analysis::name(row.motion.status); }});
     if (over.size() > 1) {

@@ -87,7 +87,7 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
     const auto turned = [&](int body) { return body < 0 ? 0 : whole.turned[static_cast<std::size_t>(body)]; };
     if (is_found(*part) && std::fabs(turned(system.joints[joint].first) - turned(system.joints[joint].second)) >
                                1e-6 * std::fabs(turned(system.joints[joint].first))) {
-        facts.amplitude = facts.low = facts.high = std::numeric_limits<double>::quiet_NaN();
+        facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
     }
     return part;
 }

@@ -133,9 +133,7 @@ struct RigSteady {
 
 /// Facts about a motion, or a rest, that was found.
 inline bool is_found(const Steady& s) {
-    using analysis::SteadyStatus;
-    const SteadyStatus status = s.motion.status;
-    return status == SteadyStatus::steady || status == SteadyStatus::adheres || status == SteadyStatus::rest;
+    return s.motion.is_found();
 }
 
 inline double greatest_angle(const analysis::SteadyMotion& motion) {

@@ -133,6 +133,57 @@ test("rest, and what is refused", function()
         rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
 end)
 
+test("every member of a steady answer gives a value or a sentence, whatever the status, for one body and for several", function()
+    local members = { "status", "period", "periods", "amplitude", "peak", "mean", "lag", "peak_lag", "stops", "stuck", "multipliers",
+        "stable", "unique", "others", "symmetric", "rest", "growth", "run" }
+    local function ask(what, s)
+        has(s:explain(), ".")
+        assert(#tostring(s) > 5 and not tostring(s):find "nan", what .. ": " .. tostring(s))
+        for _, name in ipairs(members) do
+            local ok, value = pcall(function() return s[name] end)
+            if not ok then has(value, "this motion has several bodies; choose one of them") end
+            assert(value == value, what .. "." .. name .. " is nan")
+        end
+        local run = s.run
+        if not run then return end
+        has(run:explain(), ".")
+        assert(run:energy() and run:plot{ show = false } and #run > 0 and run:at(run.t_end))
+        for _, of_one in ipairs{ "phase_plot", "spectrum" } do
+            local ok, said = pcall(function() return run[of_one](run, of_one == "phase_plot" and { show = false } or nil) end)
+            assert(ok or type(said) == "string" and #said > 40, said)
+        end
+    end
+    local function drag(_, _, v) return 0.1 * (type(v) == "table" and v.a or v) end
+    local double_well = { I = 1, k = 0, C = 0.3, spring = function(x) return x ^ 3 - x end }
+    for _, case in ipairs{
+        { "steady", { I = 1, k = 1, C = 0.1, Rd = 0.1 }, sine(1.3) }, { "adheres", { I = 1, k = 1, Rd = 2 }, sine(1.3) },
+        { "rest", { I = 1, k = 1, C = 0.5, Rd = 0.1 } }, { "grows", { I = 1, k = 1 }, sine(1) }, { "grows", { I = 1, k = 1 }, drag },
+        { "none", double_well, sine(1.2, 0.5) },
+    } do
+        local status, body, M = table.unpack(case)
+        local one = system(body):steady{ M = M, theta0 = 0.5 }
+        equal(one.status, status)
+        ask("one body " .. status, one)
+        local several = system{ bodies = { a = body } }:steady{ M = { a = M }, theta0 = { a = 0.5 } }
+        equal(several.status, status)
+        ask("rig " .. status, several)
+        ask("its body " .. status, several.a)
+        if status == "none" then break end
+        local Rd = body.Rd or 0
+        body.Rd = function() return Rd end
+        local varying = system(body):steady{ M = M, theta0 = 0.5 }
+        equal(varying.status, status)
+        ask("one body with Rd = function " .. status, varying)
+    end
+    local turns = system{ bodies = { a = { I = 1, C = 0.5 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 2, C = 0.1 } } }
+    for _, M in ipairs{ 1, sine(2) + 1 } do
+        local s = turns:steady{ M = { a = M } }
+        for what, part in pairs{ whole = s, a = s.a, rod = s.rod } do ask("rotating: " .. what, part) end
+        equal(s.a.mean, nil)
+        equal(s.unique, "not seen")
+    end
+end)
+
 test("controllers that sample or wait: the motion on their grid, as a long run has it", function()
     local rig, T = chain(0.3), 2
     local function pi(t, theta, velocity, z, memory)
