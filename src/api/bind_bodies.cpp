@@ -398,6 +398,11 @@ private:
     std::size_t joint_;
 };
 
+/// Whether it is known between the rows. A run that ended where it began has no stretch that takes memory.
+bool keeps_motion(const engine::AssemblyRun& run) {
+    return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
+}
+
 /// Where the columns of a joint begin in the table of a run.
 std::size_t first_column(const model::Assembly& system, std::size_t joint) {
     const std::size_t n = system.bodies.size();
@@ -524,19 +529,24 @@ int push_bodies_run(lua_State* L, BodiesRunHandle run) {
 
 namespace {
 
+std::size_t columns_of_run(const BodiesRun& run) {
+    const std::size_t bodies = run.system->bodies.size(), links = run.system->joints.size() - bodies;
+    return 1 + (engine::columns_of_body + 1) * bodies + engine::columns_of_link * links + run.drive.states.size();
+}
+
+/// The rows in this window, of which memory can hold all.
+motion::Grid grid_within(const lua::Options& options, const BodiesRun& run, const motion::Grid& rows,
+                         const motion::Window& window, const motion::Limits& limits) {
+    motion::Grid grid = options.value_or_fail(rows.within(window));
+    if (auto wrong = motion::wrong_rows(grid, columns_of_run(run), limits)) options.fail(*wrong);
+    return grid;
+}
+
 /// Runs what `problem` says, under the limits of the script.
 int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<BodiesRun>& run,
-               const motion::Window& window, const motion::Grid& rows, bool dense,
+               const motion::Window& window, const motion::Grid& rows, const motion::Limits& limits,
                std::shared_ptr<const engine::Carry> before = {}) {
-    const auto grid = options.value_or_fail(rows.within(window));
-    const std::size_t columns =
-        1 + (engine::columns_of_body + 1) * run->system->joints.size() + run->drive.states.size();
-    motion::Limits limits{.dense = dense};
-    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
-    if (static_cast<double>(grid.count()) * static_cast<double>(columns * sizeof(double)) >
-        static_cast<double>(limits.memory)) {
-        options.fail("dt", fmt::format("{} rows need more memory than there is: use a larger dt", grid.count()));
-    }
+    const motion::Grid grid = grid_within(options, *run, rows, window, limits);
     model::Excitation all;
     for (const model::Excitation& load : run->drive.loads) all = all + load;
     const auto note = watched_memories(L, options, all, before != nullptr);
@@ -575,7 +585,7 @@ int simulate_bodies(lua_State* L) {
     constexpr double rows = 1000;
     run->dt = asked.dt.value_or((window.end - window.start) / rows);
     const motion::Grid grid = options.has("times") ? motion::Grid::at(asked.times) : motion::Grid::every(run->dt);
-    return run_bodies(L, options, run, window, grid, asked.dense);
+    return run_bodies(L, options, run, window, grid, limits_of_run(asked.dense));
 }
 
 // ---- rig
@@ -811,20 +821,20 @@ int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHand
     auto run = std::make_shared<BodiesRun>();
     run->system = first->system, run->drive = first->drive, run->dt = first->dt;
     // The last row of the first run stands in the second one only where the spacing puts it there.
-    std::vector<double> times;
+    const motion::Limits limits = limits_of_run(keeps_motion(first->run));
     const double start = first->run.t_start;
-    const auto time = [&](std::int64_t row) { return start + static_cast<double>(row) * run->dt; };
-    for (auto row = static_cast<std::int64_t>((from - start) / run->dt * (1 - 1e-12)); time(row) < *asked.t_end;
-         ++row) {
-        if (time(row) > from * (1 + 1e-15)) times.push_back(time(row));
+    const motion::Grid grid = grid_within(options, *run, motion::Grid::every(run->dt), {start, *asked.t_end}, limits);
+    std::vector<double> times;
+    for (auto row = static_cast<std::size_t>((from - start) / run->dt * (1 - 1e-12)); row < grid.count(); ++row) {
+        if (grid.time(row) > from + 1e-15 * std::fabs(from)) times.push_back(grid.time(row));
     }
-    times.push_back(*asked.t_end);
-    run_bodies(L, options, run, {from, *asked.t_end}, motion::Grid::at(std::move(times)), true, first->run.carry);
+    run_bodies(L, options, run, {from, *asked.t_end}, motion::Grid::at(std::move(times)), limits, first->run.carry);
     std::size_t kept = first->run.table.size();
     const double last = kept == 0 ? start : first->run.table(kept - 1, 0);
     const double nearest = start + std::round((last - start) / run->dt) * run->dt;
     if (kept > 0 && std::fabs(last - nearest) > 1e-12 * std::max(1.0, std::fabs(last))) --kept;
-    run->run.table = first->run.table.followed_by(kept, run->run.table, std::size_t{1} << 40U);
+    run->run.table =
+        first->run.table.followed_by(kept, run->run.table, limits.memory / (columns_of_run(*run) * sizeof(double)));
     run->run.events.insert(run->run.events.begin(), first->run.events.begin(), first->run.events.end());
     run->run.t_start = start;
     if (run->system->named) return 1;

@@ -42,14 +42,6 @@ std::optional<std::size_t> memory_of_machine() {
     return bytes;
 }
 
-/// A run may take half of the memory of the machine, and most of what the script may still have.
-motion::Limits limits_of(bool dense) {
-    motion::Limits limits{.dense = dense};
-    if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
-    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
-    return limits;
-}
-
 source::Task asked_task(lua_State* L, const lua::Options& options, const RunOptions& asked,
                         const model::Oscillator& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
@@ -192,6 +184,13 @@ void note_readings(Run& run) {
 
 }  // namespace
 
+motion::Limits limits_of_run(bool dense) {
+    motion::Limits limits{.dense = dense};
+    if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
+    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
+    return limits;
+}
+
 std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
                                                   bool goes_on) {
     const auto memories = std::make_shared<const Memories>(L, options, M, goes_on);
@@ -204,7 +203,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const double to = origin.window.end;
     const auto run = std::make_shared<Run>();
     run->origin = std::move(origin);
-    const motion::Limits limits = limits_of(dense);
+    const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
     if (std::holds_alternative<motion::Exact>(asked.integrator)) {
         run->terms = terms_alone(L, asked.system, asked.excitation, asked.window.start, to, asked.extras);

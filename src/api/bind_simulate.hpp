@@ -18,6 +18,9 @@ namespace dinal::api {
 
 int simulate_system(lua_State* L);
 
+/// A run may take half of the memory of the machine, and most of what the script may still have.
+[[nodiscard]] motion::Limits limits_of_run(bool dense);
+
 /// What is asked of the core: simulate() or resume().
 using Compute = std::function<text::Expected<motion::Trajectory>(
     const source::Task& task, const motion::Monitor& monitor, const motion::Limits& limits)>;

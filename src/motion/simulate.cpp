@@ -52,16 +52,6 @@ std::string memory_text(double bytes) {
     return fmt::format("{:.3g} {}", bytes, units[i]);
 }
 
-/// Rows that stay within memory, told in the user's options.
-std::optional<text::Error> too_many_rows(double count, const Grid& grid, const Window& window, const Limits& limits) {
-    const double bytes = count * column_count * sizeof(double);
-    if (bytes <= static_cast<double>(limits.memory)) return {};
-    const double most = static_cast<double>(limits.memory) / (column_count * sizeof(double));
-    return text::Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}",
-                                   count, memory_text(bytes), memory_text(static_cast<double>(limits.memory)),
-                                   std::max(grid.dt(), (window.end - window.start) / most))};
-}
-
 /// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.
 double row_count(const Window& window, double dt) {
     const double ratio = (window.end - window.start) / dt;
@@ -172,6 +162,18 @@ text::Expected<Grid> Grid::within(const Window& window) const {
     return grid;
 }
 
+std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, const Limits& limits) {
+    const Window& window = grid.window();
+    const auto count = static_cast<double>(grid.count()), memory = static_cast<double>(limits.memory);
+    const double row = static_cast<double>(columns) * sizeof(double);
+    if (count * row > memory) {
+        return text::Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}",
+                                       count, memory_text(count * row), memory_text(memory),
+                                       std::max(grid.dt(), (window.end - window.start) / (memory / row)))};
+    }
+    return grid.dt() > 0 ? lost_in_time("dt", grid.dt(), window) : std::nullopt;
+}
+
 Grid Grid::followed_by(std::size_t kept, std::vector<double> more) const {
     Grid grid = *this;
     grid.times_ = times_.followed_by(kept, Growing<double>(std::move(more)), all_memory);
@@ -204,10 +206,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     }
     auto grid = rows.within(window);
     if (!grid) return grid.error();
-    if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
-    if (grid->dt() > 0) {
-        if (auto lost = lost_in_time("dt", grid->dt(), window)) return *lost;
-    }
+    if (auto wrong = wrong_rows(*grid, column_count, limits)) return *wrong;
     for (const model::Excitation* terms : {&excitation, &extras.belt, &extras.base}) {
         if (auto lost = lost_term(*terms, window)) return *lost;
     }
@@ -327,7 +326,7 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
     if (auto wrong = all.complaint()) return *wrong;
     const auto grid = rows.within(all);
     if (!grid) return grid.error();
-    if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
+    if (auto wrong = wrong_rows(*grid, column_count, limits)) return *wrong;
     // The last row of the first part is none of all of it when only the old t_end put it there.
     std::size_t kept = std::min(static_cast<std::size_t>(so_far.size()), grid->count());
     if (kept > 0 && so_far.rows(static_cast<Eigen::Index>(kept) - 1, 0) != grid->time(kept - 1)) --kept;

@@ -44,6 +44,7 @@ public:
     [[nodiscard]] std::span<const double> times() const { return times_; }
 
     // Of a grid that went through within():
+    [[nodiscard]] const Window& window() const { return window_; }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double time(std::size_t row) const {
         if (!spaced_) return list_[row];
@@ -69,6 +70,10 @@ struct Limits {
     std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take, and a quarter of it the course
     bool dense = true;                          ///< keep the course: what the motion between the rows needs
 };
+
+/// The reason why a run can not have these rows, in the user's options: more than memory may hold, or times that
+/// doubles can not tell apart. The grid went through within().
+[[nodiscard]] std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, const Limits& limits);
 
 /// One run as its integrator sees it: all of it checked.
 struct Problem {

@@ -82,6 +82,24 @@ test("a run without dense output goes on without", function()
     same_rows(longer, nd:simulate { M = M, theta0 = 2, t_end = 6, dt = 0.1 })
 end)
 
+test("several bodies go on without dense output where the first part has none", function()
+    local rig = system { bodies = { a = { I = 1, k = 1 } } }
+    local longer = rig:simulate { theta0 = { a = 1 }, t_end = 3, dense = false }:continue { t_end = 6 }
+    for _, t in ipairs { 2, 5 } do raises_here(function() longer:at(t) end, "dense = false") end
+end)
+
+test("rows that memory can not hold are refused, of one body and of several, from the start and going on", function()
+    local body = { I = 1, k = 1, C = 0.1 }
+    local varying = { I = 1, k = 1, C = 0.1, Rd = function() return 0 end }
+    for _, sys in ipairs { system(body), system(varying), system { bodies = { a = body } } } do
+        raises_here(function() sys:simulate { t_end = 1, dt = 1e-12 } end, "1e+12 rows need", "are allowed: use dt >=")
+        raises_here(function() sys:simulate { t_start = 1e6, t_end = 1e6 + 1e-9, dt = 1e-14 } end, "is lost in the rounding of times")
+        local run = sys:simulate { t_end = 1e-9 }
+        raises_here(function() run:continue { t_end = 1 } end, "1e+12 rows need", "are allowed: use dt >=")
+        equal(#sys:simulate { t_start = -10, t_end = -5, dt = 1 }:continue { t_end = -1 }, 10)
+    end
+end)
+
 test("a run that ends at a wall, or as near to it as numbers come, goes on", function()
     for i = 1, 30 do
         local walled = system { I = 1, k = 1, walls = { lower = -0.1 - 0.00137 * i, restitution = 0.5 } }
