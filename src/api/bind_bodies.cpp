@@ -464,7 +464,7 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
                                                : part.events[0].kind == model::EventKind::slip;
     part.on_belt = system.named || !run.drive.belts[joint].components().empty();
     if (system.joints[joint].walls) part.restitution = system.joints[joint].walls->restitution;
-    if (run.run.history != nullptr && run.run.history->bytes() > 0) {
+    if (keeps_motion(run.run)) {
         model::OscillatorParameters parameters = parameters_of(system, joint);
         parameters.friction = system.joints[joint].friction.law, parameters.spring = system.joints[joint].spring;
         parameters.walls = system.joints[joint].walls;
@@ -730,12 +730,9 @@ int rows_of_bodies(lua_State* L) {
 int at_of_bodies(lua_State* L) {
     const BodiesRunHandle run = bodies_run_self(L, "run:at(t)");
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
-    if (t < run->run.t_start || t > run->run.t_stop) {
-        lua::raise(L, fmt::format("run:at(t): t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, run->run.t_start,
-                                  run->run.t_stop));
-    }
-    if (run->run.history == nullptr || run->run.history->bytes() == 0 || t > run->run.history->whole_until()) {
-        lua::raise(L, "run:at(t): this run kept nothing between its rows; simulate it without dense = false");
+    const bool within = t >= run->run.t_start && t <= run->run.t_stop;
+    if (!within || !keeps_motion(run->run) || t > run->run.history->whole_until()) {
+        lua::fail(L, "run:at(t)", part_of(run, 0)->trajectory.at(t).error());
     }
     const std::vector<double> y = run->run.history->at(t);
     const std::size_t n = run->system->bodies.size();

@@ -79,8 +79,10 @@ std::string events_text(std::span<const model::Event> events) {
 text::Expected<model::State> Trajectory::at(double t) const {
     if (!computed && !course) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
-        return text::Error{.sentence = fmt::format("t = {} is outside the run from {} to {}", t, t_start, t_stop),
-                           .option = "t"};
+        const std::string why = model::is_whole(outcome) ? "" : "; it ended there: " + outcome_text(*this);
+        return text::Error{
+            .sentence = fmt::format("t = {} is outside the run from {} to {}{}", t, t_start, t_stop, why),
+            .option = "t"};
     }
     if (!course) return text::Error{"the motion between the rows was not kept: run without dense = false"};
     return course->at(t);

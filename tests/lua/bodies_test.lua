@@ -303,4 +303,19 @@ test("an act of a rig changes the fields of its tables", function()
     end, "must change the fields of theta and velocity, and return nothing")
 end)
 
+test("a failed run tells at(t) why it ended, for one body and for several", function()
+    local function fails(from) return function(t) return t < from and 1 or 0 / 0 end end
+    for _, from in ipairs { 0, 2 } do
+        for _, sys in ipairs { system { I = 1, k = 1 }, system { I = 1, k = 1, Rd = function() return 0.1 end },
+            system { bodies = { a = { I = 1, k = 1 } } } } do
+            local M = fails(from)
+            pcall(sys.simulate, sys, { M = tostring(sys):find "bodies" and { a = M } or M, t_end = 5 })
+            local run = dinal.partial
+            equal(run.status, "failed")
+            raises_here(function() run:at(4) end, "t = 4 is outside the run from 0 to", "it ended there: M failed or became infinite")
+            assert(run:at(0))
+        end
+    end
+end)
+
 finish()
