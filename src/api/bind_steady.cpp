@@ -439,7 +439,7 @@ int steady_of_system(lua_State* L) {
                                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
     check_relays(options, question.excitation, seen_by_relays(question.extras));
-    if (!period) find_period(L, question);
+    find_period(L, question);
     question.drive = drive_or_fail(L, options, question, period);
     return push_steady(L, options, std::move(question));
 }
@@ -461,7 +461,7 @@ int steady_of_run(lua_State* L) {
                                       .extras = task.extras};
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
-    if (!period) find_period(L, question);
+    find_period(L, question);
     question.drive = drive_or_fail(L, options, question, period);
     if (question.extras.any()) {
         question.drive.start = std::max(question.drive.start, ended.t_stop);

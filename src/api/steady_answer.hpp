@@ -56,8 +56,8 @@ inline constexpr text::Range whole_periods{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
 inline constexpr text::Option period_options[] = {
     period_row(
-        "the period of M, belt and base, needed if one of them is a Lua function of t; the period of a limit cycle "
-        "is found"),
+        "the period of M, belt and base, needed if one of them is a Lua function of t whose period is not found; the "
+        "period of a limit cycle is found"),
     instead_of_period[0],
     instead_of_period[1],
     {.name = "periods",

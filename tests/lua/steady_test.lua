@@ -73,6 +73,9 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     near(sliding:steady{ M = f, period = 1 / 1.35 }.amplitude, 0.860792180, 1e-9)
     near(sliding:steady{ M = harmonic(0.5) + 0.3*harmonic(0.75) }.period, 4, 1e-9)
     near(sliding:steady{ M = f }.period, 1 / 1.35, 1e-15) -- read as a sine
+    for _, options in ipairs{ { M = f }, { M = f, period = 1 / 1.35 }, { M = f, frequency = 1.35 } } do
+        has(sliding:steady(options).run.excitation, "excitation.harmonic")
+    end
     refuses(function(o) sliding:steady(o) end, {
         { { M = function(t) return math.abs(f(t * t)) end }, "the period of M is not known" },
         { { M = harmonic(1) + harmonic(2^0.5) }, "the terms of M have no common period" },
