@@ -958,19 +958,37 @@ std::string unit_of_value(const model::Units& units, std::string_view name) {
                                           : "";
 }
 
+/// What is known of a value that the record does not determine. That of a fit is one of many: Re is at least Rd.
+std::string text_of_silent(const FitAnswer& fit, const std::string& name, double value) {
+    const auto is_silent = [&fit](const char* other) {
+        return std::find(fit.silent.begin(), fit.silent.end(), other) != fit.silent.end();
+    };
+    const auto Rd = std::find_if(fit.values.begin(), fit.values.end(), [](const auto& v) { return v.first == "Rd"; });
+    const bool bounded = name == "Re" && Rd != fit.values.end() && !is_silent("Rd");
+    const std::string number =
+        model::with_unit(fmt::format("{:.6g}", bounded ? Rd->second : value), unit_of_value(fit.units, name));
+    return bounded ? fmt::format(">= {}, not determined by this record", number)
+                   : fmt::format("not determined by this record; {} is possible", number);
+}
+
 std::string fit_summary(const FitAnswer& fit) {
     std::string text = fmt::format("fit of {} samples, {:.3g} of noise:", fit.question.t.size(), fit.found.noise);
     std::size_t width = 10;
     for (const auto& value : fit.values) width = std::max(width, value.first.size());
+    std::vector<std::string> unlisted = fit.silent;
     for (std::size_t i = 0; i < fit.values.size(); ++i) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
+        if (std::erase(unlisted, name) > 0) {
+            text += fmt::format("\n  {:<{}} {}", name, width, text_of_silent(fit, name, value));
+            continue;
+        }
         text += fmt::format("\n  {:<{}} {:<12.6g}", name, width, value);
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
     }
-    if (!fit.silent.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));
+    if (!unlisted.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(unlisted, ", "));
     constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
     const double Rd = fit.found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
     if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // a record without noise leaves rounding

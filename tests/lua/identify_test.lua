@@ -152,6 +152,7 @@ test("a driven record without a stop says nothing about Re, and bends nothing to
             Rd = 0.05, offset = 0.1, free = { "Re" } }
         equal(table.concat(fit.silent), "Re")
         equal(fit.Re, 0.05)
+        has(fit, "Re         >= 0.05, not determined by this record")
         fits(fit, { theta0 = 0.2, velocity0 = -0.5 })
     end
 end)
