@@ -8,6 +8,7 @@
 
 #include <poll.h>
 #include <pthread.h>
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -246,14 +247,18 @@ double allowed_time = 0;  // seconds; 0: none
 timer_t timer{};
 pthread_t lua_thread{};
 int nesting = 0;
-std::atomic<Nanoseconds> deadline = 0;  // by CLOCK_MONOTONIC; 0: the time does not run
+std::atomic<Nanoseconds> deadline = 0, latest = 0;  // of processor time, and on the wall; 0: the time does not run
 static_assert(std::atomic<Nanoseconds>::is_always_lock_free, "a signal handler may use lock-free atomics only");
 
-bool is_overdue_by(Nanoseconds time) {
+Nanoseconds now_by(clockid_t clock) {
     timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);  // allowed in a signal handler
-    const Nanoseconds end = deadline;
-    return end != 0 && now.tv_sec * one_second + now.tv_nsec >= end + time;
+    clock_gettime(clock, &now);  // allowed in a signal handler
+    return now.tv_sec * one_second + now.tv_nsec;
+}
+
+bool is_overdue_by(Nanoseconds time) {
+    const Nanoseconds end = deadline, last = latest;
+    return end != 0 && (now_by(CLOCK_PROCESS_CPUTIME_ID) >= end + time || now_by(CLOCK_MONOTONIC) >= last + time);
 }
 
 /// On the thread of Lua. It asks again: the chunk that was meant may have ended meanwhile.
@@ -280,8 +285,8 @@ bool takes_text(int descriptor) {
     _exit(1);
 }
 
-/// On a thread that the timer starts, at the deadline and each second after it: what it does is not bound to what is
-/// allowed in a signal handler.
+/// On a thread that the timer starts, again and again from the moment at which the time may be over: what it does is
+/// not bound to what is allowed in a signal handler.
 void on_expiry(sigval) {
     if (is_overdue_by(patience)) {
         end_program();
@@ -291,12 +296,14 @@ void on_expiry(sigval) {
     }
 }
 
-void set_timer(Nanoseconds start) {
-    deadline = start;
+/// From now on; 0 stops it.
+void set_timer(Nanoseconds allowed) {
+    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // first: it counts with the deadline
+    deadline = allowed > 0 ? now_by(CLOCK_PROCESS_CPUTIME_ID) + allowed : 0;
     itimerspec times{};
-    times.it_value = {start / one_second, start % one_second};  // 0 stops it
-    times.it_interval = {patience / one_second, patience % one_second};
-    timer_settime(timer, TIMER_ABSTIME, &times, nullptr);
+    times.it_value = {allowed / one_second, allowed % one_second};
+    times.it_interval = {0, one_second / 20};
+    timer_settime(timer, 0, &times, nullptr);
 }
 
 }  // namespace
@@ -319,9 +326,7 @@ double time_limit() noexcept {
 
 TimeAllowance::TimeAllowance() {
     if (allowed_time > 0 && nesting++ == 0) {
-        timespec now{};
-        clock_gettime(CLOCK_MONOTONIC, &now);
-        set_timer(now.tv_sec * one_second + now.tv_nsec + static_cast<Nanoseconds>(allowed_time * 1e9));
+        set_timer(std::max<Nanoseconds>(1, static_cast<Nanoseconds>(allowed_time * 1e9)));
     }
 }
 

@@ -16,10 +16,13 @@
 
 namespace dinal::lua {
 
-// How long a chunk may run, by the clock on the wall.
+// How long a chunk may run, in processor time: a busy machine must not decide. A chunk that only waits may do so
+// longest_wait times as long.
 //
-// A timer watches the clock. When the time is over it stops what runs, as Ctrl-C would. What cannot be
+// A timer looks at the clocks. When the time is over it stops what runs, as Ctrl-C would. What cannot be
 // stopped so (a search for a pattern that never ends, a finalizer) is ended with the whole program a second later.
+
+inline constexpr int longest_wait = 10;
 
 /// From now on. Once, for the whole process, from the thread that runs Lua.
 void set_time_limit(double seconds);

@@ -12,8 +12,11 @@ namespace dinal::lua {
 
 struct ScriptLimits {
     std::size_t memory = 0;  ///< bytes; 0: none
-    double seconds = 0;      ///< 0: none
+    double seconds = 0;      ///< of processor time; 0: none
 };
+
+/// What safe mode and marking allow where the user does not say otherwise.
+inline constexpr ScriptLimits safe_limits{.memory = std::size_t{256} << 20U, .seconds = 10};
 
 /// Puts the limits in force for all chunks that run from now on. Once, before the first of them.
 void set_limits(lua_State* L, const ScriptLimits& limits);

@@ -14,9 +14,8 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr double longest = 1e9;                         // seconds: 30 years
+constexpr double longest = 1e8;                         // seconds: 3 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
-constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
 
 /// "10", "0.5"; 0 when it is no positive number.
 double seconds_of(std::string_view text) {
@@ -145,8 +144,8 @@ std::optional<text::Error> carry_out(const CommandLineOption& option, Arguments&
 
 /// What safe mode allows where the user has not said otherwise.
 void complete_safe_limits(lua::ScriptLimits& limits) {
-    limits.memory = limits.memory > 0 ? limits.memory : safe.memory;
-    limits.seconds = limits.seconds > 0 ? limits.seconds : safe.seconds;
+    limits.memory = limits.memory > 0 ? limits.memory : lua::safe_limits.memory;
+    limits.seconds = limits.seconds > 0 ? limits.seconds : lua::safe_limits.seconds;
 }
 
 text::Error unknown(std::string_view word) {
@@ -247,7 +246,8 @@ without a script: a prompt on a terminal, otherwise standard input is run as a s
              processes, no modules, and limits:
              --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
-  --max-time SECONDS end a script that runs longer; at the prompt, an input
+  --max-time SECONDS end a script that needs more processor time; at the prompt,
+                     an input
   --lab-marks FILE   append the verdict on each answer in the lab to FILE
   --lab-solutions NUMBER  the answers of a student number, for instructors
   --mark FOLDER      run all hand-ins of a folder in safe mode: a table, a summary,

@@ -23,6 +23,8 @@
 
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
+#include "lua/limits.hpp"
+#include "lua/tokens.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"
@@ -34,7 +36,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double usual_seconds = 5;          // for one hand-in, unless --max-time says otherwise
 constexpr double grace = 5;                  // seconds that a stopped script has for its page
 constexpr rlim_t largest_file = 10'000'000;  // bytes: no hand-in fills the disk with what it prints
 constexpr std::uintmax_t largest_script = 1'000'000;
@@ -373,7 +374,7 @@ void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {
     words.insert(words.end(), {"--", script});
     const pid_t child = ::fork();
     if (child == 0) become_hand_in(desk.string(), words);
-    const auto status = child < 0 ? std::nullopt : wait_for(child, marking.seconds + grace);
+    const auto status = child < 0 ? std::nullopt : wait_for(child, lua::longest_wait * marking.seconds + grace);
     if (auto fault = fault_of(status, desk.string())) hand_in.remarks.push_back(std::move(*fault));
     read_marks(hand_in, marks);
     fs::remove(marks, wrong);
@@ -418,7 +419,7 @@ int mark(const Arguments& arguments) {
     if (!folder.has_filename()) folder = folder.parent_path();
     const Marking marking{folder, folder.string() + "-marked",
                           arguments.sheets.empty() ? fs::path() : fs::absolute(arguments.sheets),
-                          arguments.limits.seconds > 0 ? arguments.limits.seconds : usual_seconds};
+                          arguments.limits.seconds > 0 ? arguments.limits.seconds : lua::safe_limits.seconds};
     std::vector<HandIn> all = hand_ins_of(folder);
     if (all.empty()) return fail(fmt::format("there is no .lua file in '{}'", shown));
     if (const auto reason = empty_folder(marking.marked)) {

@@ -119,7 +119,7 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   end
   assert(rows["2-1001"]:find "^1001 +%- .- 0 of 6$", rows["2-1001"]) -- no remark
   assert(rows.liar:find "^3000 +%- .- 0 of 8$", rows.liar)
-  assert(rows.loop:find "^3001 .*it ran longer than the 5 s", rows.loop)
+  assert(rows.loop:find "^3001 .*it ran longer than the 10 s", rows.loop)
   assert(rows.wrong:find "^none +wrong%.lua:2: .*; no answer was checked", rows.wrong)
   assert(rows.flood:find "^none .*File too large", rows.flood)
   assert(rows.leaves:find "^none .*safe mode", rows.leaves)

@@ -2,7 +2,8 @@
 dofile "tests/lua/support.lua"
 local strangers = dofile "tests/lua/strangers.lua"
 
-local options = "--safe --max-time 0.2 --max-memory 64M"
+-- In that time a long run needs more than 64M of memory.
+local options = "--safe --max-time 0.2 --max-memory 512M"
 
 --- What Lua or the integrator itself can stop, where it is.
 strangers.check({
@@ -80,6 +81,11 @@ strangers.check({
     ["a finalizer that never ends"] = "setmetatable({}, { __gc = function() while true do end end }) collectgarbage()",
     ["a finalizer that never ends, at the end"] = "setmetatable({}, { __gc = function() while true do end end })",
 }, "--max-time 0.2", 1, "dinal: stopped[^\n]*: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+
+-- A busy machine must not decide: what only waits may do so ten times as long.
+strangers.check({
+    ["a script that waits a little"] = "os.execute 'sleep 2' print 'done'",
+}, "--max-time 1", 0, "done\n")
 
 -- Without a limit of memory, so that the endless events of such a run are not what ends it.
 strangers.check({

@@ -79,7 +79,7 @@ class Limits(HardUse):
     def test_the_time_ends_though_nobody_reads(self):
         for stream in ("stderr", "stdout"):
             with self.subTest(stream):
-                process = self.start("--max-time", "0.2", "-e", f"while true do io.{stream}:write(('x'):rep(65536)) end")
+                process = self.start("--max-time", "0.1", "-e", f"while true do io.{stream}:write(('x'):rep(65536)) end")
                 self.assertIn(process.wait(5), (1, -signal.SIGPIPE))
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full")
