@@ -222,12 +222,25 @@ std::set<std::string> sheets_of(const HandIn& hand_in) {
     return sheets;
 }
 
-/// Several sheets of one student are welcome; the same sheet twice, or the same text, is pointed out.
+/// The script without what differs between copies: comments, blanks, the number and the author.
+std::string bare_text(const HandIn& hand_in) {
+    const std::vector<lua::Token> all = lua::tokens(hand_in.text);
+    std::string text;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool number = i > 1 && all[i - 2].is("number") && all[i - 1].is("(");
+        const bool author = i > 1 && all[i - 2].is("author") && all[i - 1].is("=");
+        if (all[i].kind == lua::TokenKind::comment || number || author) continue;
+        text += fmt::format("{}\n", all[i].text);
+    }
+    return text;
+}
+
+/// Several sheets of one student are welcome; the same sheet twice, or the same script, is pointed out.
 void compare(std::vector<HandIn>& all) {
-    std::map<std::string, const HandIn*> first, texts;
+    std::map<std::string, const HandIn*> first, texts;  // of a number and sheet, of a bare text
     for (HandIn& hand_in : all) {
-        if (!hand_in.text.empty()) {
-            const auto [same, is_new] = texts.emplace(hand_in.text, &hand_in);
+        if (const std::string text = bare_text(hand_in); !text.empty()) {
+            const auto [same, is_new] = texts.emplace(text, &hand_in);
             if (!is_new) hand_in.remarks.push_back("the same text as " + same->second->name);
         }
         for (const std::string& sheet : sheets_of(hand_in)) {

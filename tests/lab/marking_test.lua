@@ -82,7 +82,8 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
       check("1b", 17)
       check("1d", given.dry.Rd/given.dry.k)
       check("1d", 2*given.dry.Rd/given.dry.k)
-    ]]):format(1000 + i))
+      local own = %d
+    ]]):format(1000 + i, i))
   end
   local function hand_in(name, text) support.write(home .. "/hand-ins/" .. name .. ".lua", text) end
   hand_in("2-1001", "lab.number(1001)\ncheck('2a', 1)") -- another sheet of the first student
@@ -104,6 +105,7 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   hand_in('a",1,1a,right,1,"b', "lab.number(3004)\ncheck('1a', 1)") -- a name like a line of marks
   hand_in("1-5555", "lab.number(1001)\ncheck('1a', 1)\nlab.number(1002)\ncheck('1a', 1) check('1b', 1)")
   hand_in("copy", support.read(home .. "/hand-ins/1-1003.lua"))
+  hand_in("disguised", (support.read(home .. "/hand-ins/1-1004.lua"):gsub("1004", "3006"):gsub("\n", " -- mine\n\n")))
   output(("ln -s /etc/passwd '%s/hand-ins/link.lua'; mkfifo '%s/hand-ins/pipe.lua'; mkdir '%s/hand-ins/sub'"):format(home, home, home))
   hand_in("sub/\27[31m\n", "lab.number(3005)\ncheck('1a', 1)")
   local said = shell "dinal --mark hand-ins"
@@ -128,10 +130,11 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   assert(rows["1-5555"]:find("^1002 .*uses number 1002, but its name says 5555; also uses number 1001, which is not counted; " ..
     "sheet 1 of this number is also in 1%-1002%.lua"), rows["1-5555"])
   assert(rows.copy:find "the same text as 1%-1003%.lua; sheet 1 of this number is also in 1%-1003%.lua", rows.copy)
+  assert(rows.disguised:find "^3006 .*the same text as 1%-1004%.lua$", rows.disguised)
   assert(rows.link:find "not run: it is not a file", rows.link)
   assert(rows.pipe:find "not run: it is not a file", rows.pipe)
   assert(said:find("\nsub/?[31m", 1, true) and not said:find("\27", 1, true), said)
-  assert(said:find "\n1d +27 +27 +0 +27x that is Rd/k", said)
+  assert(said:find "\n1d +28 +28 +0 +28x that is Rd/k", said)
   assert(support.read(home .. "/hand-ins-marked/marks.csv"):find('\n"1-1001.lua","1001","+","-",".","2"', 1, true))
   local desk = output(("ls -d '%s/hand-ins-marked/'*-1-1001"):format(home)):gsub("\n", "")
   assert(support.read(desk .. "/output.txt"):find "1%-1001%.html")
