@@ -44,18 +44,25 @@ private:
     void tell_setting() {
         const std::size_t n = system_.bodies.size(), links = system_.joints.size() - n;
         if (system_.named) {
-            say("{} and {}, from t = {} to {}.", n == 1 ? "1 body" : fmt::format("{} bodies", n),
-                text::counted(links, "link"), time(run_.t_start), time(run_.t_stop));
+            say("{} and {}, from t = {} to {}.", text::counted(n, "body"), text::counted(links, "link"),
+                time(run_.t_start), time(run_.t_stop));
         }
-        std::vector<std::string> driven;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!drive_.loads[i].components().empty()) driven.push_back(system_.bodies[i].name);
-        }
+        const auto names = [this](const std::vector<model::Excitation>& acting) {
+            std::vector<std::string> list;
+            for (std::size_t j = 0; j < acting.size(); ++j) {
+                if (!acting[j].components().empty()) list.push_back(system_.named ? name(j) : "the body");
+            }
+            return list;
+        };
+        const auto driven = names(drive_.loads), belts = names(drive_.belts);
+        const bool base = !drive_.base.components().empty();
         if (driven.empty()) {
-            say("There is no M: the motion is free.");
+            say("There is no M{}", belts.empty() && !base ? ": the motion is free." : ".");
         } else if (system_.named) {
             say("M acts on {}.", fmt::join(driven, " and "));
         }
+        if (!belts.empty()) say("A belt moves under {}.", fmt::join(belts, " and "));
+        if (base) say("The base moves.");
         end_paragraph();
     }
 
@@ -161,7 +168,7 @@ private:
         };
         for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
             note(works.input[i], of("M", i));
-            note(works.base[i], of("the base under", i));
+            note(works.base[i], system_.named ? "the base under " + name(i) : "the base");
         }
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             note(works.belt[j], of("the belt", j));

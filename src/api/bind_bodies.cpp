@@ -799,9 +799,9 @@ std::string text_of_run(lua_State*, const BodiesRunHandle& handle) {
         sticks += model::is_stop(e.kind) ? 1 : 0;
         slips += e.kind == model::EventKind::slip ? 1 : 0;
     }
-    return fmt::format("{} bodies, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}", run.system->bodies.size(),
-                       run.run.table.size(), run.run.t_start, run.run.t_stop,
-                       text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
+    return fmt::format("{}, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}",
+                       text::counted(run.system->bodies.size(), "body"), run.run.table.size(), run.run.t_start,
+                       run.run.t_stop, text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
                        text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory));
 }
 

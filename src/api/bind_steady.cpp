@@ -151,8 +151,8 @@ std::string steady_summary(const Steady& s) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";
         return m.period == 0 ? "steady: all bodies rotate at constant speed"
-                             : fmt::format("steady: period {}, {} bodies", number(m.period, in.t),
-                                           s.rig->question.system->bodies.size());
+                             : fmt::format("steady: period {}, {}", number(m.period, in.t),
+                                           text::counted(s.rig->question.system->bodies.size(), "body"));
     }
     switch (m.status) {
         case SteadyStatus::steady:

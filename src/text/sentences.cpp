@@ -26,6 +26,7 @@ std::string against_limit(double torque, double limit) {
 }
 
 std::string counted(std::size_t n, std::string_view what) {
+    if (n != 1 && what.ends_with("body")) return fmt::format("{} {}ies", n, what.substr(0, what.size() - 1));
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : what.ends_with("ch") ? "es" : "s");
 }
 

@@ -92,6 +92,58 @@ test("a run is told in sentences", function()
     says(rig:simulate { M = { motor = 0.05 }, t_end = 4 }, "load never moved", "stuck together all the time")
 end)
 
+test("a run that a base or a belt drives is told as one", function()
+    local rig = system { bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1, Rd = 0.1 } } }
+    local run = rig:simulate { belt = { b = 0.2 }, base = excitation.harmonic { omega = 1 }, t_end = 20 }
+    says(run, "There is no M.", "A belt moves under b.", "The base moves.", "the base under a")
+    has_not(run:explain(), "free", "under of", "1 bodies")
+    says(system { bodies = { a = { I = 1, k = 1 } } }:simulate { base = 1, t_end = 5 }, "1 body and 0 links", "There is no M.", "The base moves.")
+    says(system { I = 1, k = 1, Rd = function() return 0.1 end }:simulate { belt = 1, t_end = 5 }, "A belt moves under the body.")
+end)
+
+test("a file of several bodies has their units, and the lines that repeat the run", function()
+    local units, pull = { theta = "m", t = "s", M = "N" }, 0.3
+    local parts = {
+        bodies = {
+            a = { I = 1, k = 4, Rd = function(t) return 0.1 + pull * t end, spring = function(x) return x ^ 3 end },
+            b = { I = 2, C = 0.1, walls = { lower = -1, upper = 1, restitution = 0.5 } },
+            c = { I = 1, k = 1, friction = friction.stribeck { Rd = 0.1, Re = 0.2, speed = 0.1 }, normal = function(t, theta) return 1 + theta.a ^ 2 end },
+            d = { I = 1, k = 2, friction = function(speed) return 0.1 / (1 + speed) end, Re = 0.3 },
+        },
+        links = { rod = { "a", "b", k = 3, Rd = 0.05, Re = 0.1 } }, units = units,
+    }
+    local rig = system(parts)
+    local run = rig:simulate {
+        M = { a = excitation.harmonic { omega = 2 }, b = function(t) return pull * math.sin(t) end }, belt = { c = 0.2, rod = 0.1 },
+        base = excitation.harmonic { amplitude = 0.1, omega = 1 }, theta0 = { a = 0.1 }, velocity0 = { b = 0.2 }, t_end = 5, dt = 0.5,
+        states = { z = { start = 1, rate = function(t, theta, velocity, z) return pull * theta.a - z.z end } },
+        events = { { when = function(t, theta) return theta.a - 0.2 end, name = "there", act = function(t, theta, velocity) velocity.a = 0 end } },
+    }
+    local longer = run:continue { t_end = 7 }
+    pull = 7 -- the file has what it was
+    for _, each in ipairs { run, longer } do
+        local again = repeated(each)
+        equal(tostring(again), tostring(each))
+        for _, column in ipairs { "a.theta", "b.theta", "c.friction", "d.velocity", "rod.torque", "z" } do
+            near(again:data()[column], each:data()[column], each == run and 0 or 1e-9)
+        end
+        equal(again.system.bodies[4], "d")
+    end
+    local back, file = reloaded(run)
+    equal(back["rod.torque"], run.rod.torque)
+    has(back, "a.theta, m", "a.velocity, m/s")
+    has(back:select("rod.torque"), "rod.torque, N")
+    has(read(file), "# run = sys:simulate{ M = M, belt = belt, ", "theta in m, t in s, M in N")
+    equal(repeated(rig:simulate { t_end = 5, times = { 1, 2.5 } }).t[2], 2.5)
+    equal(repeated(run.a):data()["a.theta"], run.a.theta)
+    local one = system { I = 1, k = 1, Rd = function() return 0.1 end, units = units }:simulate { belt = 0.2, theta0 = 1, t_end = 3, dt = 0.5 }
+    local same = repeated(one)
+    equal(same.theta, one.theta)
+    equal(same.units.t, "s")
+    local steady = system { bodies = { a = { I = 1, k = 1, C = 0.5 } } }:steady { M = { a = excitation.harmonic { omega = 1 } } }.run
+    near(repeated(steady).a.theta, steady.a.theta, 1e-9)
+end)
+
 test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
     local rig = pair({ I = 1, k = 1, Rd = 0.2 }, { I = 1 }, { Rd = 0.1 })
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
