@@ -484,6 +484,14 @@ model::OscillatorParameters parameters_of(const model::Assembly& system, std::si
     return parameters;
 }
 
+std::vector<std::string> repeat_lines(lua_State* L, const BodiesRun& run) {
+    std::vector<std::string> lines = run.set_up.empty() ? source::set_up_lines(L, *run.system, run.drive) : run.set_up;
+    const auto times = run.run.table.column(0);
+    const motion::Grid rows = run.spaced ? motion::Grid::every(run.dt) : motion::Grid::at({times.begin(), times.end()});
+    lines.push_back(source::repeat_line(*run.system, run.drive, {run.run.t_start, run.t_end}, rows));
+    return lines;
+}
+
 lua::Vector table_column(const BodiesRunHandle& run, std::size_t column) {
     const bool empty = run->run.table.size() == 0;
     return view_of(run, empty ? std::span<const double>() : run->run.table.column(column));
@@ -584,7 +592,9 @@ int simulate_bodies(lua_State* L) {
     if (const auto wrong = window.complaint()) options.fail(*wrong);
     constexpr double rows = 1000;
     run->dt = asked.dt.value_or((window.end - window.start) / rows);
-    const motion::Grid grid = options.has("times") ? motion::Grid::at(asked.times) : motion::Grid::every(run->dt);
+    run->t_end = window.end, run->spaced = !options.has("times");
+    run->set_up = source::set_up_lines(L, *system, run->drive);  // before the functions change what they refer to
+    const motion::Grid grid = run->spaced ? motion::Grid::every(run->dt) : motion::Grid::at(asked.times);
     return run_bodies(L, options, run, window, grid, limits_of_run(asked.dense));
 }
 
@@ -599,52 +609,8 @@ std::vector<std::string> joint_names(const model::Assembly& system) {
     return names;
 }
 
-std::string text_of_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
-    const model::Joint& joint = system.joints[j];
-    std::vector<std::string> parts;
-    const auto number = [&](const char* name, double value) {
-        if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
-    };
-    if (system.is_link(j)) {
-        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.first)].name));
-        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.second)].name));
-    } else {
-        number("I", system.bodies[j].inertia);
-    }
-    number("k", joint.stiffness);
-    number("C", joint.damping);
-    const model::ContactFriction& friction = joint.friction;
-    const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
-        if (value) parts.push_back(fmt::format("{} = {}", name, source::describe(L, *value)));
-    };
-    if (friction.function != nullptr) parts.emplace_back("friction = function");
-    varying("Rd", friction.sliding[1]);
-    varying("Re", friction.holding[1]);
-    if (const auto* law = friction.law.as<model::laws::Coulomb>()) {
-        number("Rd", law->kinetic);
-        number("Re", law->breakaway);
-    } else if (!friction.law.none()) {
-        parts.push_back("friction = " + source::lua_text(L, friction.law));
-    }
-    varying("normal", friction.normal);
-    if (!joint.spring.none()) {
-        const std::string own = joint.spring.lua_text();
-        parts.push_back("spring = " + (own.empty() ? "function" : own));
-    }
-    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
-    return fmt::format("{{ {} }}", fmt::join(parts, ", "));
-}
-
 std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
-    if (!rig->named) return "system" + text_of_joint(L, *rig, 0);
-    std::vector<std::string> bodies, links;
-    for (std::size_t j = 0; j < rig->joints.size(); ++j) {
-        (rig->is_link(j) ? links : bodies)
-            .push_back(fmt::format("{} = {}", rig->joints[j].name, text_of_joint(L, *rig, j)));
-    }
-    std::string text = fmt::format("system{{ bodies = {{ {} }}", fmt::join(bodies, ", "));
-    if (!links.empty()) text += fmt::format(", links = {{ {} }}", fmt::join(links, ", "));
-    return text + " }";
+    return source::lua_text(L, *rig);
 }
 
 // ---- their run
@@ -707,7 +673,7 @@ int rows_of_bodies(lua_State* L) {
     const ColumnUnits in(system.units);
     Data data;
     const auto add = [&](std::string name, std::string_view kind, std::size_t column) {
-        data.columns.push_back({std::move(name), table_column(run, column), in.of(kind == "torque" ? "M" : kind)});
+        data.columns.push_back({std::move(name), table_column(run, column), in.of(kind)});
     };
     add("t", "t", 0);
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -753,6 +719,7 @@ constexpr text::Call bodies_save_call{
 /// The columns asked for, or all.
 int save_bodies(lua_State* L) {
     const lua::Options options(L, 3, bodies_save_call);
+    const std::vector<std::string> comments = repeat_lines(L, *bodies_run_self(L, bodies_save_call.example));
     rows_of_bodies(L);
     lua_replace(L, 1);
     if (options.has("columns")) {
@@ -768,7 +735,7 @@ int save_bodies(lua_State* L) {
         lua_replace(L, 1);
     }
     lua_settop(L, 2);
-    return data_functions::save(L);
+    return data_functions::save_rows(L, comments);
 }
 
 constexpr text::Call bodies_plot_call{"rig_run:plot", "rig_run:plot{ file = \"run.svg\" }", plot_options, true};
@@ -817,6 +784,7 @@ int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHand
     }
     auto run = std::make_shared<BodiesRun>();
     run->system = first->system, run->drive = first->drive, run->dt = first->dt;
+    run->t_end = *asked.t_end, run->spaced = first->spaced, run->set_up = first->set_up;
     // The last row of the first run stands in the second one only where the spacing puts it there.
     const motion::Limits limits = limits_of_run(keeps_motion(first->run));
     const double start = first->run.t_start;
@@ -940,7 +908,8 @@ constexpr lua::Member bodies_run_members[] = {
       {&animate_call}}},
     {lua::a_method<save_bodies>,
      {"rig_run:save(file, { OPTIONS })",
-      "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
+      "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns, behind a comment block "
+      "with the units and the Lua text that repeats the run.",
       DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
                     "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)",
       {&bodies_save_call}}},

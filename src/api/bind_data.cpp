@@ -553,14 +553,18 @@ int select(lua_State* L) {
     return push_data(L, std::move(picked));
 }
 
-int save(lua_State* L) {
+int save_rows(lua_State* L, const std::vector<std::string>& comments) {
     lua::refuse_in_worker(L, "d:save");
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
     std::vector<files::NamedColumn> columns;
     for (const DataColumn& column : data->columns) columns.push_back(column.named());
-    lua::value_or_raise(L, "d:save", files::write_csv(file, columns, {}, files::Gaps::written));
+    lua::value_or_raise(L, "d:save", files::write_csv(file, columns, comments, files::Gaps::written));
     return 0;
+}
+
+int save(lua_State* L) {
+    return save_rows(L, {});
 }
 
 int markdown(lua_State* L) {

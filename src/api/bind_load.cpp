@@ -37,20 +37,27 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
     return 1;
 }
 
+/// Units of the comments are those of rig_run:save, whose columns begin with the names of bodies.
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
+    const ColumnUnits in(model::Units::from_file(content.comments));
     Data data;
-    for (files::ReadColumn& column : content.columns) data.columns.push_back(column_of(std::move(column)));
+    for (files::ReadColumn& column : content.columns) {
+        if (column.unit.empty()) column.unit = in.of(column.name.substr(column.name.find('.') + 1));
+        data.columns.push_back(column_of(std::move(column)));
+    }
     return push_data(L, std::move(data));
 }
 
-/// The comments of run:save begin so, or there are times and angles; and the rows have no gaps.
+/// The comments of run:save begin so, or there are times and angles of one body; and the rows have no gaps.
 bool is_run(const files::ReadColumns& content) {
     const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
     const auto has = [&](std::string_view name) {
         return std::any_of(content.columns.begin(), content.columns.end(),
                            [name](const files::ReadColumn& column) { return column.name == name; });
     };
-    const bool saved = !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
+    const bool of_one = std::none_of(content.columns.begin(), content.columns.end(),
+                                     [](const auto& column) { return column.name.find('.') != std::string::npos; });
+    const bool saved = of_one && !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
     return (saved || (has("t") && has("theta"))) && std::all_of(content.columns.begin(), content.columns.end(), finite);
 }
 

@@ -830,7 +830,9 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
     const std::string ending = text::ending_of(file);
     if (ending == ".csv") {
         return files::write_csv(file, asked_columns(L, options, run.trajectory),
-                                run.origin ? source::repeat_lines(*run.origin) : run.comments);
+                                run.origin  ? source::repeat_lines(*run.origin)
+                                : run.whole ? repeat_lines(L, *run.whole)
+                                            : run.comments);
     }
     if (ending != ".dat") {
         return text::Error{.sentence = fmt::format(

@@ -102,6 +102,9 @@ struct BodiesRun {
     motion::engine::Drive drive;
     motion::engine::AssemblyRun run;
     double dt = 0;
+    double t_end = 0;                      ///< that was asked for
+    bool spaced = true;                    ///< a row every dt, not at times of the user
+    std::vector<std::string> set_up = {};  ///< Lua text that makes all that was run, as it was at the start
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
     mutable std::shared_ptr<const motion::engine::Works> works = {};   ///< made when they are asked for
@@ -110,6 +113,8 @@ struct BodiesRun {
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
 model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
+/// Lua text that makes the same run again, as lines.
+std::vector<std::string> repeat_lines(lua_State* L, const BodiesRun& run);
 /// A column of its table.
 lua::Vector table_column(const BodiesRunHandle& run, std::size_t column);
 /// The columns of a run: the first state, and the acceleration of a body.

@@ -161,11 +161,8 @@ ColumnUnits::ColumnUnits(const model::Units& units) {
 }
 
 std::string ColumnUnits::of(std::string_view column) const {
-    return column == "t"                                                  ? t
-           : column == "theta"                                            ? theta
-           : column == "velocity"                                         ? speed
-           : column == "M" || column == "friction" || column == "damping" ? M
-                                                                          : "";
+    const bool torque = column == "M" || column == "friction" || column == "damping" || column == "torque";
+    return column == "t" ? t : column == "theta" ? theta : column == "velocity" ? speed : torque ? M : "";
 }
 
 int push_data(lua_State* L, Data data) {

@@ -184,6 +184,8 @@ int filter(lua_State* L);
 int sort(lua_State* L);
 int select(lua_State* L);
 int save(lua_State* L);
+/// d:save(file) with comments before the rows.
+int save_rows(lua_State* L, const std::vector<std::string>& comments);
 int column(lua_State* L);
 int markdown(lua_State* L);
 /// The data of a call such as d:plot{}.

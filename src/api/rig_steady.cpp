@@ -99,6 +99,7 @@ SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion mot
         run->system = question.system, run->drive = rig->motion.drive, run->run = rig->motion.run;
         constexpr double rows = 400;
         run->dt = rig->motion.facts.period / rows;
+        run->t_end = run->run.t_stop;
         rig->run = std::move(run);
     }
     if (!question.system->named) return seen_from(rig, 0);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <vector>
 
 #include "lua/foreign.hpp"
 #include "lua/user_function.hpp"
@@ -11,6 +12,7 @@
 #include "model/springs/user_spring.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
+#include "text/characters.hpp"
 #include "text/option.hpp"
 
 namespace dinal::source {
@@ -55,6 +57,58 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
     if (!system.units().usual()) {
         text += ", units = " + system.units().lua_text();
     }
+    return text + " }";
+}
+
+namespace {
+
+/// "{ I = 1, k = 4, Rd = 0.3 }", or of a link "{ \"motor\", \"load\", k = 90 }".
+std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t j, ValueText* whole) {
+    const model::Joint& joint = system.joints[j];
+    std::vector<std::string> parts;
+    const auto number = [&](const char* name, double value) {
+        if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
+    };
+    if (system.is_link(j)) {
+        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.first)].name));
+        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.second)].name));
+    } else {
+        number("I", system.bodies[j].inertia);
+    }
+    number("k", joint.stiffness);
+    number("C", joint.damping);
+    const model::ContactFriction& friction = joint.friction;
+    const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
+        if (value) parts.push_back(fmt::format("{} = {}", name, describe(L, *value, whole)));
+    };
+    if (friction.function != nullptr) parts.push_back("friction = " + function_text(L, *friction.function, whole));
+    varying("Rd", friction.sliding[1]);
+    varying("Re", friction.holding[1]);
+    if (const auto* law = friction.law.as<model::laws::Coulomb>()) {
+        number("Rd", law->kinetic);
+        number("Re", law->breakaway);
+    } else if (!friction.law.none()) {
+        parts.push_back("friction = " + lua_text(L, friction.law, whole));
+    }
+    varying("normal", friction.normal);
+    if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
+    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
+    if (!system.named && !system.units.usual()) parts.push_back("units = " + system.units.lua_text());
+    return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+std::string lua_text(lua_State* L, const model::Assembly& system, ValueText* whole) {
+    if (!system.named) return "system" + joint_text(L, system, 0, whole);
+    std::vector<std::string> bodies, links;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        (system.is_link(j) ? links : bodies)
+            .push_back(fmt::format("{} = {}", system.joints[j].name, joint_text(L, system, j, whole)));
+    }
+    std::string text = fmt::format("system{{ bodies = {{ {} }}", fmt::join(bodies, ", "));
+    if (!links.empty()) text += fmt::format(", links = {{ {} }}", fmt::join(links, ", "));
+    if (!system.units.usual()) text += ", units = " + system.units.lua_text();
     return text + " }";
 }
 

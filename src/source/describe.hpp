@@ -4,6 +4,7 @@
 #include <string>
 
 #include "lua/lua_headers.hpp"
+#include "model/assembly.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "motion/method.hpp"
@@ -20,6 +21,9 @@ std::string describe(lua_State* L, const model::Excitation& excitation, ValueTex
 /// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }": makes the same system again; parts that are 0 are left out.
 /// With `whole`, the function of a friction law comes with the variables that it takes from outside.
 std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole = nullptr);
+
+/// "system{ bodies = { a = { I = 1, k = 4 } } }": the same of several bodies.
+std::string lua_text(lua_State* L, const model::Assembly& system, ValueText* whole = nullptr);
 
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
 std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);

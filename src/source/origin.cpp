@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "lua/user_function.hpp"
 #include "motion/witness.hpp"
 #include "source/describe.hpp"
@@ -101,32 +104,58 @@ std::string extras_text(const model::Extras& extras) {
     return text;
 }
 
-/// Without functions of a user Lua is not asked, and may be null.
-std::vector<std::string> set_up_lines(lua_State* L, const Task& task) {
+/// The head of the lines and, behind all that the functions among them use, the declarations that `made` gives.
+template <class Made>
+std::vector<std::string> set_up_lines(lua_State* L, const model::Units& units, Made made) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
-    if (!task.system.units().usual()) {
-        lines.push_back(task.system.units().in_file());
-    }
+    if (!units.usual()) lines.push_back(units.in_file());
     ValueText writer(L);
-    const bool driven = !task.excitation.components().empty();
-    const std::string M = driven ? excitation_text(L, task.excitation, writer) : "";
-    const std::string system = lua_text(L, task.system, &writer);
-    const std::vector<std::string> extras = extras_lines(L, task.extras, writer);
-    for (const std::string& remark : writer.remarks()) {
-        append_lines(lines, remark);
+    const std::vector<std::string> declarations = made(writer);
+    for (const auto* texts : {&writer.remarks(), &writer.globals(), &declarations}) {
+        for (const std::string& text : *texts) append_lines(lines, text);
     }
-    for (const std::string& global : writer.globals()) {
-        append_lines(lines, global);
-    }
-    if (driven) {
-        append_lines(lines, "local M = " + M);
-    }
-    for (const std::string& line : extras) {
-        append_lines(lines, line);
-    }
-    append_lines(lines, "local sys = " + system);
     return lines;
+}
+
+/// Without functions of a user Lua is not asked, and may be null.
+std::vector<std::string> set_up_lines(lua_State* L, const Task& task) {
+    return set_up_lines(L, task.system.units(), [&](ValueText& writer) {
+        std::vector<std::string> lines;
+        if (!task.excitation.components().empty()) {
+            lines.push_back("local M = " + excitation_text(L, task.excitation, writer));
+        }
+        for (std::string& line : extras_lines(L, task.extras, writer)) lines.push_back(std::move(line));
+        lines.push_back("local sys = " + lua_text(L, task.system, &writer));
+        return lines;
+    });
+}
+
+/// "{ a = 1, b = 2 }", or of one body without a name its number.
+std::string by_body(const model::Assembly& system, const std::vector<double>& numbers) {
+    if (!system.named) return fmt::format("{}", numbers.front());
+    std::string text;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        text += fmt::format("{} {} = {}", text.empty() ? "" : ",", system.bodies[i].name, numbers[i]);
+    }
+    return "{" + text + " }";
+}
+
+/// The line "local M = ..." by body or joint; none where nothing acts.
+void append_acting(std::vector<std::string>& lines, lua_State* L, const char* name, const model::Assembly& system,
+                   const std::vector<model::Excitation>& acting, ValueText& writer) {
+    std::string text;
+    for (std::size_t j = 0; j < acting.size(); ++j) {
+        if (acting[j].components().empty()) continue;
+        const std::string own = excitation_text(L, acting[j], writer);
+        text += system.named ? fmt::format("{} {} = {}", text.empty() ? "" : ",", system.joints[j].name, own) : own;
+    }
+    if (text.empty()) return;
+    lines.push_back(fmt::format("local {} = {}", name, system.named ? "{" + text + " }" : text));
+}
+
+bool acts(const std::vector<model::Excitation>& acting) {
+    return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
 }
 
 }  // namespace
@@ -146,6 +175,27 @@ std::vector<std::string> repeat_lines(const Origin& origin) {
                              origin.initial.theta, origin.initial.velocity, origin.window.start, origin.window.end,
                              rows_text(origin.rows), lua_text(origin.integrator)));
     return lines;
+}
+
+std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const motion::engine::Drive& drive) {
+    return set_up_lines(L, system.units, [&](ValueText& writer) {
+        std::vector<std::string> lines;
+        append_acting(lines, L, "M", system, drive.loads, writer);
+        append_acting(lines, L, "belt", system, drive.belts, writer);
+        for (std::string& line : extras_lines(L, {drive.states, drive.events, {}, drive.base}, writer)) {
+            lines.push_back(std::move(line));
+        }
+        lines.push_back("local sys = " + lua_text(L, system, &writer));
+        return lines;
+    });
+}
+
+std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
+                        const motion::Grid& rows) {
+    return fmt::format("run = sys:simulate{{ {}{}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {} }}",
+                       acts(drive.loads) ? "M = M, " : "", acts(drive.belts) ? "belt = belt, " : "",
+                       extras_text({drive.states, drive.events, {}, drive.base}), by_body(system, drive.theta0),
+                       by_body(system, drive.velocity0), window.start, window.end, rows_text(rows));
 }
 
 }  // namespace dinal::source

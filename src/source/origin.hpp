@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lua/lua_headers.hpp"
+#include "motion/engine/run.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 
@@ -32,5 +33,10 @@ Origin origin_of(lua_State* L, Task task);
 
 /// Lua text that makes the same run again, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);
+
+/// The same of a run of several bodies: the lines that make them and all that drives them, and the line that runs them.
+std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const motion::engine::Drive& drive);
+std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
+                        const motion::Grid& rows);
 
 }  // namespace dinal::source
