@@ -49,11 +49,21 @@ py::object array_of(const lua::Vector& vector) {
     return array;
 }
 
+/// Each level of a conversion needs some of the C++ stack.
+void check_depth(int depth) {
+    constexpr int deepest = 100;
+    if (depth <= deepest) return;
+    PyErr_SetString(PyExc_ValueError,
+                    "a value within more than 100 others is too deep to pass between Lua and Python: make it flatter");
+    throw py::error_already_set();
+}
+
 using Seen = std::unordered_map<const void*, py::object>;  // tables that may lead to themselves
-py::object value_to_python(lua_State* L, int index, Seen& seen);
+py::object value_to_python(lua_State* L, int index, Seen& seen, int depth);
 
 /// A list if it has nothing else, otherwise a Record.
-py::object table_to_python(lua_State* L, int index, Seen& seen) {
+py::object table_to_python(lua_State* L, int index, Seen& seen, int depth) {
+    check_depth(depth);
     luaL_checkstack(L, LUA_MINSTACK, "too many tables in tables");
     const void* identity = lua_topointer(L, index);
     if (const auto found = seen.find(identity); found != seen.end()) return found->second;
@@ -66,18 +76,18 @@ py::object table_to_python(lua_State* L, int index, Seen& seen) {
         seen[identity] = list;
         for (py::ssize_t i = 1; i <= length; ++i, lua_pop(L, 1)) {
             lua_rawgeti(L, index, i);
-            list.append(value_to_python(L, -1, seen));
+            list.append(value_to_python(L, -1, seen, depth + 1));
         }
         return list;
     }
     py::object record = seen[identity] = hooks().attr("Record")();
     for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
-        record[value_to_python(L, -2, seen)] = value_to_python(L, -1, seen);
+        record[value_to_python(L, -2, seen, depth + 1)] = value_to_python(L, -1, seen, depth + 1);
     }
     return record;
 }
 
-py::object value_to_python(lua_State* L, int index, Seen& seen) {
+py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
     switch (lua_type(L, index)) {
         case LUA_TNONE:
         case LUA_TNIL:
@@ -93,7 +103,7 @@ py::object value_to_python(lua_State* L, int index, Seen& seen) {
                 PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
         }
         case LUA_TTABLE:
-            return table_to_python(L, index, seen);
+            return table_to_python(L, index, seen, depth);
         default:
             break;
     }
@@ -238,12 +248,11 @@ PyTypeObject* reference_type() {
 py::object to_python(lua_State* L, int index) {
     if (lua_type(L, index) == LUA_TNUMBER && lua_isinteger(L, index) == 0) return py::float_(lua_tonumber(L, index));
     Seen seen;
-    return value_to_python(L, index, seen);
+    return value_to_python(L, index, seen, 0);
 }
 
 void to_lua(lua_State* L, py::handle value, int depth) {
-    constexpr int deepest = 100;
-    if (depth > deepest) throw py::value_error("a value within more than 100 others is too deep for dinal");
+    check_depth(depth);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     PyObject* own = value.ptr();
     if (own == Py_None) return lua_pushnil(L);
@@ -256,9 +265,9 @@ void to_lua(lua_State* L, py::handle value, int depth) {
     } else if (PyObject_TypeCheck(own, reference_type())) {
         lua_rawgeti(L, LUA_REGISTRYINDEX, reinterpret_cast<Reference*>(own)->place);
     } else if (PyDict_Check(own)) {
-        table_to_lua(L, py::tuple(), py::reinterpret_borrow<py::dict>(value), depth + 1);
+        table_to_lua(L, py::tuple(), py::reinterpret_borrow<py::dict>(value), depth);
     } else if (PyList_Check(own) || PyTuple_Check(own)) {
-        table_to_lua(L, py::tuple(py::reinterpret_borrow<py::object>(value)), py::dict(), depth + 1);
+        table_to_lua(L, py::tuple(py::reinterpret_borrow<py::object>(value)), py::dict(), depth);
     } else {
         PyFunction_Check(own) ? function_to_lua(L, value) : other_to_lua(L, value, depth);
     }

@@ -114,10 +114,21 @@ class Objects(unittest.TestCase):
         word = object()
         self.assertIs(dinal.lua("x", x=word), word)
         self.assertIs(dinal.lua("f", f=math.sin), math.sin)
-        deep = []
-        deep.append(deep)
-        with self.assertRaisesRegex(ValueError, "too deep"):
-            dinal.lua("x", x=deep)
+
+    def test_depth(self):
+        """Tables and lists may be 100 deep in both directions; a deeper one is an error, not a crash."""
+        nested = "(function() local t = {} for i = 1, %d do t = { %st } end return t end)()"
+        deep = dinal.lua(nested % (100, ""))
+        self.assertEqual(dinal.lua("x", x=deep), deep)
+        circle = []
+        circle.append(circle)
+        for too_deep in ([deep], {"x": {"x": deep}}, circle):
+            with self.assertRaisesRegex(ValueError, "too deep"):
+                dinal.lua("x", x=too_deep)
+        for table in (nested % (101, ""), nested % (100_000, ""), nested % (100_000, "x = ")):
+            for text in (table, f"f({table})"):
+                with self.assertRaisesRegex(ValueError, "too deep"):
+                    dinal.lua(text, f=lambda x: None)
 
     def test_order_of_output(self):
         self.assertEqual(python("print(1); dinal.lua('print(2)'); print(3); dinal.lua('print(4)')").stdout, "1\n2\n3\n4\n")
