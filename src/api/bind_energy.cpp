@@ -94,15 +94,15 @@ NamedNumbers total_of_rig(const RunEnergy& energy) {
     const engine::Works& works = *energy.rig->works;
     const double error = analysis::error_of(works);
     return {{"input", sum_of(works.input)},
-            {"base", sum_of(works.base)},
             {"kinetic", sum_of(works.kinetic)},
             {"spring", sum_of(works.spring)},
             {"viscous", sum_of(works.viscous)},
             {"dry", sum_of(works.dry)},
-            {"belt", sum_of(works.belt)},
-            {"impacts", sum_of(works.impacts)},
-            {"acts", works.acts},
             {"error", error},
+            {"belt", sum_of(works.belt)},
+            {"base", sum_of(works.base)},
+            {"acts", works.acts},
+            {"impacts", sum_of(works.impacts)},
             {"flow", works.flow},
             {"closure", works.flow > 0 ? std::fabs(error) / works.flow : 0}};
 }

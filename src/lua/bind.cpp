@@ -237,6 +237,17 @@ std::string written(lua_State* L, int index) {
     return type == LUA_TNUMBER || type == LUA_TBOOLEAN || type <= LUA_TNIL ? describe(L, index) : "";
 }
 
+void note_order(lua_State* L, const NamedNumbers& numbers) {
+    std::vector<const char*> names;
+    for (const auto& [name, number] : numbers) names.push_back(name);
+    if (luaL_newmetatable(L, fmt::format("order {}", fmt::join(names, " ")).c_str()) != 0) {
+        set_value(L, "names", names);
+        lua_pushnil(L);
+        lua_setfield(L, -2, "__name");  // or tostring would show it
+    }
+    lua_setmetatable(L, -2);
+}
+
 double finite_argument(lua_State* L, int index, std::string_view what) {
     if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, index))) {
         raise_got(L, index, what, std::string(what) + " must be a finite number");

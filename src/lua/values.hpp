@@ -24,6 +24,13 @@ struct Callable {
     int index;
 };
 
+/// What becomes a table of numbers by their names. Python keeps their order.
+using NamedNumbers = std::vector<std::pair<const char*, double>>;
+
+/// Gives the table on the top a metatable that has the names in their order, as that of a row of data; one metatable
+/// for all tables of these names.
+void note_order(lua_State* L, const NamedNumbers& numbers);
+
 /// Pushes a number, a flag, a text, a list of such, a table of such by their names, or an object of a class; nil for an
 /// optional that is empty.
 template <class Value>
@@ -60,6 +67,7 @@ void push_value(lua_State* L, const Value& value) {
                 lua_rawseti(L, -2, ++i);
             }
         }
+        if constexpr (std::is_same_v<Value, NamedNumbers>) note_order(L, value);
     } else {
         push<Value>(L, value);
     }
@@ -71,9 +79,6 @@ void set_value(lua_State* L, const char* name, const Value& value) {
     push_value(L, value);
     lua_setfield(L, -2, name);
 }
-
-/// What becomes a table of numbers by their names.
-using NamedNumbers = std::vector<std::pair<const char*, double>>;
 
 /// The string at `index`, or those of a list; none when something else is there or among them.
 inline std::optional<std::vector<std::string>> strings_at(lua_State* L, int index) {

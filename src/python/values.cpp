@@ -6,7 +6,9 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "lua/foreign.hpp"
@@ -61,6 +63,42 @@ void check_depth(int depth) {
 using Seen = std::unordered_map<const void*, py::object>;  // tables that may lead to themselves
 py::object value_to_python(lua_State* L, int index, Seen& seen, int depth);
 
+/// Fills the record in an order that is the same in each process, unlike Lua's: that of `names` in the metatable, which
+/// rows of data have, then numbers, then names by the alphabet.
+void fill_record(lua_State* L, int index, py::object& record, Seen& seen, int depth) {
+    const int top = lua_gettop(L);
+    if (luaL_getmetafield(L, index, "names") == LUA_TTABLE) {
+        for (lua_Integer i = 1; lua_rawgeti(L, top + 1, i) == LUA_TSTRING; ++i, lua_settop(L, top + 1)) {
+            lua_pushvalue(L, -1);
+            if (lua_rawget(L, index) != LUA_TNIL) {
+                record[value_to_python(L, -2, seen, depth)] = value_to_python(L, -1, seen, depth);
+            }
+        }
+    }
+    lua_settop(L, top);
+    struct Field {
+        int rank;
+        double number;
+        std::string_view name;
+        py::object key, value;
+    };
+    std::vector<Field> others;
+    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
+        const bool is_number = lua_type(L, -2) == LUA_TNUMBER, is_name = lua_type(L, -2) == LUA_TSTRING;
+        py::object key = value_to_python(L, -2, seen, depth);
+        if (is_name && record.contains(key)) continue;
+        others.push_back({is_number ? 0
+                          : is_name ? 1
+                                    : 2,
+                          is_number ? lua_tonumber(L, -2) : 0, is_name ? lua::text_at(L, -2) : std::string_view(),
+                          std::move(key), value_to_python(L, -1, seen, depth)});
+    }
+    std::stable_sort(others.begin(), others.end(), [](const Field& a, const Field& b) {
+        return std::tie(a.rank, a.number, a.name) < std::tie(b.rank, b.number, b.name);
+    });
+    for (const Field& field : others) record[field.key] = field.value;
+}
+
 /// A list if it has nothing else, otherwise a Record.
 py::object table_to_python(lua_State* L, int index, Seen& seen, int depth) {
     check_depth(depth);
@@ -69,9 +107,13 @@ py::object table_to_python(lua_State* L, int index, Seen& seen, int depth) {
     if (const auto found = seen.find(identity); found != seen.end()) return found->second;
     index = lua_absindex(L, index);
     const auto length = static_cast<py::ssize_t>(lua_rawlen(L, index));
-    py::ssize_t count = 0;
-    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) ++count;
-    if (count == length && count > 0) {
+    py::ssize_t listed = 0;
+    bool is_list = length > 0;
+    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1), ++listed) {
+        const lua_Integer key = lua_isinteger(L, -2) != 0 ? lua_tointeger(L, -2) : 0;
+        is_list = is_list && key >= 1 && key <= length;
+    }
+    if (is_list && listed == length) {
         py::list list;
         seen[identity] = list;
         for (py::ssize_t i = 1; i <= length; ++i, lua_pop(L, 1)) {
@@ -81,9 +123,7 @@ py::object table_to_python(lua_State* L, int index, Seen& seen, int depth) {
         return list;
     }
     py::object record = seen[identity] = hooks().attr("Record")();
-    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
-        record[value_to_python(L, -2, seen, depth + 1)] = value_to_python(L, -1, seen, depth + 1);
-    }
+    fill_record(L, index, record, seen, depth + 1);
     return record;
 }
 

@@ -89,12 +89,13 @@ std::string ValueText::table(int index) {
     if (std::find(open_.begin(), open_.end(), identity) != open_.end() || open_.size() > deepest) {
         return nothing("a table that contains itself");
     }
-    if (lua_getmetatable(L_, index) != 0) {
-        lua_pop(L_, 1);
+    const int top = lua_gettop(L_);
+    // That of rows of data and of balances only has the order of their names.
+    if (lua_getmetatable(L_, index) != 0 && luaL_getmetafield(L_, index, "names") == LUA_TNIL) {
         remarks_.emplace_back("-- the metatable of a table could not be written down");
     }
+    lua_settop(L_, top);
     open_.push_back(identity);
-    const int top = lua_gettop(L_);
     std::string text;
     const auto sequence = static_cast<lua_Integer>(lua_rawlen(L_, index));
     for (lua_Integer i = 1; i <= sequence && budget_ >= 0; ++i) {

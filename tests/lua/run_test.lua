@@ -201,6 +201,10 @@ test("what cannot be written down is said in the comment block", function()
     local late = setmetatable({ 3 }, { __index = function() return 2 end })
     nd:simulate { M = function(t) return late[2] * t end, t_end = 1, dt = 1 }:save(name)
     has(read(name), "# -- the metatable of a table could not be written down")
+    local run = system { I = 1, k = 4, Rd = 0.3 }:simulate { theta0 = 1, t_end = 5 }
+    local row, total = run[1], run:energy().total
+    nd:simulate { M = function(t) return (row.t + total.dry) * t end, t_end = 1, dt = 1 }:save(name)
+    has_not(read(name), "metatable")
 end)
 
 test("the status of a run is one word for each way to end", function()

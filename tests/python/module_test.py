@@ -79,6 +79,22 @@ class Objects(unittest.TestCase):
         again = dinal.data(pandas.DataFrame({"r": [1., 2.], "A": [3., 4.]}))
         self.assertEqual(again.A.tolist(), [3, 4])
 
+    def test_order_of_fields(self):
+        """The same in each process, although Lua's tables have another order in each."""
+        balance = ["input", "kinetic", "spring", "viscous", "dry", "error", "belt", "base", "acts", "impacts", "flow", "closure"]
+        self.assertEqual(list(pandas.DataFrame(self.run)), self.run.names)
+        self.assertEqual(list(self.run[0]), self.run.names)
+        self.assertEqual(list(pandas.DataFrame(self.run.events)), self.run.events.names)
+        self.assertEqual(list(self.run.events[0]), self.run.events.names)
+        self.assertEqual(list(dinal.data([["w", [1]], ["a", [2]], ["t", [3]]])[0]), ["w", "a", "t"])
+        self.assertEqual(list(self.run.energy().total), balance)
+        self.assertEqual(list(self.run.energy().half_cycles[0])[:6], ["t_start", "t_end", "theta_start", "theta_end", *balance[:2]])
+        self.assertEqual(list(dinal.lua("{ d = 1, c = 2, b = 3, a = 4, [2.5] = 5, [-1] = 6, [true] = 7 }")),
+                         [-1, 2.5, "a", "b", "c", "d", True])
+        self.assertEqual(list(dinal.lua("(function() local row = d[1] row.t, row.new, row.also = nil, 1, 2 return row end)()",
+                                        d=self.run)), [*self.run.names[1:], "also", "new"])
+        self.assertEqual(dinal.lua("{ 1, nil, 3, x = 5 }"), {1: 1, 3: 3, "x": 5})
+
     def test_excitations(self):
         e = dinal.excitation.harmonic(amplitude=2, frequency=1)
         self.assertEqual((2 * e - e / np.float64(2))(.25), 3)
