@@ -13,20 +13,19 @@ namespace {
 
 struct Launcher {
     const char* rank;
-    std::array<const char*, 2> sizes;  ///< the first that is set counts
-    const char* first = nullptr;       ///< the rank that counts as 0; 0 without it
-    const char* last = nullptr;        ///< the greatest one
+    const char* size;
+    bool needs_size = true;       ///< otherwise a rank without a size is ignored
+    const char* first = nullptr;  ///< the rank that counts as 0; 0 without it
+    const char* last = nullptr;   ///< the greatest one
 };
 
 constexpr std::array<Launcher, 5> launchers{{
-    {"DINAL_RANK", {"DINAL_SIZE", "DINAL_SIZE"}},
-    {"OMPI_COMM_WORLD_RANK", {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_SIZE"}},
-    {"PMI_RANK", {"PMI_SIZE", "PMI_SIZE"}},
-    {"SLURM_PROCID", {"SLURM_STEP_NUM_TASKS", "SLURM_NTASKS"}},
-    {"SLURM_ARRAY_TASK_ID",
-     {"SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_COUNT"},
-     "SLURM_ARRAY_TASK_MIN",
-     "SLURM_ARRAY_TASK_MAX"},
+    {"DINAL_RANK", "DINAL_SIZE"},
+    {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+    {"PMI_RANK", "PMI_SIZE"},
+    // Slurm sets a rank and SLURM_NTASKS in the shell of every batch job; only srun starts several processes.
+    {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", false},
+    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", true, "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_MAX"},
 }};
 
 std::string_view setting(const char* name) {
@@ -42,13 +41,12 @@ std::optional<long long> whole_number(std::string_view text) {
 
 text::Expected<std::optional<Share>> share_of(const Launcher& launcher) {
     const std::string_view rank_text = setting(launcher.rank);
-    const char* size_name = setting(launcher.sizes[0]).empty() ? launcher.sizes[1] : launcher.sizes[0];
-    const std::string_view size_text = setting(size_name);
+    const std::string_view size_text = setting(launcher.size);
     if (size_text.empty()) {
         return text::Error{
             fmt::format("{} = {} says that this is one of several processes, but {} does not say of how "
                         "many: set it, or unset {}",
-                        launcher.rank, rank_text, launcher.sizes[0], launcher.rank)};
+                        launcher.rank, rank_text, launcher.size, launcher.rank)};
     }
     const auto rank = whole_number(rank_text), size = whole_number(size_text);
     const long long first = whole_number(setting(launcher.first)).value_or(0);
@@ -60,7 +58,7 @@ text::Expected<std::optional<Share>> share_of(const Launcher& launcher) {
         return text::Error{
             fmt::format("{} = {} and {} = {} name no share: the first must be a whole number from 0 to one "
                         "less than the second",
-                        launcher.rank, rank_text, size_name, size_text)};
+                        launcher.rank, rank_text, launcher.size, size_text)};
     }
     return std::optional(Share{(*rank - first) / step, *size});
 }
@@ -69,7 +67,7 @@ text::Expected<std::optional<Share>> share_of(const Launcher& launcher) {
 
 text::Expected<std::optional<Share>> share_of_launcher() {
     for (const Launcher& launcher : launchers) {
-        if (setting(launcher.rank).empty()) continue;
+        if (setting(launcher.rank).empty() || (!launcher.needs_size && setting(launcher.size).empty())) continue;
         auto share = share_of(launcher);
         // A step of one task in a job array: the array counts.
         if (share && (*share)->size == 1 && &launcher != &launchers.back()) continue;

@@ -14,8 +14,8 @@ struct Share {
 };
 
 /// Reads the environment: DINAL_RANK and DINAL_SIZE, which anybody may set (GNU parallel, a loop in a shell); those of
-/// Open MPI, PMI (MPICH, Intel MPI), Slurm's srun, and of Slurm's job arrays. None outside of a launcher. Fails when
-/// there is a rank and no size, or what is there are no such numbers.
+/// Open MPI, PMI (MPICH, Intel MPI), Slurm's srun, and of Slurm's job arrays. None outside of a launcher, as
+/// in the shell of a batch job of Slurm. Fails when there is a rank and no size, or what is there are no such numbers.
 text::Expected<std::optional<Share>> share_of_launcher();
 
 }  // namespace dinal::files

@@ -250,7 +250,7 @@ class SweepFiles(AtHome):
 
     def test_processes_share_the_points_and_the_last_one_goes_on(self):
         for variables in [lambda rank: {"DINAL_RANK": str(rank), "DINAL_SIZE": "3"},
-                          lambda rank: {"SLURM_PROCID": str(rank), "SLURM_NTASKS": "3"},
+                          lambda rank: {"SLURM_PROCID": str(rank), "SLURM_STEP_NUM_TASKS": "3"},
                           lambda rank: {"SLURM_ARRAY_TASK_ID": str(10 + 5 * rank), "SLURM_ARRAY_TASK_COUNT": "3",
                                         "SLURM_ARRAY_TASK_MIN": "10", "SLURM_ARRAY_TASK_MAX": "20"}]:
             with self.subTest(variables(0)):
@@ -280,13 +280,25 @@ class SweepFiles(AtHome):
 
     def test_a_rank_without_a_size_is_one_sentence(self):
         for name, size in [("DINAL_RANK", "DINAL_SIZE"), ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
-                           ("SLURM_PROCID", "SLURM_STEP_NUM_TASKS")]:
+                           ("SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT")]:
             code, _, err = self.run_script(**{name: "1"})
             self.assertEqual(code, 1)
             self.assertIn(f"{name} = 1 says that this is one of several processes, but {size} does not say", err)
         code, _, err = self.run_script(DINAL_RANK="3", DINAL_SIZE="3")
         self.assertEqual(code, 1)
         self.assertIn("DINAL_RANK = 3 and DINAL_SIZE = 3 name no share", err)
+
+    def test_the_shell_of_a_batch_job_is_one_process(self):
+        batch = {"SLURM_JOB_ID": "7", "SLURM_PROCID": "0", "SLURM_NTASKS": "3"}
+        for script in (SCRIPT, SCRIPT.replace('file = "map.csv", ', "")):
+            self.write(script, workers=1)
+            self.assertEqual(self.run_script(**batch), (0, self.run_script()[1], ""))
+        self.write(workers=1)
+        (self.home / "map.csv").unlink()
+        code, out, err = self.run_script(**batch, SLURM_ARRAY_TASK_ID="1", SLURM_ARRAY_TASK_COUNT="2",
+                                         SLURM_ARRAY_TASK_MIN="0", SLURM_ARRAY_TASK_MAX="1")
+        self.assertEqual((code, out), (0, ""))
+        self.assertIn("share 1 of 2 is done", err)
 
     def test_a_sweep_without_a_file_is_refused_under_a_launcher(self):
         self.write(SCRIPT.replace('file = "map.csv", ', ""), workers=1)
