@@ -181,14 +181,17 @@ int object_text(lua_State* L) {
 constexpr lua::Member object_members[] = {{lua::a_metamethod<object_text>("__tostring"), {"", "", ""}}};
 const lua::Class object_class = {"Python object", {"", "", ""}, object_members};
 
-int refuse_exit(lua_State* L) {
-    lua::raise(L, "os.exit is not possible within Python: use sys.exit");
+/// os.exit as sys.exit: a plain exit() would skip `finally` and what atexit has registered.
+int exit_of_python(lua_State* L) {
+    const lua_Integer code = lua_isboolean(L, 1) ? 1 - lua_toboolean(L, 1) : luaL_optinteger(L, 1, 0);
+    PyErr_SetObject(PyExc_SystemExit, py::int_(code).ptr());
+    raise_exception(L, py::error_already_set());
 }
 
 int open(lua_State* L) {
     luaL_openlibs(L);
     lua_getglobal(L, LUA_OSLIBNAME);
-    lua_pushcfunction(L, lua::guarded<refuse_exit>);
+    lua_pushcfunction(L, lua::guarded<exit_of_python>);
     lua_setfield(L, -2, "exit");
     help::open_library(L);
     lua::add_class<py::object>(L, object_class);

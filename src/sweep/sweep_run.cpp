@@ -598,6 +598,10 @@ private:
                       "continues the script\n",
                       share_.rank, share_.size, results_->done(), results_->size());
         static_cast<void>(std::fputs(text.c_str(), stderr));
+        // By os.exit, which Python replaces by one that raises SystemExit.
+        if (lua_getglobal(L_, LUA_OSLIBNAME) == LUA_TTABLE && lua_getfield(L_, -1, "exit") == LUA_TFUNCTION) {
+            lua_call(L_, 0, 0);
+        }
         std::exit(0);  // NOLINT(concurrency-mt-unsafe): the workers have ended
     }
 

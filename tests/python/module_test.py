@@ -394,8 +394,6 @@ class Errors(unittest.TestCase):
             dinal.System.omega0.fget(dinal.excitation.harmonic(omega=1))
         with self.assertRaises(TypeError):
             dinal.Object.__new__(dinal.Run)
-        with self.assertRaisesRegex(dinal.Error, "not possible within Python"):
-            dinal.lua("os.exit()")
         with self.assertRaisesRegex(dinal.Error, "table: 0x"):
             dinal.lua("error({})")
         with self.assertRaisesRegex(dinal.Error, "unexpected symbol|syntax error|expected"):
@@ -500,6 +498,17 @@ print(dinal.system(I=1, k=4).omega0)
                      "sys.exit(dinal.system(I=1, k=4).simulate(M=lambda t: sys.exit(0), t_end=1))"):
             shown = python(code)
             self.assertEqual((shown.returncode, shown.stderr), (0, ""), code)
+
+    def test_exit_from_lua(self):
+        """os.exit raises SystemExit, and so does a sweep that leaves the rest to another process."""
+        sweep = "dinal.sweep(over={'r': [1, 2]}, file='map.csv', run=dinal.lua('function(p) return { A = p.r } end'))"
+        share = {**os.environ, "DINAL_RANK": "0", "DINAL_SIZE": "2"}
+        for code, status in (("dinal.lua('os.exit()')", 0), ("dinal.lua('os.exit(true)')", 0), ("dinal.lua('os.exit(false)')", 1),
+                             ("dinal.system(I=1, k=4).simulate(M=dinal.lua('function(t) os.exit(7) end'), t_end=1)", 7), (sweep, 0)):
+            with tempfile.TemporaryDirectory() as folder:
+                shown = python("import atexit; atexit.register(print, 'atexit')\n"
+                               f"try: {code}; print('not reached')\nfinally: print('finally')", cwd=folder, env=share)
+            self.assertEqual((shown.returncode, shown.stdout), (status, "finally\natexit\n"), shown.stderr)
 
     def test_memory_is_given_back(self):
         sys_ = dinal.system(I=1, k=4)
