@@ -200,6 +200,7 @@ class Callables(unittest.TestCase):
         same = sys.simulate(M=dinal.lua("function(t) return math.sin(t) end"), t_end=20)
         for M in (lambda t: math.sin(t), math.sin, np.sin, lambda t: np.sin(t), lambda t, A=1: A * math.sin(t)):
             self.assertLess(np.abs(sys.simulate(M=M, t_end=20).theta - same.theta).max(), 1e-9)
+        self.assertEqual(dinal.lua("f(2, 3, 4, 5)", f=np.power), 8)  # a ufunc gets as many arguments as it has inputs
 
     def test_what_is_written_of_a_function(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -131,6 +131,8 @@ def parameters_of(function):
     try:
         if type(function) is types.FunctionType and not function.__code__.co_flags & inspect.CO_VARARGS:
             return function.__code__.co_argcount - len(function.__defaults__ or ())
+        if type(function).__name__ == "ufunc":  # of NumPy, whose signature has *args since version 2
+            return function.nin
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
         return 1
