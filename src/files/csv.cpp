@@ -107,8 +107,12 @@ std::string name_in(std::string_view field, std::size_t number) {
     return name.empty() ? std::to_string(number) : name;
 }
 
+bool is_gap(std::string_view field) {
+    return field.empty() || field == "\"\"";
+}
+
 std::string word_in(std::string_view field) {
-    return field.empty() || field == "\"\"" ? std::string() : name_in(field, 0);
+    return is_gap(field) ? std::string() : name_in(field, 0);
 }
 
 class ColumnReader {
@@ -131,7 +135,7 @@ public:
             is_word_above_numbers(fields_.front());
         std::optional<text::Error> fault = take_names(named);
         if (named) rows_.erase(rows_.begin());
-        if (named && may_be_units()) {
+        if (named && !rows_.empty() && may_be_units()) {
             take_units();
             rows_.erase(rows_.begin());
         }
@@ -221,20 +225,23 @@ private:
         return std::nullopt;
     }
 
-    /// A line of words, and numbers in all lines under it.
+    /// A line of words and gaps; under each word stand numbers. A column without a unit may have words.
     [[nodiscard]] bool may_be_units() const {
-        if (rows_.size() < 2) return false;
-        std::vector<std::string_view> fields;
-        const auto number = [&](std::string_view field) { return is_number(field); };
-        const auto number_or_gap = [&](std::string_view field) { return field.empty() || is_number(field); };
-        split(rows_.front().text, separator_, fields);
-        if (fields.size() != result_.columns.size() || std::any_of(fields.begin(), fields.end(), number)) return false;
-        if (std::all_of(fields.begin(), fields.end(), [](std::string_view field) { return field.empty(); }))
+        std::vector<std::string_view> units, fields;
+        split(rows_.front().text, separator_, units);
+        if (units.size() != result_.columns.size() ||
+            std::any_of(units.begin(), units.end(), [this](auto field) { return is_number(field); }))
             return false;
-        return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
-            split(row.text, separator_, fields);
-            return std::all_of(fields.begin(), fields.end(), number_or_gap);
-        });
+        bool has_numbers = false;
+        for (std::size_t row = 1; row < rows_.size(); ++row) {
+            split(rows_[row].text, separator_, fields);
+            for (std::size_t i = 0; i < std::min(units.size(), fields.size()); ++i) {
+                if (is_gap(units[i]) || fields[i].empty()) continue;
+                if (!is_number(fields[i])) return false;
+                has_numbers = true;
+            }
+        }
+        return has_numbers;
     }
 
     void take_units() {

@@ -62,6 +62,27 @@ test("files of others: decimal commas, empty fields, words; csv_test.cpp has the
     raises(function() read("missing.csv") end, "load: ", "missing.csv")
 end)
 
+test("a line of units may have empty cells, also beside a column of words", function()
+    for _, order in ipairs{ { 1, 2, 3 }, { 3, 1, 2 }, { 1, 3, 2 } } do
+        local function line(...)
+            local cells = { ... }
+            return table.concat({ cells[order[1]], cells[order[2]], cells[order[3]] }, ";") .. "\n"
+        end
+        for _, gap in ipairs{ "", '""' } do
+            local d = load(line("Zeit", "Weg", "Bemerkung") .. line("ms", "mm", gap) .. line("0", "0,05", "Start") .. line("11", "0,10", ""))
+            equal(d.Zeit, vector{ 0, 11 })
+            equal(d.Weg, vector{ 0.05, 0.1 })
+            equal(table.concat(d.Bemerkung, "|"), "Start|")
+            has(tostring(d), "Zeit, ms", "Weg, mm")
+        end
+    end
+    equal(load("t;x;note\ns;;\n0;1;a\n1;2;b\n").x, vector{ 1, 2 })                -- one unit only
+    equal(load("t;x;note\ns;m;text\n0;1;\n1;2;\n").t, vector{ 0, 1 })             -- a word for every column
+    equal(load("t;x;note\n0;1;a\n1;2;b\n").t, vector{ 0, 1 })                     -- no units
+    equal(load("name;note\nAda;\n;late\n").name[1], "Ada")                        -- words with gaps
+    equal(load("t;note\n;start\n1;\n2;end\n").note[1], "start")
+end)
+
 test("words between the names and the numbers are units, unless there are other words below", function()
     local d = load("time;angle;note\n[s];(rad);\n0,5;1,25;\n1;;3\n")
     equal(d.time, vector{ 0.5, 1 })
