@@ -196,7 +196,7 @@ TEST_CASE("parts of pictures on one page have different names, and no other diff
         return all;
     };
     const auto first = names(element_of(picture)), second = names(element_of(svg(other)));
-    REQUIRE(first.size() > 1);
+    REQUIRE_FALSE(first.empty());  // cairo 1.16 names the sheet and a clip, 1.18 only the clip
     CHECK(std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) == first.end());
     CHECK(element_of(picture).starts_with("<svg"));
 }
