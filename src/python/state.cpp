@@ -19,6 +19,7 @@
 #include "lua/error_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
+#include "terminal/progress.hpp"
 
 namespace dinal::python {
 namespace {
@@ -53,6 +54,13 @@ void watch_interrupts() {
     sigaction(SIGINT, &now, nullptr);
 }
 
+void flush_python() {
+    PyObject* out = PySys_GetObject("stdout");  // borrowed
+    PyObject* done = out == nullptr || out == Py_None ? nullptr : PyObject_CallMethod(out, "flush", nullptr);
+    if (PyErr_Occurred() != nullptr) PyErr_WriteUnraisable(out);
+    Py_XDECREF(done);
+}
+
 /// Lets one thread at a time into Lua: a Python function that Lua calls may let other threads of Python run.
 class Turn {
 public:
@@ -81,10 +89,7 @@ private:
     /// What Lua has printed comes after what Python has.
     static void flush_output() {
         if (__fpending(stdout) == 0) return;
-        PyObject* out = PySys_GetObject("stdout");  // borrowed
-        PyObject* done = out == nullptr || out == Py_None ? nullptr : PyObject_CallMethod(out, "flush", nullptr);
-        if (PyErr_Occurred() != nullptr) PyErr_WriteUnraisable(out);
-        Py_XDECREF(done);
+        flush_python();
         static_cast<void>(std::fflush(stdout));
     }
     static void wait() {
@@ -188,8 +193,21 @@ int exit_of_python(lua_State* L) {
     raise_exception(L, py::error_already_set());
 }
 
+/// Lua's own, its upvalue, writes at once: what Python has printed goes first.
+int print_after_python(lua_State* L) {
+    flush_python();
+    terminal::make_way_for_output(true);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, 0);
+    return 0;
+}
+
 int open(lua_State* L) {
     luaL_openlibs(L);
+    lua_getglobal(L, "print");
+    lua_pushcclosure(L, lua::guarded<print_after_python>, 1);
+    lua_setglobal(L, "print");
     lua_getglobal(L, LUA_OSLIBNAME);
     lua_pushcfunction(L, lua::guarded<exit_of_python>);
     lua_setfield(L, -2, "exit");

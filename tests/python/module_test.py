@@ -147,7 +147,11 @@ class Objects(unittest.TestCase):
                     dinal.lua(text, f=lambda x: None)
 
     def test_order_of_output(self):
-        self.assertEqual(python("print(1); dinal.lua('print(2)'); print(3); dinal.lua('print(4)')").stdout, "1\n2\n3\n4\n")
+        buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+        shown = python("print(1); dinal.lua('print(2)'); print(3); dinal.lua('print(4)')\n"
+                       "dinal.lua('f() print(6)', f=lambda: print(5))\n"
+                       "dinal.sweep(over={'r': [7]}, run=dinal.lua('function(p) print(p.r) return { A = 1 } end'))", env=buffered)
+        self.assertEqual(shown.stdout, "1\n2\n3\n4\n5\n6\n7.0\n", shown.stderr)
 
     def test_pages(self):
         self.assertIn("<table", self.run.events._repr_html_())
