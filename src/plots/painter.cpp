@@ -171,6 +171,7 @@ struct Page {
         cairo_move_to(to, -extents.x_advance * static_cast<double>(align) / 2, middle * em);
         set_colour(to, ink_colour);
         cairo_show_text(to, shown.c_str());
+        cairo_new_path(to);  // the next shape begins a path of its own, not at the end of the words
         cairo_restore(to);
     }
 };

@@ -97,9 +97,13 @@ public:
         return at_fractions(panel_.view.x(x), panel_.view.y(y));
     }
     [[nodiscard]] std::uint32_t at_fractions(double x, double y) const {
+        return at_pixel(panel_.left + x * (panel_.right - panel_.left),
+                        panel_.bottom - y * (panel_.bottom - panel_.top));
+    }
+    /// From the left and from the top of the sheet.
+    [[nodiscard]] std::uint32_t at_pixel(double x, double y) const {
         constexpr double dots = 3;  // to the pixel
-        const auto right = static_cast<std::ptrdiff_t>(dots * (panel_.left + x * (panel_.right - panel_.left)));
-        const auto down = static_cast<std::ptrdiff_t>(dots * (panel_.bottom - y * (panel_.bottom - panel_.top)));
+        const auto right = static_cast<std::ptrdiff_t>(dots * x), down = static_cast<std::ptrdiff_t>(dots * y);
         std::uint32_t dot = 0;
         std::memcpy(&dot,
                     cairo_image_surface_get_data(image_.get()) + down * cairo_image_surface_get_stride(image_.get()) +
@@ -118,6 +122,8 @@ public:
         }
         return static_cast<double>(inked) / count;
     }
+
+    [[nodiscard]] const PaperPanel& panel() const { return panel_; }
 
 private:
     PaperPanel panel_;
@@ -329,6 +335,21 @@ TEST_CASE("marks, the dead zone and bars for what is stuck stand at their places
     const double below = -6.5 / 180;  // of the height of the box: between the axis and the numbers
     CHECK(dots.at_fractions(0.82, below) == 0x444444);
     CHECK(dots.at_fractions(0.65, below) == white);
+}
+
+TEST_CASE("no line joins a word of the legend with its sample", "[painter]") {
+    Figure figure = curve_of({-1, 0, 1}, {-1, 0, 1}, Style::points);
+    figure.curves[0].label = "points";
+    figure.marks = {
+        {0, 0, MarkKind::start}, {0, 1, MarkKind::end}, {1, 0, MarkKind::impact}, {1, 1, MarkKind::switched}};
+    const Dots dots(figure);
+    REQUIRE(dots.panel().legend.size() == 5);
+    for (const LegendEntry& entry : dots.panel().legend) {
+        const double end = entry.x + sample_width(entry.sample);
+        CAPTURE(entry.text);
+        for (double y = entry.y - 3; y < entry.y + 3; y += 0.3)
+            CHECK(dots.at_pixel(end + after_sample / 2, y) == white);
+    }
 }
 
 TEST_CASE("the size of the sheet is what was asked, in cm", "[painter]") {
