@@ -921,15 +921,16 @@ int plot(lua_State* L) {
     if (!data->points_of.empty() || leaps) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);
+    const Data& shown = data->between && curve.style == plots::Style::line ? *data->between : *data;
     for (const std::string& name : y) {
-        curve.x = drawn(L, *data, x.front());
-        curve.y = drawn(L, *data, name);
+        curve.x = drawn(L, shown, x.front());
+        curve.y = drawn(L, shown, name);
         curve.label = y.size() == 1 ? "" : name;
         const std::string pieces = over.size() == 2 && data->pieces_of.empty() ? over[0] : data->pieces_of;
         if (pieces.empty() || curve.style != plots::Style::line) {
             figure.curves.push_back(curve);
         } else {
-            for (plots::Curve& piece : curve_in_pieces(*data, pieces, curve)) figure.curves.push_back(std::move(piece));
+            for (plots::Curve& piece : curve_in_pieces(shown, pieces, curve)) figure.curves.push_back(std::move(piece));
         }
     }
     std::size_t overlays = 0;

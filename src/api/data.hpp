@@ -61,6 +61,7 @@ struct Data {
     bool is_spectrum = false;      ///< d:plot() has a logarithmic axis
     std::vector<std::string> parameters = {};  ///< columns over which all is a grid of points, the fastest one last
     std::vector<DataCompanion> companions = {};
+    std::shared_ptr<const Data> between = {};  ///< these rows and more between them, for the lines of d:plot()
 
     [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
     [[nodiscard]] const DataColumn* find(std::string_view name) const;

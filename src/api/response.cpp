@@ -413,6 +413,7 @@ struct ResponseRow {
     std::size_t branch;
     analysis::SteadyMotion motion;
     std::optional<double> lag;
+    bool asked;
 };
 
 Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over) {
@@ -469,9 +470,8 @@ int response_of_system(lua_State* L) {
             for (const auto& branch : curve.branches) {
                 ++pieces;
                 for (const analysis::BranchPoint& point : branch) {
-                    if (call.is_list() && !point.asked) continue;
                     const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
-                    rows.push_back({beside, point.parameter, pieces, point.motion, shape.lag});
+                    rows.push_back({beside, point.parameter, pieces, point.motion, shape.lag, point.asked});
                 }
             }
         }
@@ -479,6 +479,12 @@ int response_of_system(lua_State* L) {
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();
     Data data = response_data(rows, over);
+    if (call.is_list()) {
+        const auto between = std::make_shared<const Data>(std::move(data));
+        std::erase_if(rows, [](const ResponseRow& row) { return !row.asked; });
+        data = response_data(rows, over);
+        data.between = between;
+    }
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
     if (call.harmonic() && !call.is_plane()) {

@@ -110,6 +110,22 @@ test("the curves of theory beside a response are Den Hartog's and that of equiva
     has(picture, "a amplitude", "linearised")
 end)
 
+test("a response is drawn up to its folds, and its rows stay those of the values", function()
+    local duffing = system{ I = 1, k = 1, C = 0.05, Rd = 0.05, spring = spring.polynomial{ [3] = 1 } }
+    local values = vector.linspace(0.5, 2.5, 40)
+    local c = duffing:response{ over = { r = values },
+        at = function(p) return { M = excitation.harmonic{ amplitude = 0.5, omega = p.r } } end }
+    for _, row in ipairs(c) do assert(values:find(function(r) return r == row.r end)) end
+    near(c.points.r[1], 1.43675, 1e-5)
+    local file = temporary ".svg"
+    local function description(options)
+        c:plot(merged({ file = file }, options))
+        return io.open(file):read("a"):match "<desc>(.-)</desc>"
+    end
+    has(description {}, "unstable: a path from (2.5, 2.662) to (1.438,")
+    has(description { style = "points" }, #c .. " points")
+end)
+
 test("a spectrum shows each sine with its amplitude, whatever the window", function()
     local sys = system{ I = 1, k = 400, C = 40 }
     local M = excitation.harmonic{ amplitude = 4, frequency = 1 } + excitation.harmonic{ amplitude = 2, frequency = 2.5 } + 3
