@@ -174,9 +174,26 @@ PlotItems plot_items(lua_State* L, int table) {
     return items;
 }
 
+/// The value of what is constant from this time on.
+std::optional<double> constant_value(const model::Excitation& excitation, double t) {
+    if (excitation.components().empty()) return 0;
+    return excitation.constant_from() <= t ? std::optional(excitation.value(t)) : std::nullopt;
+}
+
+/// What acts on the mass besides its system; none if that varies, or if the mass would rest on a moving belt.
+std::optional<double> constant_load(const Run& run) {
+    if (!run.origin) return {};
+    const source::Task& task = *run.origin;
+    const double t = task.window.start;
+    const auto M = constant_value(run.terms ? *run.terms : task.excitation, t);
+    const auto belt = constant_value(task.extras.belt, t), base = constant_value(task.extras.base, t);
+    if (!M || !base || belt != 0.0) return {};
+    return *M - task.system.inertia() * *base;
+}
+
 plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run) {
     return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr,
-            asked_units(L, options).value_or(units_of(*run))};
+            asked_units(L, options).value_or(units_of(*run)), constant_load(*run)};
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.

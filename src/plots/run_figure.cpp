@@ -299,9 +299,14 @@ text::Expected<Figure> phase_figure(const RunData& run) {
         plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
-    if (run.system != nullptr && run.system->has_linear_spring() && run.system->dead_zone() > 0) {
+    if (run.load && run.system != nullptr && run.system->has_linear_spring() && run.system->dead_zone() > 0) {
+        const double centre = *run.load / run.system->stiffness();
         const auto [lowest, highest] = run.system->resting_places();
-        plane.dead_zone = Interval{lowest, highest};
+        Interval zone{centre + lowest, centre + highest};
+        if (const auto& walls = run.system->walls()) {
+            zone = {std::max(zone.low, walls->lower), std::min(zone.high, walls->upper)};
+        }
+        if (zone.low < zone.high) plane.dead_zone = zone;
     }
     return plane;
 }

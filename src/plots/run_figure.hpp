@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ struct RunData {
     const motion::Trajectory* trajectory;
     const model::Oscillator* system;  ///< null in a run that was read from a file
     model::Units units = {};
+    std::optional<double> load = {};  ///< the torque on the mass besides that of its system; none if it varies
 };
 
 enum class Axes { one_a_unit, one };

@@ -37,6 +37,31 @@ test("the phase plane has its start, its end and the dead zone", function()
     has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, {}, "phase_plot"), "dead zone")
 end)
 
+--- What the picture says to those who do not see it.
+local function description(draw)
+    local file = temporary ".svg"
+    draw(file)
+    return io.open(file):read("a"):match "<desc>(.-)</desc>"
+end
+
+test("the dead zone is drawn where the mass can rest, and not at all if that changes", function()
+    local sys = system { I = 1, k = 2, Rd = 1, walls = { lower = -3, upper = 3.25 } }
+    local function zone(options, other)
+        options.t_end = 20
+        local run = (other or sys):simulate(options)
+        return description(function(file) run:phase_plot { file = file } end):match "Dead zone from ([-%d.]+ to [-%d.]*%d)"
+    end
+    equal(zone { theta0 = 1 }, "-0.5 to 0.5")
+    equal(zone { M = 5 }, "2 to 3")
+    equal(zone({ M = function() return 5 end }, system { I = 1, k = 2, Rd = 1 }), "2 to 3")
+    equal(zone { base = -5 }, "2 to 3")
+    equal(zone { M = 6, belt = 0 }, "2.5 to 3.25")
+    equal(zone { M = math.sin }, nil)
+    equal(zone { M = excitation.pulse { amplitude = 5, at = 1, width = 1 } }, nil)
+    equal(zone { base = math.sin }, nil)
+    equal(zone { theta0 = 1, belt = 0.1 }, nil)
+end)
+
 test("a run that began stuck, and one that never moved, show it", function()
     local sys = system { I = 1, k = 1, Rd = 1, Re = 2 }
     has(picture(sys:simulate { M = function(t) return t end, t_end = 4, dt = 0.1 }), "stuck  =")
