@@ -488,7 +488,7 @@ private:
         for (const Interval& span : figure_.stuck) {
             const double low = std::max(span.low, seen.low);
             const double high = std::min(std::max(span.high, low + finest), seen.high);
-            if (low > high) continue;
+            if (low > high || span.high < seen.low) continue;
             if (low - all.high <= finest && all.high > all.low) {
                 all.high = std::max(all.high, high);
                 continue;
