@@ -44,7 +44,7 @@ print "written: response.pdf, resonance.svg, both.svg"
       | a aaa
       | ababaa         aaaaaaa       aaaaaaa       aaaaaaa
       |ba a  ab      baa   bba      aa   bba      ba   bbaa
-    0 +ba-a- abaaa -bba- - -baa- -bba- - - aa- - baa - - ba-
+    0 +ba-a- abaaa -bba- - -baa- -bba- - -baa- - baa - - ba-
       | aaa  aaabaaaaa       baaaaaaa       aaaaaaa       aaaa
       |  aa      bb            bb             bb            bb
       |  a
@@ -56,15 +56,15 @@ stuck          ==  ==   =====  ====   =====  =====  =====  ==
 theta'/omega0, Mc/k   o start   @ end   = dead zone
      | .    *******        .
  0.5 +    ***    .****
-     |  **       .   **      .
+     |  **       .   ***     .
      | **     ****     *
  0.0 +.*. . .**==*@ . .*. . . o .
-     | **    **  .     *      *
+     | **    **  .     *     **
      |  *     ***.   ***     *
--0.5 +  **      *****       **
+-0.5 +   *      *****       **
      | .  **     .        ***
-     |   .  **** .     ****
-     |       .  *******
+     |   .  **** .    ****
+     |       . ********
      +-----------+------------+--
                  0            1
               theta, Mc/k

@@ -141,15 +141,9 @@ Moment Runs::at_stop(const Run& run) {
 }
 
 double Runs::natural_period() const {
-    std::vector<double> stiffness(system().bodies.size(), 0);
-    for (const model::Joint& joint : system().joints) {
-        stiffness[static_cast<std::size_t>(joint.first)] += joint.stiffness;
-        if (joint.second >= 0) stiffness[static_cast<std::size_t>(joint.second)] += joint.stiffness;
-    }
     double longest = 0;
-    for (std::size_t i = 0; i < stiffness.size(); ++i) {
-        if (!(stiffness[i] > 0)) continue;
-        longest = std::max(longest, 2 * std::numbers::pi * std::sqrt(system().bodies[i].inertia / stiffness[i]));
+    for (const double period : system().natural_periods()) {
+        if (std::isfinite(period)) longest = std::max(longest, period);
     }
     return longest;
 }

@@ -388,6 +388,7 @@ public:
     [[nodiscard]] double whole_until() const override {
         return run_->legs != nullptr && run_->legs->whole_until() == model::never ? model::never : -model::never;
     }
+    [[nodiscard]] double kept_until() const override { return run_->run.history->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return run_->run.history->ends(); }
     void legs(const std::function<void(const motion::Leg&)>& told) const override {
         run_->legs->legs([&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
@@ -590,8 +591,7 @@ int simulate_bodies(lua_State* L) {
     const motion::Window window{asked.t_start,
                                 asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
     if (const auto wrong = window.complaint()) options.fail(*wrong);
-    constexpr double rows = 1000;
-    run->dt = asked.dt.value_or((window.end - window.start) / rows);
+    run->dt = asked.dt.value_or(usual_dt(window, system->shortest_natural_period()));
     run->t_end = window.end, run->spaced = !options.has("times");
     run->set_up = source::set_up_lines(L, *system, run->drive);  // before the functions change what they refer to
     const motion::Grid grid = run->spaced ? motion::Grid::every(run->dt) : motion::Grid::at(asked.times);
@@ -748,8 +748,8 @@ int plot_bodies(lua_State* L) {
     for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
         const model::Joint& joint = run->system->joints[j];
         if (run->system->is_link(j) && joint.friction.none()) continue;
-        const RunHandle part = part_of(run, j);
-        const plots::RunData data{part, &part->trajectory, nullptr, run->system->units};
+        const auto part = drawn_trajectory(L, part_of(run, j), options.numbers("xlim"));
+        const plots::RunData data{part, part.get(), nullptr, run->system->units};
         std::vector<plots::Figure> own = options.value_or_fail(plots::column_figures(data, {.ys = {"theta"}}));
         own.front().y.label = joint.name + " " + own.front().y.label;
         own.front().below = !figures.empty();
@@ -766,10 +766,11 @@ std::string text_of_run(lua_State*, const BodiesRunHandle& handle) {
         sticks += model::is_stop(e.kind) ? 1 : 0;
         slips += e.kind == model::EventKind::slip ? 1 : 0;
     }
-    return fmt::format("{}, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}",
+    return fmt::format("{}, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}{}",
                        text::counted(run.system->bodies.size(), "body"), run.run.table.size(), run.run.t_start,
                        run.run.t_stop, text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
-                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory));
+                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory),
+                       motion::too_few_rows(run.run.table.size(), run.run.events.size()));
 }
 
 constexpr text::Option bodies_continue_rows[] = {continue_options[0]};

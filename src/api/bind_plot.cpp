@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/picture.hpp"
 #include "api/run.hpp"
@@ -16,9 +17,11 @@
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/options.hpp"
+#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "lua/worker_state.hpp"
+#include "model/controller.hpp"
 #include "plots/figure.hpp"
 #include "plots/painter.hpp"
 #include "plots/run_figure.hpp"
@@ -56,19 +59,20 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
     return plots::Numbers::own(std::move(values));
 }
 
-plots::Numbers numbers_of_run(lua_State* L, const RunHandle& run, const char* name, const std::string& call) {
-    if (run->trajectory.size() == 0) {
+plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::Trajectory>& run, const char* name,
+                              const std::string& call) {
+    if (run->size() == 0) {
         lua::raise(L, {.sentence = call + ": the run has no rows to draw; simulate it with dt = ... or times = { ... }",
                        .call = call});
     }
-    const auto column = run->trajectory.find(name);
+    const auto column = run->find(name);
     if (!column) {
         lua::fail(L, call,
                   {fmt::format("the run has no column '{}'; its columns are vectors, and a curve is "
                                "{{ run.{}, run.{} }}",
-                               name, run->trajectory.names().front(), run->trajectory.names().back())});
+                               name, run->names().front(), run->names().back())});
     }
-    const auto values = run->trajectory.rows.col(*column);
+    const auto values = run->rows.col(*column);
     return {run, {values.data(), static_cast<std::size_t>(values.size())}};
 }
 
@@ -102,8 +106,9 @@ RunHandle run_on_top(lua_State* L) {
 plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string& call) {
     plots::Curve curve;
     if (lua_istable(L, -1)) curve = curve_with_options(L, lua_gettop(L), 1, call);
-    curve.x = numbers_of_run(L, run, "t", call);
-    curve.y = numbers_of_run(L, run, "theta", call);
+    const auto drawn = drawn_trajectory(L, run);
+    curve.x = numbers_of_run(L, drawn, "t", call);
+    curve.y = numbers_of_run(L, drawn, "theta", call);
     return curve;
 }
 
@@ -191,8 +196,13 @@ std::optional<double> constant_load(const Run& run) {
     return *M - task.system.inertia() * *base;
 }
 
-plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run) {
-    return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr,
+plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run,
+                       const std::vector<double>& window = {}) {
+    const auto drawn = drawn_trajectory(L, run, window);
+    if (drawn->size() == 0) {
+        options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
+    }
+    return {drawn, drawn.get(), run->origin ? &run->origin->system : nullptr,
             asked_units(L, options).value_or(units_of(*run)), constant_load(*run)};
 }
 
@@ -236,12 +246,6 @@ std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options)
     return *labels;
 }
 
-void refuse_empty(const lua::Options& options, const RunHandle& run) {
-    if (run->trajectory.size() == 0) {
-        options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
-    }
-}
-
 constexpr lua::Member plot_module_members[] = {
     {lua::a_function<plot_vectors>, plot_doc},
 };
@@ -278,6 +282,32 @@ void join_columns(lua_State* L) {
 }
 
 }  // namespace
+
+motion::BetweenRows between_rows(const Run& run) {
+    const model::Excitation* M = nullptr;
+    if (run.origin) M = run.terms ? &*run.terms : &run.origin->excitation;
+    if (run.whole && !run.whole->system->is_link(run.joint)) M = &run.whole->drive.loads[run.joint];
+    const bool of_state = run.origin && run.origin->extras.states.empty();  // of theta and velocity alone
+    const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
+                       (of_state || !M->has_feedback());
+    return {run.trajectory, known ? M : nullptr};
+}
+
+std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const RunHandle& run,
+                                                           const std::vector<double>& window) {
+    lua::CallState call(L);  // M may be a function
+    const motion::Trajectory& whole = run->trajectory;
+    const motion::BetweenRows between = between_rows(*run);
+    if (!between.any()) return {run, &whole};
+    double from = whole.t_start, to = whole.t_stop;
+    if (window.size() == 2 && window[0] < to && window[1] > from) {
+        from = std::max(from, window[0]);
+        to = std::min(to, window[1]);
+    }
+    auto drawn = std::make_shared<const motion::Trajectory>(between.drawn(from, to));
+    call.check();
+    return drawn;
+}
 
 int plot_vectors(lua_State* L) {
     join_columns(L);
@@ -330,18 +360,19 @@ int plot_vectors(lua_State* L) {
 int plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
     const lua::Options options(L, 2, plot_run_call);
-    refuse_empty(options, run);
     const std::vector<std::string> x = asked_columns(L, options, "x", run);
     if (x.size() > 1) {
         options.fail("x", "x must be one column");
     }
+    const bool over_time = x.empty() || x.front() == "t";
+    const plots::RunData data = data_of(L, options, run, over_time ? options.numbers("xlim") : std::vector<double>());
     // Who names the axis has decided that there is one.
     const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
-    std::vector<plots::Figure> figures = options.value_or_fail(
-        plots::column_figures(data_of(L, options, run), {.x = x.empty() ? "" : x.front(),
-                                                         .ys = asked_columns(L, options, "y", run),
-                                                         .labels = asked_labels(L, options),
-                                                         .axes = axes}));
+    std::vector<plots::Figure> figures =
+        options.value_or_fail(plots::column_figures(data, {.x = x.empty() ? "" : x.front(),
+                                                           .ys = asked_columns(L, options, "y", run),
+                                                           .labels = asked_labels(L, options),
+                                                           .axes = axes}));
     apply_options(L, options, figures);
     return deliver(L, options, std::move(figures));
 }
@@ -349,7 +380,6 @@ int plot_run(lua_State* L) {
 int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
-    refuse_empty(options, run);
     if (run->whole) {
         options.fail(
             {"the phase plane is that of a system of one body with constant Rd and Re; use run:plot{ x = \"theta\", "

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -88,14 +90,14 @@ constexpr text::Option spectrum_options[] = {
      .meaning = "for method welch: more segments make the result smoother, and coarser in frequency",
      .filled = text::fills<&SpectrumOptions::segments>},
     {.name = "window",
-     .meaning = "the weights of the rows: hann in general, rectangle for whole periods, flat top for "
+     .meaning = "the weights of the samples: hann in general, rectangle for whole periods, flat top for "
                 "amplitudes",
      .filled = text::fills<&SpectrumOptions::window>,
      .choices = window_names},
     {.name = "from",
      .unit = "time units",
-     .otherwise = "the first row",
-     .meaning = "rows before this time (the transient) are left out",
+     .otherwise = "the beginning",
+     .meaning = "what is before this time (the transient) is left out",
      .filled = text::fills<&SpectrumOptions::from>},
 };
 
@@ -122,9 +124,12 @@ constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }",
 
 constexpr lua::Doc spectrum_doc{
     "run:spectrum{ OPTIONS } -> data",
-    "The one-sided amplitude spectrum of a column, from rows with one dt: frequency (cycles per time unit, up to "
-    "half a cycle per dt) and amplitude (of a sine). A sine of whole periods has its amplitude in any window; "
-    "one midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The "
+    "The one-sided amplitude spectrum of a column: frequency (cycles per time unit) and amplitude (of a sine). theta, "
+    "velocity, damping and states are sampled from the motion between the rows, evenly, at 2^n times (at most 2^21): at "
+    "least as densely as the rows, and 40 times in each natural period and period of M. Other columns, and all columns "
+    "of a run that kept only its rows (dense = false, rk4, dinal1989, files), use the rows, which need one dt. A sine of "
+    "whole periods has its amplitude in any window; one midway between two frequencies has 64 % of it in rectangle, 85 % "
+    "in hann and 99.9 % in flat top. The "
     "mean is at frequency 0. With method = \"welch\" the second column is density: its sum times the step of "
     "frequency is the variance. run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
@@ -161,6 +166,79 @@ double period_of_run(const Run& run) {
     return drive ? drive->period : 0;
 }
 
+/// Evenly spaced values of a column, for its spectrum.
+struct Samples {
+    std::vector<double> values = {};
+    double dt = 0;
+    const char* kind = "rows";
+};
+constexpr std::size_t fewest_samples = 8;
+
+/// Samples of the motion from this time on, dense enough for its fastest part.
+Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, std::size_t place, double from) {
+    constexpr double a_period = 40, an_event = 20, least = 1024, most = 1 << 21;
+    const motion::Trajectory& trajectory = run.trajectory;
+    const double length = trajectory.t_stop - from, part = length / (trajectory.t_stop - trajectory.t_start);
+    double period = trajectory.course->system().natural_period();
+    if (const double own = period_of_run(run); own > 0) period = std::min(period, own);
+    const std::span<const model::Component> M = run.origin
+                                                    ? (run.terms ? *run.terms : run.origin->excitation).components()
+                                                    : std::span<const model::Component>();
+    for (const model::Component& component : M) {
+        if (const auto* sine = std::get_if<model::Harmonic>(&component.term)) {
+            period = std::min(period, 2 * std::numbers::pi / std::fabs(sine->omega));
+        }
+    }
+    const double wanted = std::max({least, a_period * length / period, part * static_cast<double>(trajectory.size()),
+                                    an_event * part * static_cast<double>(trajectory.events.size())});
+    const std::size_t count = std::bit_ceil(static_cast<std::size_t>(std::min(wanted, most)));
+    Samples samples{.values = {}, .dt = length / static_cast<double>(count), .kind = "samples of the motion"};
+    samples.values.reserve(count);
+    std::vector<double> at_once;
+    for (std::size_t i = 0; i < count; ++i) {
+        at_once.clear();
+        between.append_values(from + static_cast<double>(i) * samples.dt, at_once);
+        samples.values.push_back(at_once[place]);
+    }
+    return samples;
+}
+
+Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Eigen::Index column,
+                   const std::optional<double>& from) {
+    const motion::Trajectory& trajectory = run.trajectory;
+    const motion::BetweenRows between(trajectory, nullptr);
+    const auto place = std::find(between.columns().begin(), between.columns().end(), column);
+    if (place != between.columns().end()) {
+        const double begin = std::max(from.value_or(trajectory.t_start), trajectory.t_start);
+        if (!(begin < trajectory.t_stop)) {
+            options.fail("from", fmt::format("from = {:.6g} must be before the end of the run, t = {:.6g}", begin,
+                                             trajectory.t_stop));
+        }
+        lua::CallState call(L);
+        Samples samples =
+            samples_of_motion(run, between, static_cast<std::size_t>(place - between.columns().begin()), begin);
+        call.check();
+        return samples;
+    }
+    const auto time = trajectory.find("t");
+    if (!time) options.fail({"the run has no column t, so its rows have no times"});
+    std::span<const double> t = column_values(trajectory, *time), values = column_values(trajectory, column);
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(t.begin(), t.end(), from.value_or(t.empty() ? 0 : t.front())) - t.begin());
+    t = t.subspan(first);
+    values = values.subspan(first);
+    const std::size_t even = analysis::evenly_spaced(t);
+    if (even < fewest_samples || even + 1 < t.size()) {
+        options.fail({even < fewest_samples && even == t.size()
+                          ? fmt::format("{} rows are too few, {} are needed at least", t.size(), fewest_samples)
+                          : fmt::format("rows must be evenly spaced, but row {} is not; simulate with dt = ...",
+                                        first + even + 1)});
+    }
+    const bool twice = closes(values.first(even));
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(twice ? even - 1 : even);
+    return {.values = {values.begin(), end}, .dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1)};
+}
+
 int spectrum_of_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, spectrum_call.example);
     const motion::Trajectory& trajectory = run->trajectory;
@@ -178,43 +256,27 @@ int spectrum_of_run(lua_State* L) {
     const std::string name = positional ? std::string(lua_tostring(L, 2)) : asked.of;
     const auto column = files::find_column(trajectory.names(), std::string_view(name));
     if (!column) options.fail(column.error());
-    const auto time = trajectory.find("t");
-    if (!time) options.fail({"the run has no column t, so its rows have no times"});
-    std::span<const double> t = column_values(trajectory, *time), values = column_values(trajectory, *column);
-    const auto first = static_cast<std::size_t>(
-        std::lower_bound(t.begin(), t.end(), asked.from.value_or(t.empty() ? 0 : t.front())) - t.begin());
-    t = t.subspan(first);
-    values = values.subspan(first);
-    const std::size_t even = analysis::evenly_spaced(t);
-    constexpr std::size_t least = 8;
-    if (even < least || even + 1 < t.size()) {
-        options.fail({even < least && even == t.size()
-                          ? fmt::format("{} rows are too few, {} are needed at least", t.size(), least)
-                          : fmt::format("rows must be evenly spaced, but row {} is not; simulate with dt = ...",
-                                        first + even + 1)});
-    }
-    const bool twice = closes(values.first(even));
-    const std::size_t rows = twice ? even - 1 : even;
-    const double dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1);
+    const auto [values, dt, kind] = samples_of(L, options, *run, *column, asked.from);
+    const std::size_t rows = values.size();
     const ColumnUnits in(units_of(*run));
     Data data{.columns = {}, .is_spectrum = true};
     const char* window = window_names[static_cast<std::size_t>(asked.window)];
     if (asked.method == SpectrumMethod::welch) {
         const auto segments = static_cast<std::size_t>(asked.segments);
         const std::size_t length = 2 * rows / (segments + 1);
-        if (length < least) {
-            options.fail("segments",
-                         fmt::format("{} rows are too few for {} segments of at least {} rows", rows, segments, least));
+        if (length < fewest_samples) {
+            options.fail("segments", fmt::format("{} {} are too few for {} segments, which need {} each", rows, kind,
+                                                 segments, fewest_samples));
         }
-        analysis::Spectrum found = analysis::density_of(values.first(rows), dt, asked.window, length);
-        data.heading = fmt::format("power density of {}: {} rows, {} of {}, {} window", name, rows,
+        analysis::Spectrum found = analysis::density_of(values, dt, asked.window, length);
+        data.heading = fmt::format("power density of {}: {} {}, {} of {}, {} window", name, rows, kind,
                                    text::counted(segments, "segment"), length, window);
         data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                         column_of("density", std::move(found.amplitude))};
         return push_data(L, std::move(data));
     }
-    analysis::Spectrum found = analysis::spectrum_of(values.first(rows), dt, asked.window);
-    data.heading = fmt::format("spectrum of {}: {} rows, {} window", name, rows, window);
+    analysis::Spectrum found = analysis::spectrum_of(values, dt, asked.window);
+    data.heading = fmt::format("spectrum of {}: {} {}, {} window", name, rows, kind, window);
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                     column_of("amplitude", std::move(found.amplitude), in.of(name))};
     return push_data(L, std::move(data));

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "api/bind_excitation.hpp"
@@ -67,8 +68,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                           ? *integrator
                           : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
     if (!options.has("times") && task.window.end > task.window.start) {
-        constexpr double intervals = 1000;
-        task.rows = motion::Grid::every(asked.dt.value_or((task.window.end - task.window.start) / intervals));
+        task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system.natural_period())));
     }
     return task;
 }
@@ -233,6 +233,12 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         call.failed() ? call.raise_error() : lua::raise_interrupted(L);
     }
     return 1;
+}
+
+double usual_dt(const motion::Window& window, double natural_period) {
+    constexpr double rows_a_period = 40, least = 1e3, most = 1e5;
+    const double length = window.end - window.start;
+    return length / std::clamp(std::ceil(rows_a_period * length / natural_period), least, most);
 }
 
 int simulate_system(lua_State* L) {

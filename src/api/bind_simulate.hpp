@@ -20,6 +20,8 @@ int simulate_system(lua_State* L);
 
 /// A run may take half of the memory of the machine, and most of what the script may still have.
 [[nodiscard]] motion::Limits limits_of_run(bool dense);
+/// The default of dt; the natural period is infinite if there is none.
+double usual_dt(const motion::Window& window, double natural_period);
 
 /// What is asked of the core: simulate() or resume().
 using Compute = std::function<text::Expected<motion::Trajectory>(
@@ -61,7 +63,9 @@ inline constexpr text::Option window_options[] = {
     {.name = "t_start", .unit = "time units", .meaning = "initial time", .filled = text::fills<&RunOptions::t_start>},
     {"t_end", "time units", text::its_own, text::any_finite, "end of the run; by default the last of the times",
      text::fills<&RunOptions::t_end>},
-    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "time between rows; t_end has a row as well",
+    {"dt", "time units", "T0/40", text::positive,
+     "time between rows; t_end has a row as well. The default is a fortieth of the natural period (the shortest of "
+     "several bodies), but gives at least 1000 rows and at most 100000; without k it gives 1000",
      text::fills<&RunOptions::dt>},
     {.name = "times",
      .unit = "time units",

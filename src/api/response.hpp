@@ -50,8 +50,8 @@ inline constexpr text::Option response_options[] = {
      .filled = text::fills<&ResponseOptions::period>},
     {.name = "between",
      .meaning =
-         "true keeps also the rows between the values, computed around folds and along unstable branches, and adds "
-         "one at a resonance where the motion grows",
+         "true keeps also the rows between the values, which c:plot() draws in any case: around folds and along unstable "
+         "branches; and adds one at a resonance where the motion grows",
      .filled = text::fills<&ResponseOptions::between>},
     {.name = "doubled",
      .meaning = "true also follows the motions of twice the period that begin at period doublings",

@@ -11,6 +11,7 @@
 #include "lua/options.hpp"
 #include "lua/values.hpp"
 #include "model/units.hpp"
+#include "motion/between_rows.hpp"
 #include "motion/trajectory.hpp"
 #include "source/origin.hpp"
 
@@ -40,6 +41,14 @@ void push_run(lua_State* L, RunHandle run);
 /// The column whose name or number stands at `index`; an error names it `what`.
 text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
                                        std::string_view what);
+
+/// The motion between the rows; keeps a reference to the run. Evaluating it may call functions of the user.
+motion::BetweenRows between_rows(const Run& run);
+
+/// The run with rows as close as a picture needs them, within two times if some are given; the run itself where it kept
+/// only its rows. Raises when M does.
+std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const RunHandle& run,
+                                                           const std::vector<double>& window = {});
 
 /// The rows as data, which keep the run.
 Data rows_of(const RunHandle& run);

@@ -7,8 +7,11 @@
 // spring, dry friction, walls; all of these act on its angle, that of its first body less that of its second.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +73,22 @@ struct Assembly {
     Units units = {};
 
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+    /// Of each body on the stiffness around it, the others being at rest; infinite where there is none.
+    [[nodiscard]] std::vector<double> natural_periods() const {
+        std::vector<double> stiffness(bodies.size(), 0), periods;
+        for (const Joint& joint : joints) {
+            stiffness[static_cast<std::size_t>(joint.first)] += joint.stiffness;
+            if (joint.second >= 0) stiffness[static_cast<std::size_t>(joint.second)] += joint.stiffness;
+        }
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            periods.push_back(2 * std::numbers::pi * std::sqrt(bodies[i].inertia / stiffness[i]));
+        }
+        return periods;
+    }
+    [[nodiscard]] double shortest_natural_period() const {
+        const std::vector<double> periods = natural_periods();
+        return *std::min_element(periods.begin(), periods.end());
+    }
 };
 
 // Shared, because its runs keep it.

@@ -151,6 +151,10 @@ std::string outcome_text(const Trajectory& trajectory) {
     return text;
 }
 
+std::string too_few_rows(std::size_t rows, std::size_t events) {
+    return rows > 0 && rows < 4 * events ? "; fewer than 4 rows an event" : "";
+}
+
 std::string summary(const Trajectory& trajectory) {
     const auto& rows = trajectory.rows;
     std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
@@ -175,6 +179,7 @@ std::string summary(const Trajectory& trajectory) {
     }
     if (trajectory.noise > 0) text += fmt::format("; noise of M {:.2g}", trajectory.noise);
     if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
+    text += too_few_rows(static_cast<std::size_t>(rows.rows()), trajectory.events.size());
     return text + fmt::format("; peak |theta| {:.3g}", peak(trajectory));
 }
 

@@ -119,6 +119,9 @@ text::Expected<model::State> between_rows(const Trajectory& trajectory, double t
 /// How it ended, and what to do about that.
 std::string outcome_text(const Trajectory& trajectory);
 
+/// A remark if there are fewer than four rows an event, so that the rows do not show the motion; otherwise empty.
+std::string too_few_rows(std::size_t rows, std::size_t events);
+
 /// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
 /// |theta| 1.96".
 std::string summary(const Trajectory& trajectory);

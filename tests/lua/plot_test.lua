@@ -44,6 +44,58 @@ local function description(draw)
     return io.open(file):read("a"):match "<desc>(.-)</desc>"
 end
 
+--- A run with rows that meet each swing at the same place, or nearly so.
+local function with_rare_rows(options)
+    return system { I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }:simulate(merged(
+        { M = function(t) return 30*math.sin(2*math.pi*t) end, theta0 = 1, t_end = 1003, dt = 1.003 }, options))
+end
+
+test("pictures of a run show its motion, however rare the rows are", function()
+    local rare, close = with_rare_rows {}, with_rare_rows { dt = 0.01 }
+    local function half_swings(run, what)
+        return tonumber(description(function(file) run:plot { y = what, file = file } end):match "(%d+) half swings")
+    end
+    for _, what in ipairs { "theta", "velocity", "M" } do
+        assert(half_swings(close, what) > 1900, what)
+        near(half_swings(rare, what), half_swings(close, what), 3)
+    end
+    assert(half_swings(with_rare_rows { dense = false }, "theta") < 20) -- only the rows are known
+    for _, options in ipairs { {}, { xlim = { 500, 502 } } } do
+        for _, call in ipairs { "plot", "phase_plot" } do
+            if call == "plot" or not options.xlim then
+                local size = merged({ width = 60, height = 16 }, options)
+                equal(picture(rare, size, call), picture(close, size, call))
+            end
+        end
+    end
+    equal(vectors { rare, width = 70 }, vectors { close, width = 70 })
+    local pair = system { bodies = { a = { I = 1, k = 4*math.pi^2 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 20 } } }
+    local function of_pair(dt) return pair:simulate { theta0 = { a = 1 }, t_end = 1003, dt = dt } end
+    equal(picture(of_pair(1.003), {}), picture(of_pair(0.01), {}))
+    equal(picture(of_pair(1.003).a, {}), picture(of_pair(0.01).a, {}))
+end)
+
+test("a picture of a run has the events as corners, and needs no rows", function()
+    local ball = system { I = 1, k = 1, walls = { lower = -1, upper = 0.5, restitution = 0.5 } }
+    local function drawn(options) return description(function(file)
+        ball:simulate(merged({ theta0 = -0.9, t_end = 3 }, options)):plot { y = "velocity", file = file }
+    end) end
+    local top = drawn { dt = 0.001 }:match "up from [^.]*%.%d+ to [^.]*%.%d+"
+    equal(drawn { dt = 1 }:match "up from [^.]*%.%d+ to [^.]*%.%d+", top)
+    equal(drawn { times = {}, t_end = 3 }, drawn { dt = 1 })
+end)
+
+test("a picture of a run shows the M of the run, not what its function has become", function()
+    local force = 1
+    local run = system { I = 1, k = 1, Rd = 0.1 }:simulate { t_end = 9, dt = 0.1,
+        M = unread(function(t) return force*math.sin(t) end) }
+    for _, now in ipairs { 1, 2 } do
+        force = now
+        local top = description(function(file) run:plot { y = "M", file = file } end):match "Up: M, [^ ]+ to (%S+)%. "
+        near(tonumber(top), 1.1, 0.01) -- with some air
+    end
+end)
+
 test("the dead zone is drawn where the mass can rest, and not at all if that changes", function()
     local sys = system { I = 1, k = 2, Rd = 1, walls = { lower = -3, upper = 3.25 } }
     local function zone(options, other)
@@ -106,13 +158,13 @@ test("a run is a curve among curves: its theta over t", function()
     local other = nd:simulate { theta0 = 0.5, t_end = 4, dt = 0.05 }
     has(vectors { run, { other, label = "half" }, title = "two" }, "two", "theta, rad", "half")
     has(vectors { nondimensional {}:with { units = { theta = "m", t = "s" } }:simulate { theta0 = 1, t_end = 1, dt = 0.1 } }, "theta, m", "t, s")
-    equal(vectors { run, ylabel = "angle" }, vectors { { run.t, run.theta }, xlabel = "t", ylabel = "angle" })
-    raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {} } } end, "plot: curve 1: the run has no rows to draw")
+    has(vectors { run, ylabel = "angle" }, "angle")
+    raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false } } end, "plot: curve 1: the run has no rows to draw")
     raises_here(function() plot { (reloaded(run, { columns = { "theta", "velocity" } })) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
 end)
 
-test("a run without rows says what to do", function()
-    local none = nd:simulate { theta0 = 1, t_end = 1, times = {} }
+test("a run without rows and motion says what to do", function()
+    local none = nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false }
     raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
 end)
 

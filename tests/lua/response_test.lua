@@ -144,8 +144,30 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     equal(#prime, 97)
     near(prime:spectrum("M").amplitude[4], 4, 1e-9)
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
-    raises_here(function() sys:simulate{ t_end = 3, times = { 0, 1, 1.5, 2, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8 } }:spectrum() end, "evenly spaced")
-    raises_here(function() sys:simulate{ t_end = 3, dt = 1 }:spectrum() end, "too few")
+    raises_here(function() sys:simulate{ t_end = 3, times = { 0, 1, 1.5, 2, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8 } }:spectrum("M") end, "evenly spaced")
+    raises_here(function() sys:simulate{ t_end = 3, dt = 1 }:spectrum("M") end, "too few")
+    raises_here(function() sys:simulate{ t_end = 3 }:spectrum{ from = 3 } end, "from = 3 must be before the end of the run, t = 3")
+end)
+
+test("the spectrum of a motion does not depend on the rows", function()
+    local sys = system{ I = 1, k = 4*math.pi^2, C = 1.5 }
+    for _, omega in ipairs{ 2*math.pi, 20*math.pi } do
+        local M = excitation.harmonic{ amplitude = 30, omega = omega }
+        local amplitude = sys:steady{ M = M }.amplitude
+        for _, dt in ipairs{ 1.003, 0.01 } do
+            local s = sys:simulate{ M = M, t_end = 1003, dt = dt }:spectrum{ from = 103 }
+            local i = s.amplitude:argmax()
+            near(s.frequency[i], omega/2/math.pi, 1e-9)
+            near(s.amplitude[i], amplitude, 1e-6*amplitude)
+        end
+    end
+    local dry = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }:simulate{
+        M = function(t) return 30*math.sin(2*math.pi*t) end, theta0 = 1, t_end = 1003 }
+    has(dry:spectrum{}, "spectrum of theta: 65536 samples of the motion, hann window")
+    local lines = dry:spectrum{ from = 3 }
+    near(lines.frequency[lines.amplitude:argmax()], 1, 1e-9)
+    local uneven = sys:simulate{ theta0 = 1, t_end = 16, times = { 0, 1, 1.5, 15 } }:spectrum("velocity")
+    assert(#uneven > 500)
 end)
 
 test("a motion looked at once a period", function()
@@ -319,7 +341,7 @@ test("Welch's density has the variance of noise, flat, and the power of a sine",
     near(s.density:sum() * s.frequency[2], 4.5, 1e-2)
     near(s.frequency[s.density:argmax()], 5, s.frequency[2])
     equal(tostring(sine:spectrum("M")), tostring(sine:spectrum{ of = "M" }))
-    raises_here(function() sine:spectrum{ method = "welch", segments = 3000 } end, "rows are too few for 3000 segments")
+    raises_here(function() sine:spectrum{ of = "M", method = "welch", segments = 3000 } end, "4000 rows are too few for 3000 segments, which need 8 each")
 end)
 
 test("a period is given as period, frequency or omega wherever one is asked", function()

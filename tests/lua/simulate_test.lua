@@ -94,7 +94,22 @@ test("more rows than memory allows are refused with their size and the cure, bef
     assert(os.clock() - before < 1)
 end)
 
-test("without dt and times a run has 1001 rows, and goes on with the same distance", function()
+test("without dt and times a run has 40 rows a natural period, but 1000 to 100000", function()
+    local function rows(sys, t_end) return #sys:simulate { t_end = t_end } - 1 end
+    equal(rows(nd, 10), 1000)
+    equal(rows(nd, 100), 4000)
+    equal(rows(nd, 1e4), 100000)
+    equal(rows(system { I = 1, k = 0 }, 1e4), 1000)
+    local pair = { bodies = { a = { I = 1, k = 4*math.pi^2 }, b = { I = 1 } }, links = { rod = { "a", "b", Rd = 1 } } }
+    equal(rows(system(pair), 100), 4000)
+    pair.links.rod.k = 12*math.pi^2
+    equal(rows(system(pair), 100), 8000)
+    local function card(dt) return tostring(nondimensional {}:simulate { theta0 = 1, t_end = 8, dt = dt }) end
+    has(card(0.25), "fewer than 4 rows an event")
+    has_not(card(0.1), "fewer")
+end)
+
+test("without dt and times a short run has 1001 rows, and goes on with the same distance", function()
     local run = nd:simulate { theta0 = 1, t_start = 3, t_end = 7 }
     equal(#run, 1001)
     near(run.t[2] - run.t[1], 0.004, 1e-15)

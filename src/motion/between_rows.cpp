@@ -1,0 +1,151 @@
+#include "motion/between_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace dinal::motion {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// The ends, times between them, and the events with the times just before them, where velocity and M may jump.
+std::vector<double> first_times(const Trajectory& run, double from, double to) {
+    constexpr int intervals = 1000;
+    std::vector<double> times;
+    for (int i = 0; i <= intervals; ++i) times.push_back(std::lerp(from, to, static_cast<double>(i) / intervals));
+    for (const model::Event& event : run.events) {
+        if (!(event.t > from && event.t < to)) continue;
+        times.push_back(event.t);
+        if (event.kind != model::EventKind::turn) times.push_back(std::nextafter(event.t, from));
+    }
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+/// Of each column the differences that no picture shows.
+std::vector<double> invisible(const std::vector<double>& values, std::size_t width) {
+    constexpr double part = 1e-3, rounding = 1e-12;
+    std::vector<double> all;
+    for (std::size_t c = 0; c < width; ++c) {
+        double low = values[c], high = low;
+        for (std::size_t i = c; i < values.size(); i += width) {
+            low = std::min(low, values[i]);
+            high = std::max(high, values[i]);
+        }
+        all.push_back(part * (high - low) + rounding * std::max(std::fabs(low), std::fabs(high)));
+    }
+    return all;
+}
+
+}  // namespace
+
+BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : run_(run), M_(M) {
+    if (!run.course || !(run.course->kept_until() >= run.t_stop) || !(run.t_stop > run.t_start)) return;
+    const std::vector<std::string>& names = run.names();
+    for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(names.size()); ++c) {
+        const std::string& name = names[static_cast<std::size_t>(c)];
+        const bool is_state = run.state_count() > 0 && c >= column_count;
+        const bool is_motion = name == "theta" || name == "velocity" || name == "damping";
+        if (is_state || is_motion || (name == "M" && M != nullptr && agrees_with_rows(c))) columns_.push_back(c);
+    }
+}
+
+/// A function of the user's may use a variable that was changed since.
+bool BetweenRows::agrees_with_rows(Eigen::Index column) const {
+    if (!M_->has_script()) return true;
+    constexpr Eigen::Index looks = 20;
+    constexpr double same = 1e-9;
+    const Rows& rows = run_.rows;
+    if (rows.rows() == 0) return false;
+    const double size = rows.col(column).cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < rows.rows(); i += std::max<Eigen::Index>(1, rows.rows() / looks)) {
+        const double M = M_->value(rows(i, 0), {rows(i, 1), rows(i, 2)});
+        if (!(std::fabs(M - rows(i, column)) <= same * size)) return false;
+    }
+    return true;
+}
+
+void BetweenRows::append_values(double t, std::vector<double>& values) const {
+    const auto state = run_.course->at(t);
+    const model::State y = state ? *state : model::State{unknown, unknown};
+    const std::vector<double> states = run_.state_count() > 0 ? run_.course->states_at(t) : std::vector<double>();
+    for (const Eigen::Index c : columns_) {
+        switch (c) {
+            case static_cast<Eigen::Index>(Column::theta):
+                values.push_back(y.theta);
+                break;
+            case static_cast<Eigen::Index>(Column::velocity):
+                values.push_back(y.velocity);
+                break;
+            case static_cast<Eigen::Index>(Column::M):
+                values.push_back(M_->value(t, y));
+                break;
+            case static_cast<Eigen::Index>(Column::damping):
+                values.push_back(0.0 - run_.course->system().damping() * y.velocity);
+                break;
+            default:
+                values.push_back(states[static_cast<std::size_t>(c - column_count)]);
+        }
+    }
+}
+
+double BetweenRows::interpolated(Eigen::Index column, double t) const {
+    const auto times = run_.rows.col(0);
+    if (times.size() == 0) return unknown;
+    const Eigen::Index after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+    if (after == 0 || after == times.size()) return run_.rows(std::max<Eigen::Index>(after - 1, 0), column);
+    const double part = (t - times[after - 1]) / (times[after] - times[after - 1]);
+    return std::lerp(run_.rows(after - 1, column), run_.rows(after, column), part);
+}
+
+Trajectory BetweenRows::drawn(double from, double to) const {
+    constexpr std::size_t enough = 100'000;  // times; one more pass may double them
+    constexpr double part = 0.381966;        // the golden section: no swing is as long as such parts of all intervals
+    const double shortest = 1e-5 * (to - from);
+    const std::size_t width = columns_.size();
+    std::vector<double> times = first_times(run_, from, to), values;
+    for (const double t : times) append_values(t, values);
+    const std::vector<double> small = invisible(values, width);
+    std::vector<char> straight(times.size(), 0);  // from a time to the next one
+    straight.back() = 1;
+    while (times.size() < enough && std::find(straight.begin(), straight.end(), 0) != straight.end()) {
+        std::vector<double> more_times, more_values;
+        std::vector<char> more_straight;
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            const auto here = values.begin() + static_cast<std::ptrdiff_t>(i * width);
+            more_times.push_back(times[i]);
+            more_values.insert(more_values.end(), here, here + static_cast<std::ptrdiff_t>(width));
+            more_straight.push_back(1);
+            if (straight[i] != 0 || times[i + 1] - times[i] < shortest) continue;
+            more_times.push_back(std::lerp(times[i], times[i + 1], part));
+            append_values(more_times.back(), more_values);
+            for (std::size_t c = 0; c < width; ++c) {
+                const double chord = std::lerp(values[i * width + c], values[(i + 1) * width + c], part);
+                if (std::fabs(more_values[more_values.size() - width + c] - chord) > small[c]) more_straight.back() = 0;
+            }
+            more_straight.push_back(more_straight.back());
+        }
+        times = std::move(more_times), values = std::move(more_values), straight = std::move(more_straight);
+    }
+    const std::vector<std::string>& names = run_.names();
+    Growing<double> table(times.size(), names.size());
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        const auto column = static_cast<Eigen::Index>(c);
+        const auto place = std::find(columns_.begin(), columns_.end(), column);
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            table.writable()[c * times.size() + i] =
+                names[c] == "t"           ? times[i]
+                : place != columns_.end() ? values[i * width + static_cast<std::size_t>(place - columns_.begin())]
+                                          : interpolated(column, times[i]);
+        }
+    }
+    Trajectory drawn = run_;
+    drawn.rows = Rows(std::move(table));
+    return drawn;
+}
+
+}  // namespace dinal::motion

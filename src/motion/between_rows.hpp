@@ -1,0 +1,38 @@
+// The motion between the rows of a run, for pictures and spectra: rows may be too far apart to show its swings.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "model/excitation.hpp"
+#include "motion/trajectory.hpp"
+
+namespace dinal::motion {
+
+class BetweenRows {
+public:
+    /// Keeps references to both. M is the excitation if t, theta and velocity determine it, otherwise null.
+    BetweenRows(const Trajectory& run, const model::Excitation* M);
+
+    /// The run kept its motion; otherwise only its rows are known.
+    [[nodiscard]] bool any() const { return !columns_.empty(); }
+    /// The columns that are known at any time.
+    [[nodiscard]] const std::vector<Eigen::Index>& columns() const { return columns_; }
+    /// Appends the values of these columns; nan where the motion cannot be evaluated.
+    void append_values(double t, std::vector<double>& values) const;
+
+    /// The run with other rows: at its events between two times, and so close that straight lines between them look
+    /// like the motion. Other columns are interpolated between the rows of the run.
+    [[nodiscard]] Trajectory drawn(double from, double to) const;
+
+private:
+    [[nodiscard]] bool agrees_with_rows(Eigen::Index column) const;
+    [[nodiscard]] double interpolated(Eigen::Index column, double t) const;
+
+    const Trajectory& run_;
+    const model::Excitation* M_;
+    std::vector<Eigen::Index> columns_;
+};
+
+}  // namespace dinal::motion
