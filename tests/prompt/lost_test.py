@@ -185,7 +185,7 @@ class Typing(AtHome):
         self.assertIn("-0.7292", session.until_prompt())
         session.press("s = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.5, integrator = integrator.sp\t} }\r")
         session.until_prompt()
-        self.assertIn("by\nspectral", session.enter("s"))
+        self.assertIn("by spectral", session.enter("s"))
 
     def test_a_long_text_stops_at_the_end_of_the_page(self):
         session = self.session(PAGER="less")
