@@ -52,6 +52,15 @@ Work operator-(const Work& a, const Work& b) {
             a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts};
 }
 
+Work operator+(const Work& a, const Work& b) {
+    return {a.input + b.input, a.viscous + b.viscous, a.dry + b.dry,        a.belt + b.belt,
+            a.base + b.base,   a.acts + b.acts,       a.impacts + b.impacts};
+}
+
+Stored operator+(const Stored& a, const Stored& b) {
+    return {a.kinetic + b.kinetic, a.spring + b.spring};
+}
+
 /// What stores energy: a link has no mass.
 class Store {
 public:
@@ -174,6 +183,19 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose who
             "the energies of this run are beyond the range of numbers: choose larger units of torque or angle"};
     }
     return energy;
+}
+
+Energy sum_of(std::vector<Energy> joints) {
+    Energy sum = std::move(joints.front());
+    sum.whose = Whose::all;
+    if (joints.size() > 1) sum.half_cycles.clear();
+    for (std::size_t j = 1; j < joints.size(); ++j) {
+        const Energy& own = joints[j];
+        sum.start = sum.start + own.start, sum.finish = sum.finish + own.finish;
+        sum.total = {sum.total.work + own.total.work, sum.total.change + own.total.change};
+        sum.flow += own.flow;
+    }
+    return sum;
 }
 
 Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose) {

@@ -63,6 +63,10 @@ struct Energy {
 /// Fails with a sentence when the run has not kept its motion.
 text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose whose = Whose::all);
 
+/// That of a whole run from those of its joints: what the others do on each of them cancels. Its half cycles are known
+/// if there is only one joint.
+Energy sum_of(std::vector<Energy> joints);
+
 /// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.
 enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error, belt, base, acts, impacts };
 inline constexpr int energy_column_count = 10;

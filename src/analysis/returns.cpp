@@ -131,7 +131,8 @@ Runs::Run Runs::run(const engine::Drive& drive, double start, double end, const 
                               .monitor = monitor_,
                               .limits = limits,
                               .before = std::move(before),
-                              .longest = question_.longest});
+                              .longest = question_.longest,
+                              .keeps_torques = grid.count() > 0});  // a user sees those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
     return result;
 }

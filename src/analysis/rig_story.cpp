@@ -13,22 +13,18 @@ namespace {
 
 namespace engine = motion::engine;
 
-double sum(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 class RigStory : protected Prose {
 public:
     RigStory(const model::Assembly& system, const engine::Drive& drive, const engine::AssemblyRun& run,
              const std::vector<const motion::Trajectory*>& parts)
         : system_(system), drive_(drive), run_(run), parts_(parts) {}
 
-    std::string told(const engine::Works* works) {
+    std::string told(const std::vector<Energy>& energies) {
         tell_setting();
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             system_.is_link(j) ? tell_link(j) : tell_body(j);
         }
-        if (works != nullptr) tell_energy(*works);
+        if (!energies.empty()) tell_energy(energies);
         say("The run {} at t = {}.", run_.outcome == model::Outcome::reached_end ? "reached its end" : "ended",
             time(run_.t_stop));
         if (run_.outcome != model::Outcome::reached_end) add(" Outcome: {}.", motion::outcome_text(*parts_.front()));
@@ -152,8 +148,9 @@ private:
         }
     }
 
-    void tell_energy(const engine::Works& works) {
-        if (!(works.flow > 0)) return;
+    void tell_energy(const std::vector<Energy>& energies) {
+        const Energy whole = sum_of(energies);
+        if (!(whole.flow > 0)) return;
         struct Share {
             double value;
             std::string what;
@@ -166,18 +163,17 @@ private:
             if (value > 0) given.push_back({value, what});
             if (value < 0) taken.push_back({-value, what});
         };
-        for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
-            note(works.input[i], of("M", i));
-            note(works.base[i], system_.named ? "the base under " + name(i) : "the base");
+        for (std::size_t j = 0; j < energies.size(); ++j) {
+            const Work& work = energies[j].total.work;
+            note(work.input, of("M", j));
+            note(work.base, system_.named ? "the base under " + name(j) : "the base");
+            note(work.belt, of("the belt", j));
+            note(-work.viscous, of("the damping", j));
+            note(-work.dry, of("the friction", j));
+            note(-work.impacts, of("the impacts", j));
         }
-        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
-            note(works.belt[j], of("the belt", j));
-            note(-works.viscous[j], of("the damping", j));
-            note(-works.dry[j], of("the friction", j));
-            note(-works.impacts[j], of("the impacts", j));
-        }
-        note(works.acts, "acts at events");
-        note(-sum(works.kinetic) - sum(works.spring), "stored energy");
+        note(whole.total.work.acts, "acts at events");
+        note(-whole.total.change.kinetic - whole.total.change.spring, "stored energy");
         for (auto* list : {&given, &taken}) {
             std::sort(list->begin(), list->end(), [](const Share& a, const Share& b) { return a.value > b.value; });
             const double all = std::accumulate(list->begin(), list->end(), 0.0,
@@ -203,14 +199,9 @@ private:
 
 }  // namespace
 
-double error_of(const engine::Works& works) {
-    return sum(works.input) + sum(works.base) + sum(works.belt) + works.acts - sum(works.viscous) - sum(works.dry) -
-           sum(works.impacts) - sum(works.kinetic) - sum(works.spring);
-}
-
 std::string explain(const model::Assembly& system, const engine::Drive& drive, const engine::AssemblyRun& run,
-                    const std::vector<const motion::Trajectory*>& parts, const engine::Works* works) {
-    return RigStory(system, drive, run, parts).told(works);
+                    const std::vector<const motion::Trajectory*>& parts, const std::vector<Energy>& energies) {
+    return RigStory(system, drive, run, parts).told(energies);
 }
 
 }  // namespace dinal::analysis

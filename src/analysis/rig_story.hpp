@@ -4,17 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "analysis/energy.hpp"
 #include "motion/engine/run.hpp"
 #include "motion/trajectory.hpp"
 
 namespace dinal::analysis {
 
-/// `parts` is the run as seen from each joint; `works` may be missing.
+/// `parts` is the run as seen from each joint, `energies` those of the joints, which may be missing.
 std::string explain(const model::Assembly& system, const motion::engine::Drive& drive,
                     const motion::engine::AssemblyRun& run, const std::vector<const motion::Trajectory*>& parts,
-                    const motion::engine::Works* works);
-
-/// What does not add up of the works.
-double error_of(const motion::engine::Works& works);
+                    const std::vector<Energy>& energies);
 
 }  // namespace dinal::analysis

@@ -385,13 +385,11 @@ public:
         const std::vector<double> y = run_->run.history->at(t);
         return {y.begin() + static_cast<std::ptrdiff_t>(2 * run_->system->bodies.size()), y.end()};
     }
-    [[nodiscard]] double whole_until() const override {
-        return run_->legs != nullptr && run_->legs->whole_until() == model::never ? model::never : -model::never;
-    }
-    [[nodiscard]] double kept_until() const override { return run_->run.history->whole_until(); }
+    [[nodiscard]] double whole_until() const override { return run_->run.history->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return run_->run.history->ends(); }
     void legs(const std::function<void(const motion::Leg&)>& told) const override {
-        run_->legs->legs([&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
+        run_->run.history->legs_since(run_->run.t_start,
+                                      [&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
     }
 
 private:
@@ -567,7 +565,14 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
         progress.advance(t);
         return !lua::interrupt_requested();
     };
-    run->run = engine::run({*run->system, run->drive, window, grid, monitor, limits, std::move(before)});
+    run->run = engine::run({.system = *run->system,
+                            .drive = run->drive,
+                            .window = window,
+                            .rows = grid,
+                            .monitor = monitor,
+                            .limits = limits,
+                            .before = std::move(before),
+                            .keeps_torques = true});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);

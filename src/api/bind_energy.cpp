@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "analysis/energy.hpp"
 #include "analysis/rig_story.hpp"
@@ -12,7 +11,6 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/run.hpp"
-#include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
@@ -23,13 +21,12 @@ namespace dinal::api {
 
 namespace {
 
-namespace engine = motion::engine;
-
 struct RunEnergy {
     RunHandle run = {};
     analysis::Energy energy = {};
-    BodiesRunHandle rig = {};      ///< of several bodies together, instead
-    Eigen::MatrixXd columns = {};  ///< at the rows; made when first asked for
+    BodiesRunHandle rig = {};                   ///< of several bodies together, instead of run
+    std::vector<analysis::Energy> joints = {};  ///< of which that energy is the sum
+    Eigen::MatrixXd columns = {};               ///< at the rows; made when first asked for
 };
 // Shared, because a column that Lua takes out is a view that keeps it alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
@@ -85,28 +82,6 @@ lua::Vector times(const RunEnergy& energy) {
 
 using lua::NamedNumbers;
 
-double sum_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-/// Of all: the names are those of one body.
-NamedNumbers total_of_rig(const RunEnergy& energy) {
-    const engine::Works& works = *energy.rig->works;
-    const double error = analysis::error_of(works);
-    return {{"input", sum_of(works.input)},
-            {"kinetic", sum_of(works.kinetic)},
-            {"spring", sum_of(works.spring)},
-            {"viscous", sum_of(works.viscous)},
-            {"dry", sum_of(works.dry)},
-            {"error", error},
-            {"belt", sum_of(works.belt)},
-            {"base", sum_of(works.base)},
-            {"acts", works.acts},
-            {"impacts", sum_of(works.impacts)},
-            {"flow", works.flow},
-            {"closure", works.flow > 0 ? std::fabs(error) / works.flow : 0}};
-}
-
 void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool part) {
     const motion::Work& work = balance.work;
     numbers.insert(numbers.end(), {{"input", work.input},
@@ -122,7 +97,6 @@ void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool p
 }
 
 NamedNumbers total(const RunEnergy& own) {
-    if (own.rig) return total_of_rig(own);
     NamedNumbers numbers;
     add_balance(numbers, own.energy.total, is_part(own));
     if (!is_part(own)) {
@@ -132,14 +106,13 @@ NamedNumbers total(const RunEnergy& own) {
 }
 
 template <auto member>
-std::optional<NamedNumbers> stored(const RunEnergy& own) {
-    if (own.rig) return {};
+NamedNumbers stored(const RunEnergy& own) {
     const auto& energy = own.energy.*member;
-    return NamedNumbers{{"kinetic", energy.kinetic}, {"spring", energy.spring}};
+    return {{"kinetic", energy.kinetic}, {"spring", energy.spring}};
 }
 
 std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
-    if (own.rig) return {};
+    if (own.joints.size() > 1) return {};
     std::vector<NamedNumbers> list;
     for (const auto& half : own.energy.half_cycles) {
         list.push_back({{"t_start", half.t_start},
@@ -156,59 +129,43 @@ int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
     if (energy->rig == nullptr) return 0;
-    const BodiesRun& run = *energy->rig;
-    const engine::Works& works = *run.works;
-    const std::size_t joint = joint_named(L, 2, *run.system, "this energy", energy_class);
-    NamedNumbers numbers{{"spring", works.spring[joint]},
-                         {"viscous", works.viscous[joint]},
-                         {"dry", works.dry[joint]},
-                         {"belt", works.belt[joint]},
-                         {"impacts", works.impacts[joint]}};
-    if (!run.system->is_link(joint)) {
-        numbers.insert(numbers.end(),
-                       {{"input", works.input[joint]}, {"base", works.base[joint]}, {"kinetic", works.kinetic[joint]}});
-    }
+    NamedNumbers numbers;
+    add_balance(numbers, energy->joints[joint_named(L, 2, *energy->rig->system, "this energy", energy_class)].total,
+                true);
     lua::push_value(L, numbers);
     return 1;
 }
 
 std::string text_of_rig(const RunEnergy& energy) {
-    const BodiesRun& run = *energy.rig;
-    const engine::Works& works = *run.works;
-    const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * works.flow ? 0.0 : x; };
-    std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
-                                   run.run.t_start, run.run.t_stop);
+    const auto& joints = energy.rig->system->joints;
+    const analysis::Energy& all = energy.energy;
+    const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * all.flow ? 0.0 : x; };
+    std::string text =
+        fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n", all.t_start, all.t_end);
     std::size_t width = 5;
-    for (const model::Joint& joint : run.system->joints) width = std::max(width, joint.name.size());
-    const auto line = [&](const std::string& name, double input, double kinetic, double spring, double viscous,
-                          double dry) {
-        text += fmt::format("  {:<{}}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}\n", name, width, shown(input),
-                            shown(kinetic), shown(spring), shown(viscous), shown(dry));
-    };
+    for (const model::Joint& joint : joints) width = std::max(width, joint.name.size());
     text += fmt::format("  {:<{}}{:>13}{:>13}{:>13}{:>13}{:>13}\n", "", width, "input", "kinetic", "spring", "viscous",
                         "dry");
-    for (std::size_t j = 0; j < run.system->joints.size(); ++j) {
-        const bool link = run.system->is_link(j);
-        line(run.system->joints[j].name, link ? 0 : works.input[j], link ? 0 : works.kinetic[j], works.spring[j],
-             works.viscous[j], works.dry[j]);
-    }
-    line("all", sum_of(works.input), sum_of(works.kinetic), sum_of(works.spring), sum_of(works.viscous),
-         sum_of(works.dry));
-    for (const auto& [name, value] : {std::pair("belt", sum_of(works.belt)), std::pair("base", sum_of(works.base)),
-                                      std::pair("acts", works.acts)}) {
+    const auto line = [&](const std::string& name, const analysis::Balance& own) {
+        text += fmt::format("  {:<{}}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}\n", name, width,
+                            shown(own.work.input), shown(own.change.kinetic), shown(own.change.spring),
+                            shown(own.work.viscous), shown(own.work.dry));
+    };
+    for (std::size_t j = 0; j < joints.size(); ++j) line(joints[j].name, energy.joints[j].total);
+    line("all", all.total);
+    const motion::Work& work = all.total.work;
+    for (const auto& [name, value] :
+         {std::pair("belt", work.belt), std::pair("base", work.base), std::pair("acts", work.acts)}) {
         if (value != 0) text += fmt::format("  {} {:.6g} added by belt, base and acts\n", name, shown(value));
     }
-    if (const double lost = sum_of(works.impacts); lost != 0) {
-        text += fmt::format("  impacts {:.6g} were lost\n", shown(lost));
-    }
-    const double error = analysis::error_of(works);
-    text += fmt::format("  error {:.2g}, {:.1g} of {:.6g} that flowed", error,
-                        works.flow > 0 ? std::fabs(error) / works.flow : 0, works.flow);
+    if (work.impacts != 0) text += fmt::format("  impacts {:.6g} were lost\n", shown(work.impacts));
+    text += fmt::format("  error {:.2g}, {:.1g} of {:.6g} that flowed", all.total.error(), all.closure(), all.flow);
     return text;
 }
 
 std::string text_of_energy(const RunEnergy& energy) {
-    return energy.rig ? text_of_rig(energy) : analysis::text(energy.energy, units_of(*energy.run));
+    if (energy.joints.size() > 1) return text_of_rig(energy);
+    return analysis::text(energy.energy, energy.rig ? energy.rig->system->units : units_of(*energy.run));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -298,9 +255,8 @@ const lua::Class energy_class = {
     "energy",
     {"run:energy() -> energy",
      "The energy balance of a run: total, half_cycles, and columns as long as run.t. It cannot be changed. For a run of "
-     "several bodies they are sums, half_cycles, start and finish are nil, and for each body and link there is a table "
-     "of its input, base, kinetic, spring, viscous, dry, belt and impacts: energy.clutch.dry. run.clutch:energy() has "
-     "the columns and half cycles of one.",
+     "several bodies they are sums, half_cycles is nil, and each body and link has its own balance, as in "
+     "energy.clutch.dry. run.clutch:energy() has the columns and half cycles of one.",
      DINAL_ENERGY "print(#energy.half_cycles)  --> 4\n"
                   "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } },\n"
                   "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
@@ -313,7 +269,7 @@ const lua::Class energy_class = {
 
 std::string energy_card(lua_State* L, int index, const terminal::Display& screen) {
     const RunEnergy& energy = **lua::test<EnergyHandle>(L, index);
-    if (energy.rig) return text_of_rig(energy);
+    if (energy.joints.size() > 1) return text_of_rig(energy);
     constexpr std::size_t name_and_number = 23;
     std::string card;
     const std::string whole = terminal::spelled(text_of_energy(energy), screen);
@@ -326,46 +282,7 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     return text::wrapped(card, screen.width - 1);
 }
 
-/// By running it again, now with a look at all torques between the events.
-const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
-    if (run->works) return *run->works;
-    if (!(run->run.t_stop > run->run.t_start)) {
-        lua::raise(L, "run:energy(): there is no motion to integrate over: the run ended where it started");
-    }
-    const motion::Window window{run->run.t_start, run->run.t_stop};
-    lua::CallState call(L);
-    name_functions(call, *run->system, run->drive);
-    call.set_span(window.end - window.start);
-    const motion::Monitor monitor = [](double) { return !lua::interrupt_requested(); };
-    const motion::Grid rows = motion::Grid::none().within(window).value();
-    engine::AssemblyRun again = engine::run({.system = *run->system,
-                                             .drive = run->drive,
-                                             .window = window,
-                                             .rows = rows,
-                                             .monitor = monitor,
-                                             .limits = {},
-                                             .works = true});
-    if (lua::interrupt_requested()) lua::raise_interrupted(L);
-    call.check();
-    double off = 0, size = 0;
-    for (std::size_t k = 0; k < again.carry->y.size(); ++k) {
-        off = std::max(off, std::fabs(again.carry->y[k] - run->run.carry->y[k]));
-        size = std::max(size, std::fabs(run->run.carry->y[k]));
-    }
-    constexpr double same = 1e-6;
-    if (!(off <= same * size)) {
-        lua::raise(
-            L,
-            "run:energy(): repeating the run for its energy gave another motion: a controller keeps a memory from "
-            "one run to the next");
-    }
-    run->legs = again.history;
-    run->works = std::make_shared<const engine::Works>(std::move(again.works));
-    return *run->works;
-}
-
 lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
-    if (run->whole) works_of(L, run->whole);  // with the torques between the rows
     lua::CallState call(L);
     auto energy = analysis::energy_of(run->trajectory, whose_of(*run));
     call.check();
@@ -374,9 +291,29 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
     return {};
 }
 
+namespace {
+
+/// Of each joint; fails with the sentence of the first that fails.
+text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const BodiesRunHandle& run) {
+    lua::CallState call(L);  // a law of friction may be a user's function
+    std::vector<analysis::Energy> energies;
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        const RunHandle part = part_of(run, j);
+        auto energy = analysis::energy_of(part->trajectory, whose_of(*part));
+        call.check();
+        if (!energy) return energy.error();
+        energies.push_back(std::move(energy).value());
+    }
+    return energies;
+}
+
+}  // namespace
+
 lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
-    works_of(L, run);
-    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{.rig = run}));
+    auto joints = lua::value_or_raise(L, "run:energy()", energies_of(L, run));
+    RunEnergy energy{.energy = analysis::sum_of(joints), .rig = run};
+    energy.joints = std::move(joints);
+    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(std::move(energy)));
     return {};
 }
 
@@ -387,8 +324,9 @@ std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run) {
         kept.push_back(part_of(run, j));
         parts.push_back(&kept.back()->trajectory);
     }
-    const bool moved = run->run.t_stop > run->run.t_start;
-    return analysis::explain(*run->system, run->drive, run->run, parts, moved ? &works_of(L, run) : nullptr);
+    const auto energies = energies_of(L, run);
+    return analysis::explain(*run->system, run->drive, run->run, parts,
+                             energies ? energies.value() : std::vector<analysis::Energy>());
 }
 
 void register_energy(lua_State* L) {

@@ -107,8 +107,6 @@ struct BodiesRun {
     std::vector<std::string> set_up = {};  ///< Lua text that makes all that was run, as it was at the start
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
-    mutable std::shared_ptr<const motion::engine::Works> works = {};   ///< made when they are asked for
-    mutable std::shared_ptr<const motion::engine::History> legs = {};  ///< with them: the motion with its torques
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
@@ -126,8 +124,6 @@ inline std::size_t acceleration_column(const BodiesRun& run, std::size_t body) {
 }
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
-/// What was put in and taken, torque times rad; in bind_energy.cpp. Raises when a function of the run does.
-const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
 lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
 std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
 /// Pushes the run of one body without a name, continued.

@@ -44,7 +44,7 @@ std::vector<double> invisible(const std::vector<double>& values, std::size_t wid
 }  // namespace
 
 BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : run_(run), M_(M) {
-    if (!run.course || !(run.course->kept_until() >= run.t_stop) || !(run.t_stop > run.t_start)) return;
+    if (!run.course || !(run.course->whole_until() >= run.t_stop) || !(run.t_stop > run.t_start)) return;
     const std::vector<std::string>& names = run.names();
     for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(names.size()); ++c) {
         const std::string& name = names[static_cast<std::size_t>(c)];

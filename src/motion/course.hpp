@@ -55,8 +55,6 @@ public:
     /// Up to this time the motion is kept whole: at() need not ask M again, and legs() tells it. `never` when that is
     /// all of the run; an integrator that only keeps where to begin again has no such time.
     [[nodiscard]] virtual double whole_until() const { return -model::never; }
-    /// Up to this time at() evaluates what was kept; a course that repeats steps of the run keeps nothing.
-    [[nodiscard]] virtual double kept_until() const { return whole_until(); }
     /// Times between which the kept motion is smooth, in order: acts and conditions on the motion are among them. Empty
     /// if the events and the breaks of M are all such times.
     [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }

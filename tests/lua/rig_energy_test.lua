@@ -85,6 +85,35 @@ test("energy over time: of all, and of one body or link as of a system of one bo
     has(a, "work of its links on it")
 end)
 
+test("the energy of several bodies is that of the run itself: it asks no function, and knows what went before", function()
+    local calls = 0
+    local function M(t) calls = calls + 1 return math.sin(1.3 * t) + 0 * #tostring(t) end
+    local rig = pair({ I = 1, k = 2, Rd = 0.2 }, { I = 2, k = 1, walls = { upper = 0.4, restitution = 0.6 } }, { k = 3, C = 0.1, Rd = 0.1 })
+    local options = { M = { a = M }, belt = { b = 0.1 }, base = 0.05, theta0 = { a = 0.3 }, t_end = 40, dt = 0.5 }
+    local whole = rig:simulate(options)
+    local before = calls
+    local total = whole:energy().total
+    whole:explain()
+    equal(calls, before)
+    assert(total.closure < 1e-11, total.closure)
+    options.t_end = 17.3
+    local parts = rig:simulate(options):continue { t_end = 40 }:energy()
+    for name, value in pairs(total) do near(parts.total[name], value, name == "error" and 1e-11 or 1e-9) end
+    near(parts.start.spring, (2 + 3) * 0.3 ^ 2 / 2, 1e-15)
+    near(parts.finish.kinetic + parts.finish.spring - parts.start.kinetic - parts.start.spring, total.kinetic + total.spring, 1e-9)
+end)
+
+test("the energy of a body is that of a system of one, half cycles and words included", function()
+    local own, M = { I = 1, k = 1, Rd = 0.12, C = 0.03 }, excitation.harmonic { omega = 0.7 }
+    local options = { theta0 = 1, t_end = 20, dt = 5, integrator = integrator.spectral {} }
+    local one = system(own):simulate(merged(options, { M = M })):energy()
+    local rig = system { bodies = { a = own } }:simulate { M = { a = M }, theta0 = { a = 1 }, t_end = 20, dt = 5 }:energy()
+    equal(#rig.half_cycles, #one.half_cycles)
+    near(rig.half_cycles[2].dry, one.half_cycles[2].dry, 1e-12)
+    near(rig.total.flow, one.total.flow, 1e-12)
+    has(rig, "lost to dry friction", "half cycles")
+end)
+
 test("a run is told in sentences", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.1 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     says(rig:simulate { velocity0 = { motor = 3 }, t_end = 40 }, "There is no M: the motion is free", "clutch links motor and load",

@@ -135,6 +135,11 @@ std::vector<double> History::ends() const {
     return times;
 }
 
+void History::legs_since(double start, const std::function<void(const JointLeg&)>& told) const {
+    if (before_ != nullptr && start < t_start_) before_->legs_since(start, told);
+    legs(told);
+}
+
 void History::legs(const std::function<void(const JointLeg&)>& told) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= for_good_; ++i) {

@@ -2,6 +2,7 @@
 // of what acts with a delay.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -73,13 +74,17 @@ public:
     [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }
     [[nodiscard]] std::vector<double> at(double t, Side side) const;
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
-    /// It was kept up to this time; `never` when that is all of the run.
-    [[nodiscard]] double whole_until() const { return whole_until_; }
+    /// The motion was kept up to this time, with that of the run before; `never` when that is all of it.
+    [[nodiscard]] double whole_until() const {
+        return before_ == nullptr ? whole_until_ : std::min(whole_until_, before_->whole_until());
+    }
     [[nodiscard]] bool empty() const { return list_.empty(); }
     /// When each stretch ended that is kept.
     [[nodiscard]] std::vector<double> ends() const;
-    /// In order and without gaps.
+    /// In order and without gaps. Only for a run that keeps torques.
     void legs(const std::function<void(const JointLeg&)>& told) const;
+    /// Those of the run before, too, if it began at `start` or later.
+    void legs_since(double start, const std::function<void(const JointLeg&)>& told) const;
 
 private:
     struct Jump {

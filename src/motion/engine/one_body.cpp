@@ -95,6 +95,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
                                  .tolerance = cut.tolerance,
                                  .longest = cut.longest,
                                  .step = cut.step,
+                                 .keeps_torques = true,
                                  .history_bytes = problem.course_bytes,
                                  .joined_elsewhere = true});
     Trajectory trajectory;

@@ -119,7 +119,6 @@ private:
     [[nodiscard]] double gap(std::size_t joint, double place) const;
     void keep(double length);
     std::vector<Kept::Acting> acting();
-    [[nodiscard]] double energy(const std::vector<double>& y) const;
     [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
     bool handle(const Ending& ending);
     const Frame& frame();
@@ -196,7 +195,6 @@ private:
     void echo(double t, int generation);
     bool put_row(double t, double x);
     [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Look& look) const;
-    void add_works(double until);
     bool rows_until(double end, bool to_the_end);
     bool fail(Outcome outcome) {
         outcome_ = outcome;
@@ -353,11 +351,6 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
                                 mechanics_.states_of_user() + (problem.joined_elsewhere ? 0 : n());
     result_.table = Growing<double>(problem.rows.count(), columns);
-    if (!problem.works) return;
-    for (auto of : {&Works::input, &Works::base, &Works::kinetic}) (result_.works.*of).assign(n(), 0);
-    for (auto of : {&Works::viscous, &Works::dry, &Works::belt, &Works::impacts, &Works::spring}) {
-        (result_.works.*of).assign(joints, 0);
-    }
 }
 
 const Frame& Engine::frame() {
@@ -1046,7 +1039,6 @@ void Engine::begin() {
 }
 
 void Engine::run() {
-    const std::vector<double> first = y_;
     begin();
     unsigned pieces = 0;
     constexpr unsigned between_questions = 16;
@@ -1101,18 +1093,6 @@ void Engine::run() {
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
     if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
-    if (problem_.works) {
-        for (std::size_t i = 0; i < n(); ++i) {
-            const double v = first[n() + i], w = y_[n() + i];
-            result_.works.kinetic[i] = problem_.system.bodies[i].inertia * ((w - v) * (w + v)) / 2;
-        }
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const double p = mechanics_.angle(j, first), q = mechanics_.angle(j, y_);
-            const Joint& joint = problem_.system.joints[j];
-            result_.works.spring[j] =
-                joint.stiffness * ((q - p) * (q + p)) / 2 + (joint.spring.energy(q) - joint.spring.energy(p));
-        }
-    }
     history_->close(now_, y_);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
@@ -1444,7 +1424,6 @@ bool Engine::end_at(double x) {
     }
     keep(length);
     if (mechanics_.asks_functions()) result_.gap = std::max(result_.gap, std::min(length, solver_->gap(segment_)));
-    if (problem_.works && length > 0) add_works(x);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break && now_.hi < problem_.window.end;
@@ -1521,7 +1500,7 @@ void Engine::keep(double length) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
     // For the legs of its course.
-    if (problem_.limits.dense && (problem_.joined_elsewhere || problem_.works)) kept.acting = acting();
+    if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting();
     const double past = longest_delay_ > 0 ? now_.hi - 2 * longest_delay_ : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
 }
@@ -1554,13 +1533,6 @@ std::vector<Kept::Acting> Engine::acting() {
             }
         }
     }
-    return all;
-}
-
-/// Of the motion and of springs.
-double Engine::energy(const std::vector<double>& y) const {
-    double all = 0;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) all += energy_at(j, y);
     return all;
 }
 
@@ -1620,12 +1592,8 @@ bool Engine::handle(const Ending& ending) {
             }
             return !too_often() || fail(Outcome::chattering);
         }
-        case By::wall: {
-            const double before = energy(y_);
-            const bool goes_on = hit(j, ending.side);
-            if (problem_.works) result_.works.impacts[j] += before - energy(y_);
-            return goes_on;
-        }
+        case By::wall:
+            return hit(j, ending.side);
         case By::corner: {
             Slipping& how = mode_.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
@@ -1639,12 +1607,8 @@ bool Engine::handle(const Ending& ending) {
             tell(EventKind::switched, static_cast<int>(j));
             if (!decide(true)) return false;
             return !too_often() || fail(Outcome::chattering);
-        case By::user: {
-            const double before = energy(y_);
-            const bool goes_on = act_all(ending.users);
-            result_.works.acts += energy(y_) - before;
-            return goes_on;
-        }
+        case By::user:
+            return act_all(ending.users);
     }
     return true;
 }
@@ -2575,67 +2539,6 @@ double Engine::friction(std::size_t joint, const Moment& at, const Look& look) c
     return mechanics_.friction(joint, at, mode_, mechanics_.belt(joint, at.t, at.side));
 }
 
-// ---- energy
-
-/// Of Gauss and Legendre, for -1 to 1.
-template <std::size_t points>
-struct GaussRule {
-    std::array<double, points> places{}, weights{};
-    GaussRule() {
-        for (std::size_t i = 0; i < points; ++i) {
-            double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (points + 0.5)), slope = 1;
-            for (int step = 0; step < 8; ++step) {
-                double p = 1, before = 0;
-                for (std::size_t k = 0; k < points; ++k) {
-                    const auto degree = static_cast<double>(k);
-                    const double next = ((2 * degree + 1) * x * p - degree * before) / (degree + 1);
-                    before = p, p = next;
-                }
-                slope = points * (x * p - before) / (x * x - 1);
-                x -= p / slope;
-            }
-            places[i] = x, weights[i] = 2 / ((1 - x * x) * slope * slope);
-        }
-    }
-};
-
-/// The works from the beginning of the stretch to x, by Gauss' formula: all of it is smooth in between.
-void Engine::add_works(double until) {
-    constexpr std::size_t points = 24;
-    static const GaussRule<points> rule;
-    Works& works = result_.works;
-    const Works before = works;
-    std::vector<double> y;
-    for (std::size_t g = 0; g < points; ++g) {
-        const double x = -1 + (until + 1) / 2 * (1 + rule.places[g]);
-        const double part = rule.weights[g] * segment_.h * (until + 1) / 2;
-        segment_.state(x, y);
-        const Moment at{segment_.time(x), Side::at, y};
-        look(at, mode_, *frame_, look_, x);
-        const double push = mechanics_.base(at.t, at.side);
-        for (std::size_t i = 0; i < n(); ++i) {
-            works.input[i] += part * mechanics_.load(i, at) * y[n() + i];
-            works.base[i] -= part * problem_.system.bodies[i].inertia * push * y[n() + i];
-        }
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const double v = mechanics_.velocity(j, y), belt = mechanics_.belt(j, at.t, at.side);
-            const double torque = friction(j, at, look_);
-            const bool slides = !mode_.holds(j) && !mode_.friction[j].riding;
-            works.viscous[j] += part * problem_.system.joints[j].damping * v * v;
-            if (slides || mode_.leans[j] != 0) works.dry[j] -= part * torque * (v - belt);
-            works.belt[j] += part * torque * belt;
-        }
-    }
-    const auto given = [&works](const std::vector<double>& now, const std::vector<double>& was) {
-        for (std::size_t k = 0; k < now.size(); ++k) works.flow += std::max(0.0, now[k] - was[k]);
-    };
-    given(works.input, before.input), given(works.base, before.base), given(works.belt, before.belt);
-    for (std::size_t i = 0; i < n(); ++i) {
-        const double v = y_[n() + i], w = segment_.at(n() + i, until);
-        works.flow += std::max(0.0, problem_.system.bodies[i].inertia * (v - w) * (v + w) / 2);
-    }
-}
-
 }  // namespace
 
 AssemblyRun run_plain(const AssemblyProblem& problem) {
@@ -2687,7 +2590,7 @@ AssemblyRun run(const AssemblyProblem& problem) {
                                 .tolerance = problem.tolerance,
                                 .longest = problem.longest,
                                 .step = problem.step,
-                                .works = problem.works};
+                                .keeps_torques = problem.keeps_torques};
     AssemblyRun result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
     result.contradiction = witnesses.verdict(whole);

@@ -40,14 +40,6 @@ struct Carry {
     double born = 0;  ///< when the first of these runs began
 };
 
-/// What was put in and taken in a run, torque times rad.
-struct Works {
-    std::vector<double> input, base, kinetic;  ///< of each body: by M, by the support; the change of I velocity^2/2
-    std::vector<double> viscous, dry, belt, impacts, spring;  ///< of each joint; spring: the change of what is stored
-    double acts = 0;
-    double flow = 0;  ///< what was given in all stretches together
-};
-
 struct AssemblyRun {
     /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states;
     /// accelerations of the bodies, unless joined_elsewhere.
@@ -65,7 +57,6 @@ struct AssemblyRun {
     std::shared_ptr<const History> history;
     std::shared_ptr<const Carry> carry;
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
-    Works works = {};                                        ///< where they were asked for
 };
 inline constexpr std::size_t columns_of_body = 5, columns_of_link = 4;
 
@@ -80,7 +71,7 @@ struct AssemblyProblem {
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
-    bool works = false;             ///< integrate them: every function is asked about as often again
+    bool keeps_torques = false;     ///< beside a dense motion, for its energy
     std::size_t history_bytes = limits.memory / 4;
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
 };
