@@ -447,4 +447,19 @@ test("a formula whose native terms would lose its digits is followed itself", fu
     near(run.M[11], f(run.t[11]), 5e-7)  -- to its own rounding
 end)
 
+test("a short window in a rate, a law of friction or the condition of an event is not missed", function()
+    local function window(t) return t > 3.3 and t < 3.31 end
+    local sys = system { I = 1, k = 4, C = 0.2 }
+    local q = { start = 0, rate = function(t) if t > 3.3 and t < 3.31 then return 100 end return 0 end }
+    near(sys:simulate { theta0 = 1, t_end = 10, dt = 10, states = { q = q } }.states.q[2], 1, 1e-12)
+    local function law(_, t) if t > 3.3 and t < 3.31 then return 50 end return 0 end
+    local pushed = system { I = 1, k = 0, friction = law }:simulate { velocity0 = 1, t_end = 10, dt = 10 }
+    near(pushed.velocity[2], 0.5, 1e-9)
+    local events = { { when = function(t) if t > 3.3 and t < 3.31 then return 1 end return -1 end } }
+    local found = of_kind(sys:simulate { theta0 = 1, t_end = 10, events = events }, "user")
+    equal(#found, 2)
+    near(found[1].t, 3.3, 1e-12)
+    assert(not window(found[2].t))
+end)
+
 finish()

@@ -1117,6 +1117,9 @@ void Engine::choose() {
     frame();
     double breaks = std::min(mechanics_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
     if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
+    for (const model::WantedEvent& event : problem_.drive.events) {
+        breaks = std::min(breaks, event.when->next_break(now_.hi));
+    }
     double limit = std::min(problem_.window.end, breaks);
     if (problem_.step > 0) {
         // A break that rounding puts beside a step's end is that end.
