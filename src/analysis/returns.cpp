@@ -26,6 +26,17 @@ bool has_acts(const engine::Drive& drive) {
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
+/// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
+bool is_linear(const model::Assembly& system, const engine::Drive& drive) {
+    const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
+    const auto bends = [](const model::Joint& joint) {
+        return !joint.spring.none() || joint.walls || !joint.friction.is_constant() ||
+               joint.friction.law.depends_on_speed();
+    };
+    return std::none_of(drive.loads.begin(), drive.loads.end(), loaded) &&
+           std::none_of(system.joints.begin(), system.joints.end(), bends);
+}
+
 /// Passes zero where a measured number passes a place.
 class Passage final : public model::UserFunction {
 public:
@@ -513,7 +524,7 @@ void ReturnSearch::forced() {
     const auto first = stretch(now, start, period, reach);
     if (!first) return;
     now = Runs::at_stop(*first);
-    if (question().periods <= 1) {
+    if (question().periods <= 1 && is_linear(runs_.system(), question().drive)) {
         Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
         ClosedSearch search(map, facts_.maps, 1);
         const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
