@@ -38,9 +38,9 @@ bool is_part(const RunEnergy& energy) {
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
 analysis::Whose whose_of(const Run& run) {
-    return !run.whole || !run.whole->system->named ? analysis::Whose::all
-           : run.whole->system->is_link(run.joint) ? analysis::Whose::link
-                                                   : analysis::Whose::body;
+    return !run.whole || run.whole->system->joints.size() == 1 ? analysis::Whose::all
+           : run.whole->system->is_link(run.joint)             ? analysis::Whose::link
+                                                               : analysis::Whose::body;
 }
 
 /// Of several bodies the sum: what the others do on one of them cancels.
