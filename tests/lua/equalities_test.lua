@@ -1,0 +1,213 @@
+-- One number seen from two sides: a part and its whole, a run that goes on and the whole run, a worker and the call
+-- itself, bristles under a normal load and bristles that are as much stronger, and one record read in two ways.
+dofile "tests/lua/support.lua"
+
+-- All systems here are of size 1. A motion in two parts differs from the whole by the rounding of the panels between.
+local tolerance = 1e-9
+
+local function close(found, wanted, what)
+    if type(found) == "number" then found, wanted = vector { found }, vector { wanted } end
+    equal(#found, #wanted, what)
+    local far = #found > 0 and (found - wanted):abs():max() or 0
+    if not (far <= tolerance * math.max(1, wanted:abs():max())) then error(("%s differ by %g"):format(what, far), 2) end
+end
+
+local sine = excitation.harmonic { amplitude = 2, omega = 1.3 }
+
+-- ---- parts and the whole
+
+local a = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 }
+local b = { I = 0.5, k = 1, Rd = 0.1, walls = { lower = -0.6, upper = 0.6, restitution = 0.6 } }
+local parts = {
+    ["a belt on a link"] = { { k = 2, C = 0.1, Rd = 0.3, Re = 0.4 }, { belt = { link = 0.4, b = 0.2 } } },
+    ["a belt of t on a link"] = { { k = 2, Rd = 0.3 }, { belt = { link = function(t) return 0.4 * math.sin(t) end } } },
+    ["a base"] = { { k = 2, Rd = 0.1 }, { base = excitation.harmonic { amplitude = 0.8, omega = 0.9 } } },
+    ["an impact at a link"] = { { walls = { lower = -0.3, upper = 0.2, restitution = 0.5 } }, {} },
+    ["all of it"] = {
+        { k = 2, C = 0.1, Rd = 0.3, walls = { lower = -0.4, upper = 0.3, restitution = 0.5 } },
+        { belt = { link = 0.4 }, base = function(t) return 0.5 * math.cos(2 * t) end,
+            events = { { when = function(t) return t - 3.3 end,
+                act = function(t, theta, velocity) velocity.b = 0.4 end } } },
+    },
+    bristles = {
+        { k = 2, friction = friction.lugre { Rd = 0.2, Re = 0.3, speed = 0.1, stiffness = 20, damping = 1 } },
+        { belt = { link = 0.3 } },
+    },
+}
+
+test("the energy of each part of a rig is its row in the energy of all", function()
+    local named = { "input", "base", "kinetic", "spring", "viscous", "dry", "belt", "impacts" }
+    for kind, given in pairs(parts) do
+        local drive = { M = { a = sine }, velocity0 = { b = 0.5 }, t_end = 12, dt = 0.1 }
+        local run = pair(a, b, merged(given[1])):simulate(merged(drive, given[2]))
+        local whole = run:energy()
+        assert(whole.total.closure < 1e-10, kind)
+        for _, part in ipairs { "a", "b", "link" } do
+            local own = run[part]:energy()
+            for _, name in ipairs(named) do
+                local what = ("%s: %s of %s"):format(kind, name, part)
+                if whole[part][name] then close(own.total[name], whole[part][name], what) end
+                if name ~= "kinetic" and name ~= "spring" then
+                    close(own[name][#run], own.total[name], what .. " in the last row and in total")
+                end
+            end
+        end
+        assert(not kind:find "belt" or math.abs(whole.link.belt) > 0.01, kind)
+        assert(kind ~= "a base" or math.abs(whole.a.base) > 0.01 and math.abs(whole.b.base) > 0.01)
+        assert(not kind:find "impact" or whole.link.impacts > 0.01)
+    end
+end)
+
+-- ---- a run that goes on
+
+local function averaging(body)
+    return function(t, theta, velocity, z, memory)
+        local x = body and theta[body] or theta
+        memory.sum = 0.9 * memory.sum + x
+        return -0.2 * memory.sum
+    end
+end
+local lugre = friction.lugre { Rd = 0.3, Re = 0.4, speed = 0.2, stiffness = 20, damping = 1 }
+local going = {
+    ["no more"] = {},
+    LuGre = { body = { friction = lugre } },
+    ["sampled with memory"] = { M = function(of)
+        local start = function() return { sum = 0 } end
+        return excitation.sampled(averaging(of), { every = 0.3, delay = 0.07, start = start })
+    end },
+    delayed = { M = function(of)
+        local function brake(t, theta, velocity) return -0.4 * (of and velocity[of] or velocity) end
+        return excitation.delayed(brake, { by = 0.7 })
+    end },
+    relay = { M = function(of)
+        return excitation.relay { on = -0.1, off = 0.1, amplitude = 1, of = of and "theta." .. of or "theta" }
+    end },
+    states = {
+        M = function(of) return excitation.scripted(function(t, theta, velocity, z) return 0.5 * z.lag end) end,
+        states = function(of)
+            local function rate(t, theta, velocity, z) return (of and theta[of] or theta) - z.lag end
+            return { lag = { start = 0.2, rate = rate } }
+        end,
+    },
+    normal = { body = { Rd = 0.3, Re = 0.4, normal = function(t) return 1 + 0.5 * math.sin(0.7 * t) end } },
+}
+
+for kind, more in pairs(going) do
+    local body = merged({ I = 1, k = 4, C = 0.1 }, more.body or { Rd = 0.3, Re = 0.4 })
+    local function drive(of)
+        local M = more.M and sine + more.M(of) or sine
+        local states = more.states and more.states(of)
+        return { M = of and { a = M } or M, theta0 = of and { a = 0.4 } or 0.4, states = states, dt = 0.1 }
+    end
+    local ways = {
+        ["one body"] = { system(body), drive(), { "theta", "velocity", "M", "friction", "damping", "acceleration" } },
+        ["a rig"] = { pair(body, { I = 0.5, k = 1, C = 0.1 }, { k = 3, Rd = 0.1 }), drive "a",
+            { "a.theta", "b.velocity", "a.M", "a.friction", "link.torque", "link.friction", "a.acceleration" } },
+    }
+    for way, given in pairs(ways) do
+        test(("a run that goes on is the whole run, rows included: %s, %s"):format(kind, way), function()
+            local function run(t_end) return given[1]:simulate(merged(given[2], { t_end = t_end })) end
+            local whole, longer = run(9), run(2.7813):continue { t_end = 4 }:continue { t_end = 9 }
+            local function column(of, name)
+                if way == "a rig" then return of:data()[name] end
+                return of[name]
+            end
+            close(longer.t, whole.t, "t")
+            for _, name in ipairs(given[3]) do close(column(longer, name), column(whole, name), name) end
+            for name, values in pairs(whole.states) do close(longer.states[name], values, name) end
+            same_events(longer, whole, tolerance)
+            equal(longer.outcome, whole.outcome)
+        end)
+    end
+end
+
+-- ---- a worker and the call itself
+
+local acting = {
+    constant = function() return excitation.constant(0.5) end,
+    harmonic = function() return excitation.harmonic { amplitude = 2, omega = 1.3, phase = 0.4 } end,
+    step = function() return excitation.step { amplitude = 1.5, at = 0.7 } end,
+    pulse = function() return excitation.pulse { amplitude = 3, at = 0.4, width = 0.6 } end,
+    half_sine = function() return excitation.half_sine { amplitude = 3, at = 0.4, width = 0.6 } end,
+    gaussian = function() return excitation.gaussian { amplitude = 3, at = 1.2, sigma = 0.3 } end,
+    ramp = function() return excitation.ramp { slope = 0.8, at = 0.3, duration = 1.5 } end,
+    square = function() return excitation.square { amplitude = 1.5, period = 1.7, duty = 0.3, at = 0.2 } end,
+    sawtooth = function() return excitation.sawtooth { amplitude = 1.5, period = 1.7, at = 0.2 } end,
+    triangle = function() return excitation.triangle { amplitude = 1.5, period = 1.7, at = 0.2 } end,
+    chirp = function()
+        return excitation.chirp { amplitude = 2, from = 0.1, to = 0.6, duration = 3, at = 0.2, phase = 0.3 }
+    end,
+    exponential = function() return excitation.exponential { amplitude = 2, tau = 0.8, at = 0.3 } end,
+    polynomial = function() return excitation.polynomial { coefficients = { 0.5, -0.4, 0.3 }, at = 0.6 } end,
+    samples = function()
+        return excitation.samples { t = { 0, 0.7, 1.3, 2 }, M = { 0, 1, -1, 0 }, interpolation = "cubic", period = 2 }
+    end,
+    scripted = function()
+        local pulses = unread(function(t) return t % 1.5 < 0.5 and 2 or 0 end)
+        return excitation.scripted(pulses, { breaks = { 0, 0.5 }, period = 1.5 })
+    end,
+    ["delayed and cut"] = function() return 0.7 * excitation.harmonic { omega = 2 }:delay(0.3):window(0.4, 2.9) end,
+    sampled = function()
+        local start = function() return { sum = 0.3 } end
+        return excitation.sampled(averaging(), { every = 0.3, delay = 0.07, at = 0.1, start = start })
+    end,
+    relay = function()
+        return excitation.relay { on = -0.2, off = 0.3, amplitude = { 1, -0.5 }, of = "velocity", start = "off" }
+    end,
+    delayed = function()
+        return excitation.delayed(function(t, theta, velocity) return -0.4 * velocity end, { by = 0.7 })
+    end,
+}
+
+test("a worker of a sweep gives what the call gives, for each controller and native term with its options", function()
+    for kind, make in pairs(acting) do
+        local M, sys = make(), system(a)
+        local function ask()
+            local run = sys:simulate { M = M, theta0 = 0.4, t_end = 4, dt = 0.5 }
+            local theta, velocity = run:at(3.7)
+            local last = run.events[#run.events].t
+            return { theta = theta, velocity = velocity, M = run.M[7], events = #run.events, last = last }
+        end
+        local here, there = ask(), sweep { over = { x = { 1 } }, workers = 1, run = ask }
+        for name, value in pairs(here) do close(there[name][1], value, kind .. ": " .. name) end
+    end
+end)
+
+-- ---- bristles, and one record read in two ways
+
+test("LuGre under the normal load 2 is the law with Rd, Re, stiffness and damping doubled", function()
+    local function law(by)
+        return friction.lugre { Rd = 0.3 * by, Re = 0.4 * by, speed = 0.2, stiffness = 20 * by, damping = 1 * by }
+    end
+    local function moved(sys) return sys:simulate { M = sine, theta0 = 0.4, t_end = 9, dt = 0.1 } end
+    local loaded = moved(system { I = 1, k = 4, C = 0.1, friction = law(1), normal = 2 })
+    local strong = moved(system { I = 1, k = 4, C = 0.1, friction = law(2) })
+    for _, name in ipairs { "theta", "velocity", "friction", "acceleration" } do
+        close(loaded[name], strong[name], name)
+    end
+    close(loaded:energy().total.dry, strong:energy().total.dry, "dry")
+end)
+
+test("the same record gives the same errors with I or k given, and with a system", function()
+    local function alike(fits, names)
+        for _, name in ipairs(names) do
+            local wanted = fits[1].std_error[name]
+            assert(wanted > 0, name)
+            for i = 2, #fits do near(fits[i].std_error[name] / wanted, 1, 0.1) end
+        end
+    end
+    local truth = system { I = 1, k = 4, C = 0.1, Rd = 0.05 }
+    local free = truth:simulate { theta0 = 1, t_end = 20, dt = 0.05 }
+    local decay = { t = free.t, theta = noisy(free, 1, 1e-3) }
+    alike({ identify { data = decay, k = 4 }, identify { data = decay, I = 1 } }, { "omega0", "zeta", "Rd_over_k" })
+    local names, guess = { "k", "C", "Rd" }, system { I = 1, k = 3.9, C = 0.12, Rd = 0.04 }
+    alike({ identify { data = decay, I = 1, offset = 0 },
+        identify { data = decay, system = guess, free = names } }, names)
+    local run = truth:simulate { M = sine, theta0 = 0.5, t_end = 20, dt = 0.05 }
+    local driven = { t = run.t, theta = noisy(run, 2, 1e-3) }
+    names = { "I", "k", "C", "Rd" }
+    alike({ identify { data = driven, M = sine, free = names },
+        identify { data = driven, M = sine, system = guess:with { I = 1.02 }, free = names } }, names)
+end)
+
+finish()
