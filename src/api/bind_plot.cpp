@@ -304,7 +304,9 @@ std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const R
         from = std::max(from, window[0]);
         to = std::min(to, window[1]);
     }
-    auto drawn = std::make_shared<const motion::Trajectory>(between.drawn(from, to));
+    const motion::Monitor monitor = [](double) { return !lua::interrupt_requested(); };
+    auto drawn = std::make_shared<const motion::Trajectory>(between.drawn(from, to, monitor));
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
     return drawn;
 }

@@ -30,6 +30,7 @@
 #include "files/record1989.hpp"
 #include "files/table.hpp"
 #include "lua/bind.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/options.hpp"
@@ -196,6 +197,7 @@ Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, st
     samples.values.reserve(count);
     std::vector<double> at_once;
     for (std::size_t i = 0; i < count; ++i) {
+        if (i % 1024 == 0 && lua::interrupt_requested()) break;
         at_once.clear();
         between.append_values(from + static_cast<double>(i) * samples.dt, at_once);
         samples.values.push_back(at_once[place]);
@@ -217,6 +219,7 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
         lua::CallState call(L);
         Samples samples =
             samples_of_motion(run, between, static_cast<std::size_t>(place - between.columns().begin()), begin);
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);
         call.check();
         return samples;
     }

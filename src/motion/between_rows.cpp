@@ -102,13 +102,17 @@ double BetweenRows::interpolated(Eigen::Index column, double t) const {
     return std::lerp(run_.rows(after - 1, column), run_.rows(after, column), part);
 }
 
-Trajectory BetweenRows::drawn(double from, double to) const {
+Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
     constexpr std::size_t enough = 100'000;  // times; one more pass may double them
     constexpr double part = 0.381966;        // the golden section: no swing is as long as such parts of all intervals
     const double shortest = 1e-5 * (to - from);
     const std::size_t width = columns_.size();
     std::vector<double> times = first_times(run_, from, to), values;
-    for (const double t : times) append_values(t, values);
+    const auto goes_on = [&](std::size_t i) { return i % 1024 != 0 || monitor(times[i]); };
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (!goes_on(i)) return run_;
+        append_values(times[i], values);
+    }
     const std::vector<double> small = invisible(values, width);
     std::vector<char> straight(times.size(), 0);  // from a time to the next one
     straight.back() = 1;
@@ -116,6 +120,7 @@ Trajectory BetweenRows::drawn(double from, double to) const {
         std::vector<double> more_times, more_values;
         std::vector<char> more_straight;
         for (std::size_t i = 0; i < times.size(); ++i) {
+            if (!goes_on(i)) return run_;
             const auto here = values.begin() + static_cast<std::ptrdiff_t>(i * width);
             more_times.push_back(times[i]);
             more_values.insert(more_values.end(), here, here + static_cast<std::ptrdiff_t>(width));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/excitation.hpp"
+#include "motion/simulate.hpp"
 #include "motion/trajectory.hpp"
 
 namespace dinal::motion {
@@ -23,8 +24,9 @@ public:
     void append_values(double t, std::vector<double>& values) const;
 
     /// The run with other rows: at its events between two times, and so close that straight lines between them look
-    /// like the motion. Other columns are interpolated between the rows of the run.
-    [[nodiscard]] Trajectory drawn(double from, double to) const;
+    /// like the motion. Other columns are interpolated between the rows of the run. The run as it is if the monitor
+    /// says no.
+    [[nodiscard]] Trajectory drawn(double from, double to, const Monitor& monitor) const;
 
 private:
     [[nodiscard]] bool agrees_with_rows(Eigen::Index column) const;
