@@ -489,8 +489,9 @@ std::array<double, 2> identify(double X0, double X1, double X2) {
 template <const text::Call& call, auto amplitude, auto lag>
 int sliding_motion(lua_State* L) {
     TheoryArguments arguments(L, call);
-    const auto [r, friction_ratio, zeta, breakaway_ratio] = arguments.quantities<4>();
-    return arguments.push_results([&, r = r, gamma = friction_ratio, zeta = zeta, Re = breakaway_ratio](std::size_t i) {
+    const auto given = arguments.quantities<4>();
+    return arguments.push_results([&](std::size_t i) {
+        const auto& [r, gamma, zeta, Re] = given;
         if (Re[i] < gamma[i]) {
             arguments.refuse("breakaway_ratio", i, Re[i],
                              fmt::format("must be at least friction_ratio = {}", gamma[i]));
