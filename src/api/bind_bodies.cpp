@@ -433,11 +433,8 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
         part.carried = std::move(carried);
     }
     std::vector<model::Event> events;
-    for (const engine::JointEvent& e : run.run.events) {
-        const bool users = e.where < 0;
-        if (!users && e.where != static_cast<int>(joint)) continue;
-        events.push_back({e.t, e.kind, e.theta, e.M, e.user, e.velocity});
-        if (users && system.named) events.pop_back();
+    for (const model::Event& e : run.run.events) {
+        if (e.where < 0 ? !system.named : e.where == static_cast<int>(joint)) events.push_back(e);
     }
     part.events = motion::Growing<model::Event>(std::move(events));
     for (const model::WantedEvent& wanted : run.drive.events) part.event_names.push_back(wanted.name);
@@ -653,7 +650,7 @@ std::map<std::string, lua::Vector> states_of_bodies(lua_State*, const BodiesRunH
 
 lua::Pushed events_of_bodies(lua_State* L, const BodiesRunHandle& run) {
     const ColumnUnits in(run->system->units);
-    using Event = engine::JointEvent;
+    using model::Event;
     Data data =
         table_of(run->run.events, ListColumn{"t", &Event::t, in.t},
                  ListColumn{"kind", [](const Event& e) { return model::name(e.kind); }},
@@ -767,7 +764,7 @@ int plot_bodies(lua_State* L) {
 std::string text_of_run(lua_State*, const BodiesRunHandle& handle) {
     const BodiesRun& run = *handle;
     std::size_t sticks = 0, slips = 0;
-    for (const engine::JointEvent& e : run.run.events) {
+    for (const model::Event& e : run.run.events) {
         sticks += model::is_stop(e.kind) ? 1 : 0;
         slips += e.kind == model::EventKind::slip ? 1 : 0;
     }

@@ -1,4 +1,5 @@
-// What can happen to the mass: at velocity zero, at a wall, by a controller that switches, or as a user has said.
+// What can happen to a mass, or between two: at velocity zero, at a wall, by a controller that switches, or as a user
+// has said.
 #pragma once
 
 #include <string_view>
@@ -48,6 +49,7 @@ struct Event {
     double theta = 0;
     double M = 0;   ///< the excitation at t, from the right: with k theta it explains the decision
     int user = -1;  ///< of a user's event: which one
+    int where = 0;  ///< the joint whose theta and velocity these are; a relay's body; -1 of a user's event
     double velocity = 0;
 };
 

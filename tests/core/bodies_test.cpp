@@ -127,7 +127,7 @@ Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
 
 /// The same events; those of one moment in any order.
 bool alike(const engine::AssemblyRun& a, const engine::AssemblyRun& b) {
-    const auto same = [](const engine::JointEvent& x, const engine::JointEvent& y) {
+    const auto same = [](const model::Event& x, const model::Event& y) {
         return x.kind == y.kind && x.where == y.where && std::fabs(x.t - y.t) <= 1e-9;
     };
     return std::is_permutation(a.events.begin(), a.events.end(), b.events.begin(), b.events.end(), same);

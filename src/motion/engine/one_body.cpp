@@ -102,10 +102,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
     if (!extras.states.empty()) trajectory.own_names = column_names();
     for (const model::OwnState& state : extras.states) trajectory.own_names.push_back(state.name);
     trajectory.rows = Rows(std::move(run.table));
-    std::vector<model::Event> events;
-    events.reserve(run.events.size());
-    for (const JointEvent& e : run.events) events.push_back({e.t, e.kind, e.theta, e.M, e.user, e.velocity});
-    trajectory.events = Growing<model::Event>(std::move(events));
+    trajectory.events = Growing<model::Event>(std::move(run.events));
     trajectory.outcome = run.outcome;
     trajectory.t_start = run.t_start;
     trajectory.t_stop = run.t_stop;

@@ -26,6 +26,7 @@ namespace dinal::motion::engine {
 
 namespace {
 
+using model::Event;
 using model::EventKind;
 using model::Joint;
 using model::Motion;
@@ -190,7 +191,7 @@ private:
     void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
     void come_again(std::size_t event);
     void tell(EventKind kind, int where, int user = -1);
-    [[nodiscard]] JointEvent event_at(EventKind kind, int where, int user) const;
+    [[nodiscard]] Event event_at(EventKind kind, int where, int user) const;
     bool too_often(int most = most_at_once);
     void echo(double t, int generation);
     bool put_row(double t, double x);
@@ -239,10 +240,10 @@ private:
         double pull = 0;
     };
     std::vector<Arrival> arrivals_;
-    double size_at_stop_ = 0;                         ///< of the torques, where a joint came to slip 0 the last time
-    std::vector<char> crept_;                         ///< of each joint: it has come down to rounding, and may creep
-    std::map<std::size_t, JointEvent> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
-    std::vector<Motion> arrived_;                     ///< of each joint: which way it slid until now; stuck: it did not
+    double size_at_stop_ = 0;                    ///< of the torques, where a joint came to slip 0 the last time
+    std::vector<char> crept_;                    ///< of each joint: it has come down to rounding, and may creep
+    std::map<std::size_t, Event> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
+    std::vector<Motion> arrived_;                ///< of each joint: which way it slid until now; stuck: it did not
     std::vector<int> edge_;          ///< of each joint: the corner that its speed is at, 1 the upper one of its range
     std::vector<char> at_wall_;      ///< of each joint: it begins at a wall, and leaves it
     std::vector<char> leaned_;       ///< of each joint: it came to stand at a wall, which was told
@@ -760,7 +761,7 @@ void Engine::settle_at_limit(std::size_t joint) {
 bool Engine::only_touched(std::size_t joint, Motion way) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
     if (result_.events.empty() || arrivals_[joint].slid == Motion::stuck) return false;
-    JointEvent& last = result_.events.back();
+    Event& last = result_.events.back();
     const double part = (now_.hi - last.t) / pace_;
     if (last.kind != EventKind::stick || last.where != static_cast<int>(joint) || part > briefly) return false;
     const double impulse = std::fabs(asked_[joint].pull - arrivals_[joint].pull) * (2 * std::numbers::pi * part);
@@ -1059,7 +1060,7 @@ void Engine::run() {
     for (const auto& [joint, event] : crept_events_) {  // nothing came that would have moved it
         if (outcome_ != Outcome::reached_end || mode_.friction[joint].creeps == Motion::stuck) continue;
         const auto later = std::upper_bound(result_.events.begin(), result_.events.end(), event,
-                                            [](const JointEvent& a, const JointEvent& b) { return a.t < b.t; });
+                                            [](const Event& a, const Event& b) { return a.t < b.t; });
         result_.events.insert(later, event);
     }
     if (outcome_ == Outcome::reached_end) {
@@ -1077,7 +1078,7 @@ void Engine::run() {
         if (still) outcome_ = for_good ? Outcome::at_rest : Outcome::stuck_at_end;
         if (still && for_good) {
             auto last = std::find_if(result_.events.rbegin(), result_.events.rend(),
-                                     [](const JointEvent& e) { return e.kind == EventKind::stick; });
+                                     [](const Event& e) { return e.kind == EventKind::stick; });
             if (last != result_.events.rend()) last->kind = EventKind::rest;
         }
     }
@@ -1106,8 +1107,8 @@ void Engine::run() {
 /// Of stops and slips that follow each other at once, and lead nowhere, the first one is told.
 void Engine::forget_chatter() {
     constexpr double soon = 1e-6;
-    std::vector<JointEvent>& events = result_.events;
-    const auto follows = [&](const JointEvent& e, const JointEvent& before) {
+    std::vector<Event>& events = result_.events;
+    const auto follows = [&](const Event& e, const Event& before) {
         return e.kind <= EventKind::rest && e.t - before.t <= soon * pace_;
     };
     while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
@@ -1636,11 +1637,11 @@ void Engine::tell(EventKind kind, int where, int user) {
     result_.events.push_back(event_at(kind, where, user));
 }
 
-JointEvent Engine::event_at(EventKind kind, int where, int user) const {
+Event Engine::event_at(EventKind kind, int where, int user) const {
     const std::size_t joint = where < 0 ? 0 : index(where);
     const std::size_t body =
         kind == EventKind::switched || where < 0 ? joint : index(problem_.system.joints[joint].first);
-    JointEvent event{now_.hi, kind, where, user, 0, 0, mechanics_.load(body, here())};
+    Event event{.t = now_.hi, .kind = kind, .M = mechanics_.load(body, here()), .user = user, .where = where};
     event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
     event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
     return event;
@@ -1737,7 +1738,7 @@ bool Engine::may_creep(std::size_t joint) const {
 
 /// What was told to slip right now, and did not. Whether there was such an event.
 bool Engine::take_back_slip(std::size_t joint) {
-    auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const JointEvent& e) {
+    auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == now_.hi;
     });
     if (told == result_.events.rend()) return false;
@@ -2215,12 +2216,12 @@ void Engine::record_turns(double until) {
             segment_.state(x, y);
             const std::optional<double> sampled = sampled_load(i, x);
             const double M = sampled ? *sampled : mechanics_.load(i, {t, Side::at, y});
-            result_.events.push_back({t, EventKind::turn, static_cast<int>(i), -1, y[i], 0, M});
+            result_.events.push_back({.t = t, .theta = y[i], .M = M, .where = static_cast<int>(i)});
         }
         heading_[i] = static_cast<Motion>(way);
     }
     std::stable_sort(result_.events.begin() + told, result_.events.end(),
-                     [](const JointEvent& a, const JointEvent& b) { return a.t < b.t; });
+                     [](const Event& a, const Event& b) { return a.t < b.t; });
 }
 
 // ---- impacts, acts, rows

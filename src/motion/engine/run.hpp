@@ -17,16 +17,6 @@
 
 namespace dinal::motion::engine {
 
-/// An event of a run of several bodies.
-struct JointEvent {
-    double t = 0;
-    model::EventKind kind = model::EventKind::turn;
-    int where = -1;                  ///< the joint; of a relay the body whose M it is in; -1 of a user's event
-    int user = -1;                   ///< of a user's event: which one
-    double theta = 0, velocity = 0;  ///< of the joint
-    double M = 0;                    ///< on its first body
-};
-
 /// Where a run may be taken up again.
 struct Carry {
     std::vector<double> y;
@@ -44,7 +34,7 @@ struct AssemblyRun {
     /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states;
     /// accelerations of the bodies, unless joined_elsewhere.
     Growing<double> table;
-    std::vector<JointEvent> events;
+    std::vector<model::Event> events;
     model::Outcome outcome = model::Outcome::reached_end;
     double t_start = 0, t_stop = 0;
     double gap = 0;  ///< the longest between two looks at a user's function of the time
