@@ -24,7 +24,7 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
-#include "motion/engine/run.hpp"
+#include "motion/engine/part.hpp"
 #include "plots/run_figure.hpp"
 #include "source/describe.hpp"
 #include "terminal/progress.hpp"
@@ -348,55 +348,6 @@ void name_functions(lua::CallState& call, const model::Assembly& system, const e
 
 namespace {
 
-class LegOfPart final : public motion::Leg {
-public:
-    LegOfPart(const engine::JointLeg& leg, std::size_t joint) : leg_(leg), joint_(joint) {}
-    [[nodiscard]] double length() const override { return leg_.length(); }
-    [[nodiscard]] double since_start(double t) const override { return leg_.since_start(t); }
-    [[nodiscard]] motion::Work work(double since_start) const override { return leg_.work(joint_, since_start); }
-
-private:
-    const engine::JointLeg& leg_;
-    std::size_t joint_;
-};
-
-/// A course through the motion of one body or link.
-class PartCourse final : public motion::Course {
-public:
-    PartCourse(const model::Oscillator& system, BodiesRunHandle run, std::size_t joint)
-        : Course(system), run_(std::move(run)), joint_(joint) {}
-    [[nodiscard]] text::Expected<model::State> at(double t) const override {
-        const auto& history = *run_->run.history;
-        if (t > history.whole_until()) {
-            return text::Error{
-                "only part of the motion was kept, for lack of memory: ask for rows, or start a run there"};
-        }
-        const std::vector<double> y = history.at(t);
-        const model::Joint& joint = run_->system->joints[joint_];
-        const std::size_t n = run_->system->bodies.size(), a = static_cast<std::size_t>(joint.first);
-        model::State state{y[a], y[n + a]};
-        if (joint.second >= 0) {
-            state.theta -= y[static_cast<std::size_t>(joint.second)];
-            state.velocity -= y[n + static_cast<std::size_t>(joint.second)];
-        }
-        return state;
-    }
-    [[nodiscard]] std::vector<double> states_at(double t) const override {
-        const std::vector<double> y = run_->run.history->at(t);
-        return {y.begin() + static_cast<std::ptrdiff_t>(2 * run_->system->bodies.size()), y.end()};
-    }
-    [[nodiscard]] double whole_until() const override { return run_->run.history->whole_until(); }
-    [[nodiscard]] std::vector<double> piece_ends() const override { return run_->run.history->ends(); }
-    void legs(const std::function<void(const motion::Leg&)>& told) const override {
-        run_->run.history->legs_since(run_->run.t_start,
-                                      [&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
-    }
-
-private:
-    BodiesRunHandle run_;
-    std::size_t joint_;
-};
-
 /// Whether it is known between the rows. A run that ended where it began has no stretch that takes memory.
 bool keeps_motion(const engine::AssemblyRun& run) {
     return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
@@ -409,64 +360,32 @@ std::size_t first_column(const model::Assembly& system, std::size_t joint) {
                           : engine::columns_of_body * n + engine::columns_of_link * (joint - n));
 }
 
-motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint) {
-    const BodiesRun& run = *whole;
+/// The joint as a system of one body; none where the motion between the rows is not known.
+std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t joint) {
+    if (!keeps_motion(run.run)) return {};
+    const model::Joint& own = run.system->joints[joint];
+    model::OscillatorParameters parameters = parameters_of(*run.system, joint);
+    parameters.friction = own.friction.law, parameters.spring = own.spring, parameters.walls = own.walls;
+    const auto made = model::Oscillator::make(parameters);
+    return made ? std::optional(made.value()) : std::nullopt;
+}
+
+motion::Trajectory trajectory_of(const BodiesRun& run, std::size_t joint) {
     const model::Assembly& system = *run.system;
     const bool link = system.is_link(joint);
-    motion::Trajectory part;
-    const std::size_t own = link ? engine::columns_of_link : engine::columns_of_body, rows = run.run.table.size();
-    const std::size_t states = system.named ? 0 : run.drive.states.size();
-    motion::Growing<double> table(rows, 1 + own + states);
-    for (std::size_t c = 0; c < 1 + own + states; ++c) {
+    motion::Trajectory part = engine::part_of(system, run.drive, run.run, joint, seen_alone(run, joint));
+    if (part.rough) part.rough->other_integrators = false;
+    if (link) {
+        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
+        part.computed = false;
+    }
+    const std::size_t columns = part.names().size(), rows = run.run.table.size();
+    motion::Growing<double> table(rows, columns);
+    for (std::size_t c = 0; c < columns; ++c) {
         const auto from = run.run.table.column(c == 0 ? 0 : first_column(system, joint) + c - 1);
         std::copy(from.begin(), from.end(), table.writable() + c * rows);
     }
     part.rows = motion::Rows(std::move(table));
-    if (link) {
-        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
-        part.computed = false;
-    } else if (states > 0) {
-        part.own_names = motion::column_names();
-        for (const model::OwnState& state : run.drive.states) part.own_names.push_back(state.name);
-        auto carried = std::make_shared<motion::Carried>();
-        carried->states.assign(states, 0);
-        part.carried = std::move(carried);
-    }
-    std::vector<model::Event> events;
-    for (const model::Event& e : run.run.events) {
-        if (e.where < 0 ? !system.named : e.where == static_cast<int>(joint)) events.push_back(e);
-    }
-    part.events = motion::Growing<model::Event>(std::move(events));
-    for (const model::WantedEvent& wanted : run.drive.events) part.event_names.push_back(wanted.name);
-    part.outcome = run.run.outcome;
-    part.contradiction = run.run.contradiction;
-    part.t_start = run.run.t_start, part.t_stop = run.run.t_stop;
-    part.gap = run.run.gap;
-    part.rough = run.run.rough;
-    part.noise = run.run.noise;
-    if (part.rough) part.rough->other_integrators = false;
-    const auto first = static_cast<std::size_t>(system.joints[joint].first);
-    part.initial = {run.drive.theta0[first], run.drive.velocity0[first]};
-    const auto& carry = *run.run.carry;
-    part.state_at_stop = {carry.y[first], carry.y[system.bodies.size() + first]};
-    if (link) {
-        const auto second = static_cast<std::size_t>(system.joints[joint].second);
-        part.initial.theta -= run.drive.theta0[second], part.initial.velocity -= run.drive.velocity0[second];
-        part.state_at_stop.theta -= carry.y[second];
-        part.state_at_stop.velocity -= carry.y[system.bodies.size() + second];
-    }
-    part.motion_at_stop = carry.mode.rubs[joint] != 0 ? carry.mode.friction[joint].way : model::Motion::forward;
-    part.began_stuck = part.events.size() == 0 ? part.motion_at_stop == model::Motion::stuck
-                                               : part.events[0].kind == model::EventKind::slip;
-    part.on_belt = system.named || !run.drive.belts[joint].components().empty();
-    if (system.joints[joint].walls) part.restitution = system.joints[joint].walls->restitution;
-    if (keeps_motion(run.run)) {
-        model::OscillatorParameters parameters = parameters_of(system, joint);
-        parameters.friction = system.joints[joint].friction.law, parameters.spring = system.joints[joint].spring;
-        parameters.walls = system.joints[joint].walls;
-        auto oscillator = model::Oscillator::make(parameters);
-        if (oscillator) part.course = std::make_shared<PartCourse>(oscillator.value(), whole, joint);
-    }
     return part;
 }
 
@@ -497,7 +416,7 @@ RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     run->parts.resize(run->system->joints.size());
     if (RunHandle known = run->parts[joint].lock()) return known;
     auto made = std::make_shared<Run>();
-    made->trajectory = trajectory_of(run, joint);
+    made->trajectory = trajectory_of(*run, joint);
     made->whole = run, made->joint = joint;
     made->units = run->system->units;
     run->parts[joint] = made;
@@ -519,7 +438,7 @@ std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, 
 int push_bodies_run(lua_State* L, BodiesRunHandle run) {
     if (!run->system->named) {
         auto whole = std::make_shared<Run>();
-        whole->trajectory = trajectory_of(run, 0);
+        whole->trajectory = trajectory_of(*run, 0);
         whole->whole = run;
         whole->units = run->system->units;
         push_run(L, std::move(whole));

@@ -1,0 +1,118 @@
+#include "motion/engine/part.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace dinal::motion::engine {
+
+namespace {
+
+class PartLeg final : public Leg {
+public:
+    PartLeg(const JointLeg& leg, std::size_t joint) : leg_(leg), joint_(joint) {}
+    [[nodiscard]] double length() const override { return leg_.length(); }
+    [[nodiscard]] double since_start(double t) const override { return leg_.since_start(t); }
+    [[nodiscard]] Work work(double since_start) const override { return leg_.work(joint_, since_start); }
+
+private:
+    const JointLeg& leg_;
+    std::size_t joint_;
+};
+
+/// Which numbers of a system's state make the state of a joint: that of its first body less that of its second.
+struct Place {
+    std::size_t bodies, joint, first;
+    std::optional<std::size_t> second;
+
+    Place(const model::Assembly& system, std::size_t which)
+        : bodies(system.bodies.size()), joint(which), first(static_cast<std::size_t>(system.joints[which].first)) {
+        if (system.is_link(which)) second = static_cast<std::size_t>(system.joints[which].second);
+    }
+    [[nodiscard]] double difference(const std::vector<double>& values, std::size_t from) const {
+        return second ? values[from + first] - values[from + *second] : values[from + first];
+    }
+    [[nodiscard]] model::State state(const std::vector<double>& y) const {
+        return {difference(y, 0), difference(y, bodies)};
+    }
+};
+
+class PartCourse final : public Course {
+public:
+    PartCourse(const model::Oscillator& seen, const Place& place, const AssemblyRun& run)
+        : Course(seen), place_(place), t_start_(run.t_start), history_(run.history) {}
+    [[nodiscard]] text::Expected<model::State> at(double t) const override {
+        if (t > history_->whole_until()) {
+            return text::Error{fmt::format(
+                "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
+                history_->whole_until())};
+        }
+        model::State state = place_.state(history_->at(t));
+        // Beside a wall the kept motion has an error of rounding.
+        if (const auto& walls = system().walls()) state.theta = std::clamp(state.theta, walls->lower, walls->upper);
+        return state;
+    }
+    [[nodiscard]] std::vector<double> states_at(double t) const override {
+        const std::vector<double> y = history_->at(t);
+        return {y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies), y.end()};
+    }
+    [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
+    [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
+    void legs(const std::function<void(const Leg&)>& told) const override {
+        history_->legs_since(t_start_, [&](const JointLeg& leg) { told(PartLeg(leg, place_.joint)); });
+    }
+    [[nodiscard]] std::size_t bytes() const override { return history_->bytes(); }
+
+private:
+    Place place_;
+    double t_start_;
+    std::shared_ptr<const History> history_;
+};
+
+model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
+    if (mode.holds(joint)) return model::Motion::stuck;
+    return mode.rubs[joint] != 0 ? mode.friction[joint].way : model::Motion::forward;
+}
+
+}  // namespace
+
+Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+                   const std::optional<model::Oscillator>& seen) {
+    const Place place(system, joint);
+    Trajectory part;
+    if (!system.named) {
+        if (!drive.states.empty()) part.own_names = column_names();
+        for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
+        const auto left = std::make_shared<Left>(run.carry);
+        left->states.resize(drive.states.size());  // behind them are those of bristles
+        part.carried = left;
+    }
+    std::vector<model::Event> events;
+    for (const model::Event& e : run.events) {
+        if (e.where < 0 ? !system.named : e.where == static_cast<int>(joint)) events.push_back(e);
+    }
+    part.events = Growing<model::Event>(std::move(events));
+    for (const model::WantedEvent& wanted : drive.events) part.event_names.push_back(wanted.name);
+    part.outcome = run.outcome;
+    part.contradiction = run.contradiction;
+    part.rough = run.rough;
+    part.gap = run.gap;
+    part.noise = run.noise;
+    part.jumps = run.jumps;
+    part.located = run.located;
+    part.t_start = run.t_start;
+    part.t_stop = run.t_stop;
+    part.initial = {place.difference(drive.theta0, 0), place.difference(drive.velocity0, 0)};
+    part.state_at_stop = place.state(run.carry->y);
+    part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
+    part.began_stuck = joint == 0                ? run.began_stuck
+                       : part.events.size() == 0 ? part.motion_at_stop == model::Motion::stuck
+                                                 : part.events[0].kind == model::EventKind::slip;
+    part.on_belt = system.named || !drive.belts[joint].components().empty();
+    if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
+    if (seen) part.course = std::make_shared<PartCourse>(*seen, place, run);
+    return part;
+}
+
+}  // namespace dinal::motion::engine

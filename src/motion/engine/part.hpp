@@ -1,0 +1,24 @@
+// A run as seen from one of its joints: a body against the ground, or a link.
+#pragma once
+
+#include <optional>
+
+#include "motion/engine/run.hpp"
+
+namespace dinal::motion::engine {
+
+/// What a run of one body leaves to the run that goes on from there.
+struct Left final : Carried {
+    explicit Left(std::shared_ptr<const Carry> from) : carry(std::move(from)) {
+        states.assign(carry->y.begin() + 2, carry->y.end());
+    }
+    std::shared_ptr<const Carry> carry;
+};
+
+/// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
+/// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
+/// the one body of a system without names.
+Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+                   const std::optional<model::Oscillator>& seen);
+
+}  // namespace dinal::motion::engine
