@@ -78,6 +78,13 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     run = block:simulate { M = function(t) return 1e-3 * math.min(t, 1) end, t_end = 1 }
     near(run.friction[1001], -(1 - math.exp(-1000 * run.theta[1001])), 1e-10)
     equal(#run.events, 0)
+    -- at(t) gives the states of the user, not those of bristles
+    run = system { I = 1, k = 2, friction = lugre }:simulate { theta0 = 0.5, t_end = 1.2,
+        states = { path = { rate = function(_, _, v) return v end } } }
+    local theta, _, states = run:at(0.7)
+    near(states.path, theta - 0.5, 1e-12)
+    states.path = nil
+    equal(next(states), nil)
     raises_here(function() system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } } end, "only system{ ... } supports")
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)

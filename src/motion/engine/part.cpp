@@ -40,8 +40,8 @@ struct Place {
 
 class PartCourse final : public Course {
 public:
-    PartCourse(const model::Oscillator& seen, const Place& place, const AssemblyRun& run)
-        : Course(seen), place_(place), t_start_(run.t_start), history_(run.history) {}
+    PartCourse(const model::Oscillator& seen, const Place& place, std::size_t states, const AssemblyRun& run)
+        : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.history) {}
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
             return text::Error{fmt::format(
@@ -55,7 +55,8 @@ public:
     }
     [[nodiscard]] std::vector<double> states_at(double t) const override {
         const std::vector<double> y = history_->at(t);
-        return {y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies), y.end()};
+        const auto first = y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies);
+        return {first, first + static_cast<std::ptrdiff_t>(states_)};  // behind them are those of bristles
     }
     [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
@@ -66,6 +67,7 @@ public:
 
 private:
     Place place_;
+    std::size_t states_;
     double t_start_;
     std::shared_ptr<const History> history_;
 };
@@ -111,7 +113,7 @@ Trajectory part_of(const model::Assembly& system, const Drive& drive, const Asse
                                                  : part.events[0].kind == model::EventKind::slip;
     part.on_belt = system.named || !drive.belts[joint].components().empty();
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
-    if (seen) part.course = std::make_shared<PartCourse>(*seen, place, run);
+    if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
     return part;
 }
 
