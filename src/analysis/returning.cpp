@@ -97,7 +97,7 @@ bool tell_period(const SteadyQuestion& question, const Moment& moment, double st
 }
 
 /// One period more of a run that has settled.
-bool tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, SteadyMotion& motion,
+void tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, SteadyMotion& motion,
                       const motion::Monitor& monitor) {
     constexpr double rows = 400;
     Trajectory end;
@@ -109,12 +109,11 @@ bool tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, S
                              motion::Grid::every(motion.period / rows),
                              motion::integrator_for(question.system, question.excitation, question.extras), monitor, {},
                              question.extras);
-    if (!run || !model::is_whole(run->outcome)) return false;
+    if (!run || !model::is_whole(run->outcome)) return;
     motion.outcome = run->outcome;
     tell_of_run(question, *run, motion);
     motion.stable = true;  // a run came to it
     motion.settled = std::make_shared<const Trajectory>(std::move(run).value());
-    return true;
 }
 
 class OneBodySearch final : public ReturnSearch {
@@ -133,24 +132,7 @@ private:
         return tell_period(one_, moment, start, facts_, monitor_, rows);
     }
 
-    void tell_settled(const Runs::Run& so_far) override {
-        if (!tell_next_period(one_, so_far, facts_, monitor_)) return;
-        facts_.symmetric = facts_.periods == 1 && !one_.is_timeless() && is_opposite_half_a_period_later();
-    }
-
-    [[nodiscard]] bool is_opposite_half_a_period_later() const {
-        const auto& rows = facts_.settled->rows;
-        const double omega = one_.system.has_spring() ? one_.system.natural_frequency() : 1;
-        const Eigen::Index half = rows.rows() / 2;
-        double most = 0, size = 0;
-        for (Eigen::Index i = 0; i < half; ++i) {
-            size = std::max({size, std::fabs(rows(i, 1)), std::fabs(rows(i, 2)) / omega});
-            most = std::max(
-                {most, std::fabs(rows(i, 1) + rows(i + half, 1)), std::fabs(rows(i, 2) + rows(i + half, 2)) / omega});
-        }
-        constexpr double alike = 1e-7;
-        return most <= alike * size;
-    }
+    void tell_settled(const Runs::Run& so_far) override { tell_next_period(one_, so_far, facts_, monitor_); }
 
     void tell_rest(const Runs::Run& run, bool /*stands*/) override {
         const Moment now = Runs::at_stop(run);

@@ -62,6 +62,10 @@ model::WantedEvent passage(const Chart& chart, const Returns::Section& section, 
             .stop = true};
 }
 
+double size_of_step(const VectorXd& step) {
+    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
 bool operator==(const HeldMode& a, const HeldMode& b) {
@@ -249,13 +253,14 @@ Returns::Return Returns::arrival(const Moment& from) {
     return sum;
 }
 
-std::optional<Eigen::MatrixXd> Returns::derivative(const VectorXd& at, const HeldMode& mode, int returns, int order) {
+std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const HeldMode& mode, int returns,
+                                                       int order) {
     const Index n = at.size();
     Eigen::MatrixXd to_place = Eigen::MatrixXd::Zero(n, units_.size());
     for (Index k = 0; k < units_.size(); ++k) to_place.col(k) = place(VectorXd::Unit(units_.size(), k));
     const Eigen::MatrixXd allowed = runs_.allowed(mode, units_.size());
-    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, n);
-    if (allowed.cols() == 0) return D;
+    Derivative found{Eigen::MatrixXd::Zero(n, n)};
+    if (allowed.cols() == 0) return found;
     // Orthonormal among places, of those directions that keep the section as well.
     const algebra::Basis basis = algebra::orthonormal_basis(to_place * allowed);
     const double h = order == 2 ? 1e-5 : 3e-4;
@@ -265,14 +270,15 @@ std::optional<Eigen::MatrixXd> Returns::derivative(const VectorXd& at, const Hel
             const Return ahead = (*this)(at + step * direction, mode, returns);
             const Return behind = (*this)(at - step * direction, mode, returns);
             if (!ahead.finished || !behind.finished) return {};
+            found.bend = std::max(found.bend, size_of_step(ahead.to + behind.to - 2 * at) / (2 * step));
             return (ahead.to - behind.to) / (2 * step);
         };
         const auto near = slope(h);
         const auto far = order == 2 ? near : slope(2 * h);
         if (!near || !far) return {};
-        D += (order == 2 ? *near : VectorXd((4 * *near - *far) / 3)) * direction.transpose();
+        found.by_place += (order == 2 ? *near : VectorXd((4 * *near - *far) / 3)) * direction.transpose();
     }
-    return D;
+    return found;
 }
 
 void Returns::once(const Moment& from, Return& sum) {
@@ -310,6 +316,16 @@ void note_family(SteadyMotion& motion) {
     if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
 }
 
+bool are_opposite(const VectorXd& y, const VectorXd& later, Index bodies, double period) {
+    VectorXd units = VectorXd::Ones(2 * bodies);
+    units.tail(bodies).fill(2 * std::numbers::pi / period);
+    const auto size = [&](const VectorXd& of) {
+        return of.head(2 * bodies).cwiseQuotient(units).cwiseAbs().maxCoeff();
+    };
+    constexpr double alike = 1e-7;
+    return size(y + later) <= alike * size(y);
+}
+
 namespace {
 
 /// The longest dead time of a controller.
@@ -328,10 +344,6 @@ double shortest_sampling(const model::Excitation& excitation) {
             least = std::min(least, sampled->every);
     }
     return least;
-}
-
-double size_of_step(const VectorXd& step) {
-    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
 }
 
 /// The sizes of the greatest angle or velocity.
@@ -433,7 +445,7 @@ private:
     std::optional<Closed> newton(const Return& from, int m, double farthest = 1) {
         VectorXd x = from.to;
         std::optional<Closed> best;
-        std::optional<Eigen::MatrixXd> D;
+        std::optional<Returns::Derivative> D;
         constexpr int most = 14;
         for (int i = 0; i < most; ++i) {
             const Return there = map_(x, from.mode, m);
@@ -450,7 +462,7 @@ private:
                 maps_ += 2 * m * static_cast<int>(x.size());
                 if (!D) return good(best);
             }
-            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - *D;
+            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - D->by_place;
             const VectorXd step = algebra::solve_shortest(left, off);
             if (!step.allFinite()) return good(best);
             x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
@@ -723,6 +735,10 @@ private:
         facts.residual = off(m, 0);
         if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
         s_.tell_settled(run_);
+        if (timeless_ || facts.periods != 1 || s_.chart_.any_goes_round()) return;
+        const double now = run_.t_stop;
+        const Runs::Run half = s_.runs_.go_on(run_.carry, now, now + facts.period / 2, motion::Grid::none());
+        facts.symmetric = are_opposite(Runs::at_stop(run_).y, Runs::at_stop(half).y, s_.n(), facts.period);
     }
 
     /// A motion that beats is as large in the first half as in the second.
@@ -847,7 +863,7 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
     std::vector<std::complex<double>> multipliers;
-    if (D) multipliers = multipliers_of(*D);
+    if (D) multipliers = multipliers_of(D->by_place);
     if (!multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
     const bool forced = question().repeats.period > 0;
     facts_.periods = forced ? found.returns : 1;
@@ -856,8 +872,20 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
     facts_.stable = true;
     facts_.residual = found.residual;
     facts_.multipliers = std::move(multipliers);
-    note_family(facts_);
-    return tells(map.moment(found.x, found.mode), map.start());
+    const bool alone = forced && !chart_.any_goes_round();
+    constexpr double smooth = 0.01, differences = 1e-5;
+    if (alone && D && D->bend < smooth && contracts(question())) {
+        facts_.unique = miss_one(facts_.multipliers) > differences;
+    } else {
+        note_family(facts_);
+    }
+    const Moment moment = map.moment(found.x, found.mode);
+    if (!tells(moment, map.start())) return false;
+    if (!alone || facts_.periods != 1) return true;
+    const double middle = map.start() + facts_.period / 2;
+    const Runs::Run half = runs_.run(moment, map.start(), middle, motion::Grid::none(), false);
+    facts_.symmetric = are_opposite(moment.y, Runs::at_stop(half).y, n(), facts_.period);
+    return true;
 }
 
 void ReturnSearch::search() {

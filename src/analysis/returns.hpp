@@ -119,9 +119,14 @@ public:
     [[nodiscard]] Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns = 1);
     /// The first return after a moment that need not be one.
     [[nodiscard]] Return arrival(const Moment& from);
-    /// D of the map of so many returns, by differences of this order in what the mode allows.
-    [[nodiscard]] std::optional<Eigen::MatrixXd> derivative(const Eigen::VectorXd& at, const HeldMode& mode,
-                                                            int returns, int order);
+    struct Derivative {
+        Eigen::MatrixXd by_place;
+        double bend = 0;  ///< by how much the slopes to both sides differ from their mean
+    };
+    /// D of the map of so many returns at a place to which they lead back, by differences of this order in what the
+    /// mode allows.
+    [[nodiscard]] std::optional<Derivative> derivative(const Eigen::VectorXd& at, const HeldMode& mode, int returns,
+                                                       int order);
     [[nodiscard]] double start() const { return start_; }
 
 private:
@@ -148,6 +153,8 @@ inline constexpr double largest_stable = 1 + 1e-5;  ///< multiplier
 std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative);
 /// A motion beside which others are neutral is not the only one.
 void note_family(SteadyMotion& motion);
+/// The second state is the opposite of the first, of so many bodies, half a period later.
+bool are_opposite(const Eigen::VectorXd& y, const Eigen::VectorXd& later, Eigen::Index bodies, double period);
 
 /// Of its range, the place of a section: off the middle, where many motions have an end of something.
 inline constexpr double section_at = 0.42;

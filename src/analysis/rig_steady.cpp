@@ -298,6 +298,8 @@ public:
             say("From other starts {} was seen.", text::counted(others, "other motion"));
         } else if (!facts.unique.has_value() && facts.status == SteadyStatus::steady) {
             say("8 other starts led to no other motion, which is no proof.");
+        } else if (facts.unique.value_or(false)) {
+            say("No other steady motion exists.");
         }
         return std::move(sentences_);
     }

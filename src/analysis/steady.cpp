@@ -163,7 +163,7 @@ private:
         const int maps = answer_.maps;
         answer_ = facts_of(question_, map, last, periods, half);
         answer_.maps = maps;
-        answer_.symmetric = half || (symmetric_ && periods == 1 && is_symmetric(last.x, last.size));
+        answer_.symmetric = half || (periods == 1 && is_symmetric(last.x, last.size));
         if (!last.step.moved) {
             answer_.rest = rest_of(question_, last.x[0]);
             if (answer_.rest.first < answer_.rest.second) answer_.unique = false;

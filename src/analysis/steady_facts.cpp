@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/drive.hpp"
+#include "model/controller.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {
@@ -38,16 +39,10 @@ std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
     return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};
 }
 
-/// By how much this multiplier misses 1, in one period or in some: others beside the motion are periodic, too, where it
-/// does not.
-double misses_one(const std::complex<double>& multiplier) {
-    double least = std::abs(multiplier - 1.0);
-    constexpr double far = 1e-3;  // from the unit circle, on which a disturbance stays
-    constexpr int most = 32;
-    if (std::fabs(std::abs(multiplier) - 1) > far) return least;
-    std::complex<double> power = multiplier;
-    for (int n = 2; n <= most; ++n) least = std::min(least, std::abs((power *= multiplier) - 1.0));
-    return least;
+/// The torque against the motion does not fall as the motion grows.
+bool is_monotone(const model::Friction& law, const model::Spring& spring, const std::optional<model::Walls>& walls) {
+    const auto even = [&law](Motion way) { return law.holding(way) == law.sliding(way, 0); };
+    return spring.none() && !walls && !law.depends_on_speed() && even(Motion::forward) && even(Motion::backward);
 }
 
 /// How far from here, this way, the springs pull back with no more than friction can hold through all of the period.
@@ -90,10 +85,32 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
 }  // namespace
 
 bool contracts(const SteadyQuestion& question) {
-    const model::Lowered system(question.system);
-    return !system.has_remainder() && !question.excitation.has_feedback() && !question.system.walls() &&
-           system.holding(Motion::forward) == system.braking(Motion::forward) &&
-           system.holding(Motion::backward) == -system.braking(Motion::backward);
+    const model::Oscillator& system = question.system;
+    return is_monotone(system.friction(), system.spring(), system.walls()) && !question.excitation.has_feedback();
+}
+
+bool contracts(const RigQuestion& question) {
+    const motion::engine::Drive& drive = question.drive;
+    const auto asks = [](const model::Excitation& of) { return of.has_feedback() || model::has_memory(of); };
+    const auto& joints = question.system->joints;
+    return drive.states.empty() && drive.events.empty() && !asks(drive.base) &&
+           std::none_of(drive.loads.begin(), drive.loads.end(), asks) &&
+           std::none_of(drive.belts.begin(), drive.belts.end(), asks) &&
+           std::all_of(joints.begin(), joints.end(), [](const model::Joint& joint) {
+               return joint.friction.is_constant() && is_monotone(joint.friction.law, joint.spring, joint.walls);
+           });
+}
+
+double miss_one(const std::vector<std::complex<double>>& multipliers) {
+    double least = model::never;
+    constexpr double far = 1e-3;  // from the unit circle, on which a disturbance stays
+    constexpr int most = 32;
+    for (const std::complex<double>& multiplier : multipliers) {
+        const bool stays = std::fabs(std::abs(multiplier) - 1) <= far;
+        std::complex<double> power = 1;
+        for (int n = 1; n <= (stays ? most : 1); ++n) least = std::min(least, std::abs((power *= multiplier) - 1.0));
+    }
+    return least;
 }
 
 bool is_alike_both_ways(const SteadyQuestion& question) {
@@ -133,7 +150,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     const auto& m = motion.multipliers;
     motion.stable = !step.moved || (step.differentiable && std::max(std::abs(m[0]), std::abs(m[1])) <= 1 + slack);
     if (contracting && step.moved && step.differentiable && !step.on_edge) {
-        motion.unique = std::min(misses_one(m[0]), misses_one(m[1])) > (step.stuck > 0 ? kept_within : slack);
+        motion.unique = miss_one(m) > (step.stuck > 0 ? kept_within : slack);
     }
     motion.symmetric = half;
     return motion;

@@ -4,13 +4,20 @@
 #include <utility>
 
 #include "analysis/fixed_point.hpp"
+#include "analysis/returns.hpp"
 #include "analysis/steady.hpp"
 
 namespace dinal::analysis {
 
-/// Sliding and holding torque are the same each way, there are no walls, and M does not depend on the motion: the map
-/// brings no two states farther apart, so there is one motion, or a family of them.
+/// Sliding and holding torque are the same each way, there are no walls, and M, belt and base depend on the time alone:
+/// the map brings no two states farther apart, so there is one motion, or a family of them.
 bool contracts(const SteadyQuestion& question);
+/// The same of several bodies, as the energy of the difference of two motions cannot grow in any joint.
+bool contracts(const RigQuestion& question);
+
+/// By how much these multipliers miss 1, in one period or in some: others beside the motion are periodic, too, where
+/// they do not.
+double miss_one(const std::vector<std::complex<double>>& multipliers);
 
 /// Half a period later everything is the same the other way round: friction, springs, walls and M.
 bool is_alike_both_ways(const SteadyQuestion& question);

@@ -239,8 +239,8 @@ constexpr lua::Member steady_members[] = {
       DINAL_STEADY "print(s.stable)  --> true"}},
     {lua::a_value<SteadyHandle, steady_unique>,
      {"s.unique -> string or false",
-      "\"proven\": no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and "
-      "an M of time alone. \"not seen\": sixteen other starts led to no other. false: others exist, in s.others or "
+      "\"proven\": no other periodic motion exists; this is proven for linear springs with Re = Rd, no walls and "
+      "M, belt and base of time alone. \"not seen\": sixteen other starts led to no other. false: others exist, in s.others or "
       "as a family.",
       DINAL_STEADY "print(s.unique)  --> proven"}},
     {lua::a_kept_value<SteadyHandle, steady_others>,

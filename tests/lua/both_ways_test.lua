@@ -316,9 +316,6 @@ local endless = "event that bounces endlessly"
 local groups = { ["laws of several"] = varying, acting = { "event", "event that acts", "event that stops" },
     states = { "state idle", "state acting" }, springs = { "spring.polynomial", "a spring in Lua" },
     walls = { "walls of restitution 0", "walls of restitution 0.7" },
-    symmetric = { "no dry friction", "Coulomb with Re = Rd", "Coulomb with Re above Rd", "Stribeck", "friction.table",
-        "a law in Lua", "spring.polynomial", "feedback", "M that is read", "M that is not read",
-        "sampled with memory", "delayed" },
     ["constant laws"] = {}, ["not endless"] = {}, steady = {} }
 local rigs = {}
 for _, kind in ipairs(varying) do rigs[kind] = true end
@@ -383,7 +380,6 @@ local different = {
     ["energy of the body: half_cycles, walls, base, normal constant"] = cut_elsewhere,
     ["steady: line explain, steady"] = writers,
     ["steady: rest, not endless"] = "of several bodies the field rest raises, where nil would say that there is none",
-    ["steady: unique, Coulomb with Re = Rd, no dry friction"] = "uniqueness is proven for one body only",
     ["identify: refused"] = "identify takes one body",
     ["response: branch, constant laws"] = "branches are followed for one body only",
     ["response: refused, laws of several"] =
@@ -394,8 +390,6 @@ local different = {
         "defect: a body that leans at a wall counts as stuck as system{...}, and not as the only one",
     ["cycle: amplitude change drift middle period since steady stops stuck, walls of restitution 0.7"] =
         "defect: the cycle of the only body counts less as stuck, and from some starts is not found",
-    ["steady: symmetric, symmetric"] =
-        "defect: of several bodies symmetric is false, where it has not been looked at",
     ["bifurcation: refused, event that bounces endlessly"] = blamed,
     ["continue: outcome, event that bounces endlessly"] = blamed,
     ["fields of the run: outcome, event that bounces endlessly"] = blamed,

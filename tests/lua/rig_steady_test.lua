@@ -32,7 +32,9 @@ test("a chain without friction under a sine: its closed form", function()
     near(s.period, 2 * math.pi / 1.3, 1e-15)
     equal(#s.multipliers, 4)
     equal(s.stable, true)
-    equal(s.unique, "not seen")
+    equal(s.unique, "proven")
+    equal(s.symmetric, true)
+    says(s, "No other steady motion exists.")
     near(s.a.mean, 0, 1e-12)
     -- the determinant of a multiplier matrix is exp(-C/I T)
     local product = 1
@@ -56,6 +58,22 @@ test("a chain that rubs: the motion of a long run, with all that sticks", functi
     end
     assert(s.a.stops > 0 and s.a.stuck > 0 and s.a.stuck < 1)
     assert(s.multipliers[1].abs < 1)
+end)
+
+test("of several bodies, too, a motion is proven to be the only one where none can come apart from it", function()
+    local M = { a = sine(1.3) }
+    local even, belt = chain(0.2):steady { M = M }, chain(0.2):steady { M = M, belt = { a = 0.1 } }
+    equal(even.unique, "proven")
+    equal(even.symmetric, true)
+    equal(#even.others, 0)
+    equal(belt.unique, "proven")
+    equal(belt.symmetric, false)
+    equal(chain(0.3):steady { M = M }.unique, "not seen")
+    local fed = { a = sine(1.3) + excitation.scripted(function(t, theta) return -0.1 * theta.a end) }
+    equal(chain(0.2):steady { M = fed, omega = 1.3 }.unique, "not seen")
+    local free = system { bodies = { a = { I = 1, k = 1.1 }, b = { I = 1, k = 3 } } }:steady { M = { a = sine(1.3) } }
+    equal(free.unique, "proven") -- no natural frequency is a multiple of that of M
+    equal(system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 6.76 } } }:steady { M = { a = sine(1.3) } }.unique, false)
 end)
 
 test("a drill string sticks and slips while it goes round", function()
