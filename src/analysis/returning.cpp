@@ -97,7 +97,7 @@ bool tell_period(const SteadyQuestion& question, const Moment& moment, double st
 }
 
 /// One period more of a run that has settled.
-void tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, SteadyMotion& motion,
+bool tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, SteadyMotion& motion,
                       const motion::Monitor& monitor) {
     constexpr double rows = 400;
     Trajectory end;
@@ -109,11 +109,12 @@ void tell_next_period(const SteadyQuestion& question, const Runs::Run& so_far, S
                              motion::Grid::every(motion.period / rows),
                              motion::integrator_for(question.system, question.excitation, question.extras), monitor, {},
                              question.extras);
-    if (!run || !model::is_whole(run->outcome)) return;
+    if (!run || !model::is_whole(run->outcome)) return false;
     motion.outcome = run->outcome;
     tell_of_run(question, *run, motion);
     motion.stable = true;  // a run came to it
     motion.settled = std::make_shared<const Trajectory>(std::move(run).value());
+    return true;
 }
 
 class OneBodySearch final : public ReturnSearch {
@@ -127,12 +128,20 @@ public:
     }
 
 private:
-    bool tells(const Moment& moment, double start) override {
+    std::optional<VectorXd> tells(const Moment& moment, double start) override {
         constexpr double rows = 400;
-        return tell_period(one_, moment, start, facts_, monitor_, rows);
+        return tell_period(one_, moment, start, facts_, monitor_, rows) ? middle() : std::nullopt;
     }
 
-    void tell_settled(const Runs::Run& so_far) override { tell_next_period(one_, so_far, facts_, monitor_); }
+    [[nodiscard]] std::optional<VectorXd> middle() const {
+        const auto state = facts_.settled->at(facts_.settled->t_start + facts_.period / 2);
+        if (!state) return {};
+        return Eigen::Vector2d(state->theta, state->velocity);
+    }
+
+    std::optional<VectorXd> tell_settled(const Runs::Run& so_far) override {
+        return tell_next_period(one_, so_far, facts_, monitor_) ? middle() : std::nullopt;
+    }
 
     void tell_rest(const Runs::Run& run, bool /*stands*/) override {
         const Moment now = Runs::at_stop(run);

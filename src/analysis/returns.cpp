@@ -15,11 +15,11 @@ namespace engine = motion::engine;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-namespace {
-
 VectorXd vector_of(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
+
+namespace {
 
 bool has_acts(const engine::Drive& drive) {
     return std::any_of(drive.events.begin(), drive.events.end(),
@@ -314,16 +314,6 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 void note_family(SteadyMotion& motion) {
     const auto& m = motion.multipliers;
     if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
-}
-
-bool are_opposite(const VectorXd& y, const VectorXd& later, Index bodies, double period) {
-    VectorXd units = VectorXd::Ones(2 * bodies);
-    units.tail(bodies).fill(2 * std::numbers::pi / period);
-    const auto size = [&](const VectorXd& of) {
-        return of.head(2 * bodies).cwiseQuotient(units).cwiseAbs().maxCoeff();
-    };
-    constexpr double alike = 1e-7;
-    return size(y + later) <= alike * size(y);
 }
 
 namespace {
@@ -734,11 +724,7 @@ private:
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
         if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
-        s_.tell_settled(run_);
-        if (timeless_ || facts.periods != 1 || s_.chart_.any_goes_round()) return;
-        const double now = run_.t_stop;
-        const Runs::Run half = s_.runs_.go_on(run_.carry, now, now + facts.period / 2, motion::Grid::none());
-        facts.symmetric = are_opposite(Runs::at_stop(run_).y, Runs::at_stop(half).y, s_.n(), facts.period);
+        if (const auto middle = s_.tell_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
     /// A motion that beats is as large in the first half as in the second.
@@ -880,12 +866,26 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
         note_family(facts_);
     }
     const Moment moment = map.moment(found.x, found.mode);
-    if (!tells(moment, map.start())) return false;
-    if (!alone || facts_.periods != 1) return true;
-    const double middle = map.start() + facts_.period / 2;
-    const Runs::Run half = runs_.run(moment, map.start(), middle, motion::Grid::none(), false);
-    facts_.symmetric = are_opposite(moment.y, Runs::at_stop(half).y, n(), facts_.period);
-    return true;
+    const auto middle = tells(moment, map.start());
+    if (middle) {
+        note_symmetry(moment.y, *middle);
+    } else {
+        facts_.differentiable = false;
+        facts_.multipliers.clear();
+        facts_.unique.reset();
+    }
+    return middle.has_value();
+}
+
+/// Half a period later all angles and velocities are the opposite.
+void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) {
+    if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_goes_round()) return;
+    VectorXd units = VectorXd::Ones(2 * n());
+    units.tail(n()).fill(2 * std::numbers::pi / facts_.period);
+    const auto size = [&](const VectorXd& y) { return y.cwiseQuotient(units).cwiseAbs().maxCoeff(); };
+    const VectorXd before = begin.head(2 * n());
+    constexpr double alike = 1e-7;
+    facts_.symmetric = size(before + middle.head(2 * n())) <= alike * size(before);
 }
 
 void ReturnSearch::search() {

@@ -153,8 +153,7 @@ inline constexpr double largest_stable = 1 + 1e-5;  ///< multiplier
 std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative);
 /// A motion beside which others are neutral is not the only one.
 void note_family(SteadyMotion& motion);
-/// The second state is the opposite of the first, of so many bodies, half a period later.
-bool are_opposite(const Eigen::VectorXd& y, const Eigen::VectorXd& later, Eigen::Index bodies, double period);
+Eigen::VectorXd vector_of(const std::vector<double>& values);
 
 /// Of its range, the place of a section: off the middle, where many motions have an end of something.
 inline constexpr double section_at = 0.42;
@@ -171,10 +170,11 @@ public:
 protected:
     void search();
 
-    /// A motion of facts_.period begins at this moment; false if it can not be run, and the search goes on.
-    virtual bool tells(const Moment& moment, double start) = 0;
-    /// A run that has settled has gone on to here; facts_.period later it will be here again.
-    virtual void tell_settled(const Runs::Run& so_far) = 0;
+    /// A motion of facts_.period begins at this moment. Its state in the middle; none if it can not be run, and the
+    /// search goes on.
+    virtual std::optional<Eigen::VectorXd> tells(const Moment& moment, double start) = 0;
+    /// A run that has settled has gone on to here; facts_.period later it will be here again. The same.
+    virtual std::optional<Eigen::VectorXd> tell_settled(const Runs::Run& so_far) = 0;
     /// The bodies come to rest or go round evenly; stands: friction holds all.
     virtual void tell_rest(const Runs::Run& run, bool stands) = 0;
 
@@ -204,6 +204,7 @@ private:
     struct Closed;
     class ClosedSearch;
     bool tells_closed(Returns& map, const Closed& found);
+    void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
 };
 
 }  // namespace dinal::analysis

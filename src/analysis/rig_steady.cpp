@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/prose.hpp"
+#include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 
 namespace dinal::analysis {
@@ -71,27 +71,26 @@ public:
     RigSearch(const RigQuestion& question, const motion::Monitor& monitor)
         : ReturnSearch(question, chart_of(question, monitor), monitor) {}
 
-    RigMotion found() {
+    SteadyMotion found() {
         search();
-        answer_.facts = std::move(facts_);
-        return std::move(answer_);
+        return std::move(facts_);
     }
 
 private:
-    bool tells(const Moment& moment, double start) override {
+    std::optional<Eigen::VectorXd> tells(const Moment& moment, double start) override {
         const double period = facts_.period;
         constexpr double rows = 400;
         engine::AssemblyRun run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
-        if (!model::is_whole(run.outcome)) return false;
-        tell_period(moment, std::move(run), period);
-        return true;
+        if (!model::is_whole(run.outcome)) return {};
+        return tell_period(moment, std::move(run), period);
     }
 
-    void tell_settled(const engine::AssemblyRun& so_far) override {
+    std::optional<Eigen::VectorXd> tell_settled(const engine::AssemblyRun& so_far) override {
         const double period = facts_.period, t = so_far.t_stop;
         constexpr double rows = 400;
         engine::AssemblyRun run = runs_.go_on(so_far.carry, t, t + period, motion::Grid::every(period / rows));
-        if (model::is_whole(run.outcome)) tell_period(Runs::at_stop(so_far), std::move(run), period);
+        if (!model::is_whole(run.outcome)) return {};
+        return tell_period(Runs::at_stop(so_far), std::move(run), period);
     }
 
     void tell_rest(const engine::AssemblyRun& run, bool stands) override {
@@ -100,38 +99,36 @@ private:
         const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
         if (moves && chart_.any_goes_round()) facts_.status = SteadyStatus::steady;
         if (stands) facts_.unique = false;
-        answer_.rest.assign(now.y.data(), now.y.data() + n());
-        answer_.drive = runs_.from(now);
-        const Eigen::VectorXd measured = chart_.measured(now.y);
-        answer_.low.assign(measured.data(), measured.data() + n());
-        answer_.high = answer_.low;
-        for (Eigen::Index i = 0; i < n(); ++i) answer_.turned.push_back(chart_.goes_round(i) ? velocity[i] : 0);
+        const Eigen::VectorXd at = chart_.measured(now.y);
+        for (Eigen::Index i = 0; i < n(); ++i) {
+            facts_.bodies.push_back({at[i], at[i], chart_.goes_round(i) ? velocity[i] : 0, now.y[i]});
+        }
     }
 
     /// From this moment on the run is the motion.
-    void tell_period(const Moment& from, engine::AssemblyRun run, double period) {
+    std::optional<Eigen::VectorXd> tell_period(const Moment& from, engine::AssemblyRun run, double period) {
         const Reach reach = reach_of(run, chart_);
         constexpr double nothing = 1e-11;
         const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
         const bool forced = question().repeats.period > 0;
+        if (!moves && !forced && question().settles < 0) return {};  // no cycle: a run will tell how it ends
         facts_.outcome = run.outcome;
         facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
         facts_.period = moves || forced ? period : 0;
         facts_.stable = true;
-        answer_.drive = runs_.from(from);
-        answer_.run = std::move(run);
-        answer_.low.assign(reach.low.data(), reach.low.data() + n());
-        answer_.high.assign(reach.high.data(), reach.high.data() + n());
-        answer_.rest.assign(from.y.data(), from.y.data() + n());
-        const std::vector<double>& after = answer_.run.carry->y;
+        const std::vector<double>& after = run.carry->y;
         for (Eigen::Index i = 0; i < n(); ++i) {
             const double fastest = std::max(std::fabs(reach.low[n() + i]), std::fabs(reach.high[n() + i]));
             const double turned = chart_.goes_round(i) ? after[static_cast<std::size_t>(i)] - from.y[i] : 0;
-            answer_.turned.push_back(std::fabs(turned) > 1e-6 * period * fastest ? turned : 0);
+            const bool turns = std::fabs(turned) > 1e-6 * period * fastest;
+            facts_.bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, from.y[i]});
         }
+        const std::vector<double> middle = run.history->at(run.t_start + period / 2);
+        auto whole = std::make_shared<PeriodOfBodies>();
+        whole->drive = runs_.from(from), whole->run = std::move(run);
+        facts_.of_bodies = std::move(whole);
+        return vector_of(middle);
     }
-
-    RigMotion answer_;
 };
 
 /// All that drives a run as if it were one excitation, whose functions take y as states.
@@ -195,55 +192,48 @@ std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive
     return not_periodic(all, extras, drive);
 }
 
-RigMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor) {
+SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor) {
     return RigSearch(question, monitor).found();
 }
 
-std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotion& known,
-                                     const motion::Monitor& monitor) {
-    std::vector<RigMotion> others;
-    const bool alone = known.facts.unique.has_value() && known.facts.status == SteadyStatus::steady;
-    if (!known.facts.is_found() || alone) return others;
+std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const SteadyMotion& known,
+                                              const motion::Monitor& monitor) {
+    const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;
+    if (!known.is_found() || alone) return {};
     const std::size_t n = question.system->bodies.size();
-    const auto stands = [](const RigMotion& motion) {
-        return motion.facts.status == SteadyStatus::adheres || motion.facts.status == SteadyStatus::rest;
-    };
+    const auto farthest = [](const BodyMotion& body) { return std::max(std::fabs(body.high), std::fabs(body.low)); };
     double size = 1e-300;
     for (std::size_t i = 0; i < n; ++i) {
-        const double speed = known.facts.period == 0 ? std::fabs(known.turned[i]) : 0;
-        size = std::max({size, known.high[i] - known.low[i], std::fabs(known.high[i]), std::fabs(known.low[i]), speed});
-        if (!stands(known)) continue;
+        const BodyMotion& body = known.bodies[i];
+        const double speed = known.period == 0 ? std::fabs(body.turned) : 0;
+        size = std::max({size, body.high - body.low, farthest(body), speed});
+        if (!known.stands()) continue;
         size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
     }
-    const auto same_motion = [&](const RigMotion& a, const RigMotion& b) {
-        if (stands(a) && stands(b)) return true;
-        if (a.facts.status != b.facts.status) return false;
-        if (a.facts.status != SteadyStatus::steady) return true;
-        bool equal = true;
-        for (std::size_t i = 0; i < n; ++i) {
-            const double ways_a = a.high[i] - a.low[i], ways_b = b.high[i] - b.low[i];
-            const double ends_a = std::max(std::fabs(a.high[i]), std::fabs(a.low[i]));
-            const double ends_b = std::max(std::fabs(b.high[i]), std::fabs(b.low[i]));
-            const double turned = std::fabs(a.turned[i]);
-            equal = equal && std::fabs(ways_a - ways_b) <= 1e-4 * size && std::fabs(ends_a - ends_b) <= 1e-4 * size &&
-                    std::fabs(a.turned[i] - b.turned[i]) <= 1e-4 * turned;
-        }
-        return equal;
+    const auto alike = [&](const SteadyMotion& a, const SteadyMotion& b) {
+        if (a.stands() && b.stands()) return true;
+        if (a.status != b.status) return false;
+        const auto moves_alike = [&](const BodyMotion& x, const BodyMotion& y) {
+            return std::fabs((x.high - x.low) - (y.high - y.low)) <= 1e-4 * size &&
+                   std::fabs(farthest(x) - farthest(y)) <= 1e-4 * size &&
+                   std::fabs(x.turned - y.turned) <= 1e-4 * std::fabs(x.turned);
+        };
+        return a.status != SteadyStatus::steady ||
+               std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), moves_alike);
     };
-    const double period = known.facts.period > 0 ? known.facts.period : 2 * std::numbers::pi;
-    constexpr int starts = 8;
-    for (int s = 0; s < starts; ++s) {
-        RigQuestion other = question;
+    const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
+    std::vector<RigQuestion> questions(other_starts, question);
+    for (int s = 0; s < other_starts; ++s) {
+        RigQuestion& other = questions[static_cast<std::size_t>(s)];
         other.periods = 0;
-        const double radius = 2.5 * size * std::exp2(-s);
         for (std::size_t i = 0; i < n; ++i) {
-            const double turn = (0.3 + s) * std::numbers::pi / 2 + 2.4 * static_cast<double>(i);
+            const auto spot = start_around(s, 2.5 * size, i);
             double& theta = other.drive.theta0[i];
-            theta = radius * std::cos(turn);
+            theta = spot.real();
             if (const auto& walls = question.system->joints[i].walls) {
                 theta = std::clamp(theta, walls->lower, walls->upper);
             }
-            other.drive.velocity0[i] = radius * std::sin(turn) * 2 * std::numbers::pi / period;
+            other.drive.velocity0[i] = spot.imag() * 2 * std::numbers::pi / period;
         }
         const auto crosses = [&](const model::Joint& joint) {
             if (!joint.walls || joint.second < 0) return false;
@@ -255,74 +245,8 @@ std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotio
         if (std::any_of(question.system->joints.begin(), question.system->joints.end(), crosses)) {
             other.drive.theta0 = question.drive.theta0;
         }
-        RigMotion found = steady_motion(other, monitor);
-        if (found.facts.outcome == model::Outcome::interrupted) break;
-        const auto is_it = [&](const RigMotion& seen) { return same_motion(seen, found); };
-        if (found.facts.status == SteadyStatus::none || same_motion(known, found) ||
-            std::any_of(others.begin(), others.end(), is_it)) {
-            continue;
-        }
-        others.push_back(std::move(found));
     }
-    return others;
-}
-
-namespace {
-
-class RigSteadyStory : protected SteadyProse {
-public:
-    std::string told(const RigQuestion& question, const RigMotion& motion, std::size_t others) {
-        const SteadyMotion& facts = motion.facts;
-        const bool timeless = question.repeats.period == 0;
-        switch (facts.status) {
-            case SteadyStatus::steady:
-                if (facts.period == 0) return "All bodies rotate at constant speed.";
-                tell_period(facts, timeless);
-                tell_bodies(question, motion);
-                break;
-            case SteadyStatus::adheres:
-                say("Nothing moves: over a period M never exceeds what friction can hold.");
-                break;
-            case SteadyStatus::rest:
-                say("The motion dies out: all bodies come to rest.");
-                break;
-            case SteadyStatus::grows:
-                tell_unbounded();
-                return std::move(sentences_);
-            case SteadyStatus::none:
-                tell_none(facts, timeless);
-                return std::move(sentences_);
-        }
-        tell_stability(facts);
-        if (others > 0) {
-            say("From other starts {} was seen.", text::counted(others, "other motion"));
-        } else if (!facts.unique.has_value() && facts.status == SteadyStatus::steady) {
-            say("8 other starts led to no other motion, which is no proof.");
-        } else if (facts.unique.value_or(false)) {
-            say("No other steady motion exists.");
-        }
-        return std::move(sentences_);
-    }
-
-private:
-    void tell_bodies(const RigQuestion& question, const RigMotion& motion) {
-        for (std::size_t i = 0; i < question.system->bodies.size(); ++i) {
-            const std::string& name = question.system->bodies[i].name;
-            const double size = std::max(std::fabs(motion.low[i]), std::fabs(motion.high[i]));
-            if (motion.turned[i] != 0) {
-                say("{} turns by {:.5g} in each period.", name, motion.turned[i]);
-            } else if (question.system->named && motion.high[i] > motion.low[i]) {
-                say("{} swings between {} and {}.", name, text::number_text(motion.low[i], size),
-                    text::number_text(motion.high[i], size));
-            }
-        }
-    }
-};
-
-}  // namespace
-
-std::string told(const RigQuestion& question, const RigMotion& motion, std::size_t others) {
-    return RigSteadyStory().told(question, motion, others);
+    return others_from(questions, known, alike, monitor);
 }
 
 }  // namespace dinal::analysis

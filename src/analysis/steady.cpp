@@ -317,13 +317,9 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 namespace {
 
-bool stands(const SteadyMotion& motion) {
-    return motion.status == SteadyStatus::adheres || motion.status == SteadyStatus::rest;
-}
-
 /// The same motion, or its mirror image.
 bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
-    if (stands(a) && stands(b)) {
+    if (a.stands() && b.stands()) {
         const double within = 1e-6 * size;
         return b.start.theta >= a.rest.first - within && b.start.theta <= a.rest.second + within;
     }
@@ -334,8 +330,8 @@ bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
     return std::fabs(a.amplitude - b.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
 }
 
-/// Starts all around the motion, the nearest of them within a hundredth of the farthest.
-std::vector<model::State> starts_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
+/// Questions that begin around the motion.
+std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
         question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
@@ -345,40 +341,29 @@ std::vector<model::State> starts_around(const SteadyQuestion& question, const St
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
-    std::vector<model::State> starts;
+    std::vector<SteadyQuestion> questions(other_starts, question);
     for (int i = 0; i < other_starts; ++i) {
-        const double radius = widest * std::exp2(-0.5 * i);
-        const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : std::polar(radius, (0.3 + i) * std::numbers::pi / 2);
+        const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : start_around(i, widest);
         const Place start = inside(question.system, Place(spot.real(), spot.imag()));
-        starts.push_back({start[0], start[1] * omega});
+        SteadyQuestion& other = questions[static_cast<std::size_t>(i)];
+        other.periods = 0;
+        other.initial = {start[0], start[1] * omega};
     }
-    return starts;
+    return questions;
 }
 
 }  // namespace
 
 std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
-    std::vector<OtherMotion> others;
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
-    if (!known.is_found() || known.unique.value_or(false) || family) return others;
+    if (!known.is_found() || known.unique.value_or(false) || family) return {};
     double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
     // At rest the initial state is all that says how large motions may be.
-    if (stands(known)) size = std::max({size, std::fabs(question.initial.theta), std::fabs(question.initial.velocity)});
-    for (const model::State& start : starts_around(question, known, size)) {
-        SteadyQuestion other = question;
-        other.periods = 0;
-        other.initial = start;
-        SteadyMotion found = steady_motion(other, monitor);
-        if (found.outcome == model::Outcome::interrupted) break;
-        const auto is_it = [&](const OtherMotion& seen) { return are_alike(seen.motion, found, size); };
-        if (found.status == SteadyStatus::none || are_alike(known, found, size) ||
-            std::any_of(others.begin(), others.end(), is_it)) {
-            continue;
-        }
-        others.push_back({std::move(other), std::move(found)});
-    }
-    return others;
+    if (known.stands())
+        size = std::max({size, std::fabs(question.initial.theta), std::fabs(question.initial.velocity)});
+    const auto alike = [size](const SteadyMotion& a, const SteadyMotion& b) { return are_alike(a, b, size); };
+    return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
 }  // namespace dinal::analysis

@@ -13,6 +13,7 @@
 #include "analysis/drive.hpp"
 #include "analysis/period_map.hpp"
 #include "model/extras.hpp"
+#include "motion/engine/run.hpp"
 
 namespace dinal::analysis {
 
@@ -31,6 +32,19 @@ struct SteadyQuestion {
     model::Extras extras = {};
 
     [[nodiscard]] bool is_timeless() const { return drive.period == 0; }
+};
+
+/// How one of several bodies moves.
+struct BodyMotion {
+    double low = 0, high = 0;  ///< of its angle, from that of another body where they go round
+    double turned = 0;         ///< how far it goes round in a period, or in a time unit where nothing has a period
+    double begin = 0;          ///< its angle at the start
+};
+
+/// One period of several bodies.
+struct PeriodOfBodies {
+    motion::engine::Drive drive;
+    motion::engine::AssemblyRun run;
 };
 
 struct SteadyMotion {
@@ -53,9 +67,13 @@ struct SteadyMotion {
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
     std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
+    // Of several bodies:
+    std::vector<BodyMotion> bodies = {};
+    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< none at rest
 
     /// Whether there is a motion or a rest, and so facts about it.
     [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }
+    [[nodiscard]] bool stands() const { return status == SteadyStatus::adheres || status == SteadyStatus::rest; }
 };
 
 /// Where the motion from `initial` leads.
@@ -66,10 +84,12 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 /// The motions from other starts that are not this one, each once, with the question whose start leads to it. None is
 /// looked for where no motion was found, or it is known to be the only one, or one of a family.
-struct OtherMotion {
-    SteadyQuestion question;
+template <class Question>
+struct Other {
+    Question question;
     SteadyMotion motion;
 };
+using OtherMotion = Other<SteadyQuestion>;
 inline constexpr int other_starts = 16;
 std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor = {});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/drive.hpp"
 #include "model/controller.hpp"
@@ -117,6 +118,11 @@ bool is_alike_both_ways(const SteadyQuestion& question) {
     const model::Oscillator& system = question.system;
     return acts_evenly(system.friction(), system) && system.spring().is_odd() &&
            (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.excitation, question.drive);
+}
+
+std::complex<double> start_around(int i, double farthest, std::size_t body) {
+    const double turn = (0.3 + i) * std::numbers::pi / 2 + 2.4 * static_cast<double>(body);
+    return std::polar(farthest * std::exp2(-0.5 * i), turn);
 }
 
 SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,

@@ -29,6 +29,25 @@ inline Place place_of(const model::State& state, double omega) {
     return {state.theta, state.velocity / omega};
 }
 
+/// One of the starts all around a motion, the nearest of them within a hundredth of the farthest: angle, and velocity
+/// over a frequency.
+std::complex<double> start_around(int i, double farthest, std::size_t body = 0);
+
+/// The motions that the questions lead to, each once, but for those that are alike to the known one.
+template <class Question, class Alike>
+std::vector<Other<Question>> others_from(const std::vector<Question>& questions, const SteadyMotion& known,
+                                         const Alike& alike, const motion::Monitor& monitor) {
+    std::vector<Other<Question>> others;
+    for (const Question& question : questions) {
+        SteadyMotion found = steady_motion(question, monitor);
+        if (found.outcome == model::Outcome::interrupted) break;
+        const auto is_it = [&](const Other<Question>& seen) { return alike(seen.motion, found); };
+        if (found.status == SteadyStatus::none || alike(known, found)) continue;
+        if (std::none_of(others.begin(), others.end(), is_it)) others.push_back({question, std::move(found)});
+    }
+    return others;
+}
+
 /// From where to where friction holds the mass through all of the period, about the place where it was found at rest.
 std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 

@@ -5,6 +5,7 @@
 
 #include "analysis/friction_wave.hpp"
 #include "analysis/prose.hpp"
+#include "analysis/rig_steady.hpp"
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
@@ -119,24 +120,38 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 
 namespace {
 
-class SteadyStory : protected SteadyProse {
+class SteadyStory : Prose {
 public:
-    SteadyStory(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape)
-        : question_(question), motion_(motion), shape_(shape) {}
+    /// The names are those of several bodies, none of one.
+    SteadyStory(const SteadyMotion& motion, bool timeless, const std::vector<std::string>& names)
+        : motion_(motion), timeless_(timeless), names_(names) {}
 
-    std::string told(const std::vector<OtherMotion>& others) {
+    void tell(const SteadyShape& shape, bool sampled, double period) {
         switch (motion_.status) {
             case SteadyStatus::steady:
-                tell_motion();
+                if (motion_.period == 0) {
+                    say("All bodies rotate at constant speed.");
+                    break;
+                }
+                tell_period();
+                several() ? tell_bodies() : tell_extremes(shape);
                 tell_memory();
-                tell_stability(motion_);
+                tell_stability();
                 break;
             case SteadyStatus::adheres:
+                if (several()) {
+                    say("Nothing moves: over a period M never exceeds what friction can hold.");
+                    break;
+                }
                 say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it "
                     "is, anywhere from theta = {} to {}.",
                     number(motion_.rest.first), number(motion_.rest.second));
                 break;
             case SteadyStatus::rest:
+                if (several()) {
+                    say("The motion dies out: all bodies come to rest.");
+                    break;
+                }
                 say("The motion dies out: the mass comes to rest at theta = {}.", number(motion_.low));
                 if (motion_.rest.first < motion_.rest.second) {
                     say("Friction can hold it anywhere from theta = {} to {}.", number(motion_.rest.first),
@@ -144,40 +159,51 @@ public:
                 }
                 break;
             case SteadyStatus::grows:
-                if (question_.is_timeless()) {
-                    tell_unbounded();
+                if (timeless_ || several()) {
+                    say("There is no steady motion: the amplitude grows without bound.");
                     break;
                 }
                 say("There is no steady motion: M supplies more energy than is dissipated, and the amplitude grows "
                     "by {} in each period of M ({:.5g}).",
-                    number(motion_.growth), question_.drive.period);
+                    number(motion_.growth), period);
                 break;
             case SteadyStatus::none:
-                tell_none(motion_, question_.is_timeless());
-                if (!model::has_memory<model::SampledController>(question_.excitation)) break;
-                if (question_.is_timeless()) {
-                    say("A sampled controller has a cycle only if a whole number of sampling intervals is a period of "
-                        "the motion.");
-                } else {
-                    say("A controller that samples may have no period in common with M: choose an every that divides "
-                        "the period.");
-                }
+                tell_none(sampled);
                 break;
         }
-        tell_others(others);
-        return std::move(sentences_);
     }
 
+    void tell_others(const std::vector<OtherMotion>& others) {
+        constexpr std::size_t most = 3;
+        for (std::size_t i = 0; i < std::min(most, others.size()); ++i) tell_other(others[i].motion);
+        if (others.size() > most) say("There are {} more (s.others).", others.size() - most);
+        if (others.empty()) tell_unique();
+    }
+    void count_others(std::size_t others) {
+        if (others > 0) say("From other starts {} was seen.", text::counted(others, "other motion"));
+        if (others == 0) tell_unique();
+    }
+
+    std::string told() { return std::move(sentences_); }
+
 private:
+    [[nodiscard]] bool several() const { return !names_.empty(); }
     [[nodiscard]] std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
-    void tell_motion() {
-        tell_period(motion_, question_.is_timeless());
+    void tell_period() {
+        if (timeless_) {
+            say("The motion is a limit cycle of period {:.6g}.", motion_.period);
+        } else {
+            say("The motion repeats itself every {:.6g}, {} of M.", motion_.period,
+                motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
+        }
+    }
+    void tell_extremes(const SteadyShape& shape) {
         say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
             number(motion_.high));
-        if (shape_.lag) {
-            say("Its fundamental lags {:.5g} rad behind that of M.", *shape_.lag);
+        if (shape.lag) {
+            say("Its fundamental lags {:.5g} rad behind that of M.", *shape.lag);
         }
         if (motion_.stops == 0) {
             say("It never stops.");
@@ -187,17 +213,61 @@ private:
         }
         if (motion_.symmetric) say("The motion is symmetric: theta(t + T/2) = -theta(t).");
     }
+    void tell_bodies() {
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+            const BodyMotion& body = motion_.bodies[i];
+            const double size = std::max(std::fabs(body.low), std::fabs(body.high));
+            if (body.turned != 0) {
+                say("{} turns by {:.5g} in each period.", names_[i], body.turned);
+            } else if (!names_[i].empty() && body.high > body.low) {
+                say("{} swings between {} and {}.", names_[i], text::number_text(body.low, size),
+                    text::number_text(body.high, size));
+            }
+        }
+    }
     void tell_memory() {
         if (!motion_.settled || motion_.asked) return;
         say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
-            question_.is_timeless() ? "" : fmt::format("of {} periods of M ", motion_.maps));
+            timeless_ ? "" : fmt::format("of {} periods of M ", motion_.maps));
+    }
+    void tell_stability() {
+        if (!motion_.differentiable) return;
+        double largest = 0;
+        for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
+        if (!motion_.stable) {
+            say("It is unstable: a disturbance grows by a factor of {:.6g} in a period, so no run stays on it.",
+                largest);
+        } else if (largest > 1 - 1e-6) {
+            say("It is marginally stable: a disturbance neither grows nor decays.");
+        } else if (largest < 1e-12) {
+            say("It is stable: a disturbance is gone after one period.");
+        } else {
+            say("It is stable: {} of a disturbance remains after a period.", text::percent(largest));
+        }
+    }
+    void tell_none(bool sampled) {
+        if (timeless_) {
+            say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
+        } else {
+            say("No motion of up to 32 periods of M was found within {} periods: the motion is irregular, or it "
+                "settles very slowly.",
+                motion_.maps);
+        }
+        if (!sampled) return;
+        if (timeless_) {
+            say("A sampled controller has a cycle only if a whole number of sampling intervals is a period of "
+                "the motion.");
+        } else {
+            say("A controller that samples may have no period in common with M: choose an every that divides "
+                "the period.");
+        }
     }
     void tell_other(const SteadyMotion& other) {
-        if (other.status == SteadyStatus::adheres || other.status == SteadyStatus::rest) {
+        if (other.stands()) {
             say("From another start the mass comes to rest.");
         } else if (other.status == SteadyStatus::grows) {
             say("From another start the motion grows.");
-        } else if (question_.is_timeless()) {
+        } else if (timeless_) {
             say("Another start leads to another motion: amplitude {}, period {:.6g}.", number(other.amplitude),
                 other.period);
         } else {
@@ -205,12 +275,8 @@ private:
                 text::counted(static_cast<std::size_t>(other.periods), "period"));
         }
     }
-    void tell_others(const std::vector<OtherMotion>& others) {
-        if (motion_.status == SteadyStatus::none || motion_.status == SteadyStatus::grows) return;
-        constexpr std::size_t most = 3;
-        for (std::size_t i = 0; i < std::min(most, others.size()); ++i) tell_other(others[i].motion);
-        if (others.size() > most) say("There are {} more (s.others).", others.size() - most);
-        if (!others.empty() || motion_.status != SteadyStatus::steady) return;
+    void tell_unique() {
+        if (motion_.status != SteadyStatus::steady) return;
         if (!motion_.unique.has_value()) {
             say("{} other starts led to no other motion, which is no proof.", other_starts);
         } else if (*motion_.unique) {
@@ -220,16 +286,31 @@ private:
         }
     }
 
-    const SteadyQuestion& question_;
     const SteadyMotion& motion_;
-    const SteadyShape& shape_;
+    bool timeless_;
+    const std::vector<std::string>& names_;
 };
 
 }  // namespace
 
 std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
                  const std::vector<OtherMotion>& others) {
-    return SteadyStory(question, motion, shape).told(others);
+    const std::vector<std::string> nobody;
+    SteadyStory story(motion, question.is_timeless(), nobody);
+    story.tell(shape, model::has_memory<model::SampledController>(question.excitation), question.drive.period);
+    if (motion.is_found()) story.tell_others(others);
+    return story.told();
+}
+
+std::string told(const RigQuestion& question, const SteadyMotion& motion, std::size_t others) {
+    std::vector<std::string> names;
+    for (const model::Body& body : question.system->bodies) names.push_back(body.name);
+    const auto& loads = question.drive.loads;
+    const bool sampled = std::any_of(loads.begin(), loads.end(), model::has_memory<model::SampledController>);
+    SteadyStory story(motion, question.repeats.period == 0, names);
+    story.tell({}, sampled, question.repeats.period);
+    if (motion.is_found()) story.count_others(others);
+    return story.told();
 }
 
 }  // namespace dinal::analysis

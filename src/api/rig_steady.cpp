@@ -44,12 +44,12 @@ analysis::Drive repeats_or_fail(lua_State* L, const lua::Options& options, const
 }
 
 /// The whole motion, or of one body without a name that of this body.
-SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion motion);
+SteadyHandle made(const analysis::RigQuestion& question, analysis::SteadyMotion motion);
 
 /// The motion as seen from the body or link of this joint.
 SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint) {
     const model::Assembly& system = *rig->question.system;
-    const analysis::RigMotion& whole = rig->motion;
+    const analysis::SteadyMotion& whole = rig->motion;
     analysis::SteadyQuestion question{.system = model::Oscillator::make(parameters_of(system, joint)).value(),
                                       .excitation = {},
                                       .drive = rig->question.repeats,
@@ -58,7 +58,7 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
         const model::Excitation& load = rig->question.drive.loads[joint];
         if (!load.has_feedback() && !model::has_memory(load)) question.excitation = load;
     }
-    auto part = std::make_shared<Steady>(Steady{std::move(question), whole.facts});
+    auto part = std::make_shared<Steady>(Steady{std::move(question), whole});
     part->rig = rig;
     part->of_body = true;
     part->others.emplace();
@@ -69,7 +69,7 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
         facts.settled = std::shared_ptr<const motion::Trajectory>(run, &run->trajectory);
         part->part = run;
         double size = 0;
-        for (std::size_t i = 0; i < whole.low.size(); ++i) size = std::max(size, whole.high[i] - whole.low[i]);
+        for (const analysis::BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
         // The difference of two angles that are held together is their rounding.
         if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
             facts.status = analysis::SteadyStatus::adheres;
@@ -78,13 +78,13 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
         facts.rest = {facts.low, facts.low};
     } else if (is_found(*part)) {
         const model::Joint& own = system.joints[joint];
-        const double second = own.second < 0 ? 0 : whole.rest[static_cast<std::size_t>(own.second)];
-        facts.low = facts.high = whole.rest[static_cast<std::size_t>(own.first)] - second;
+        const double second = own.second < 0 ? 0 : whole.bodies[static_cast<std::size_t>(own.second)].begin;
+        facts.low = facts.high = whole.bodies[static_cast<std::size_t>(own.first)].begin - second;
         facts.rest = {facts.low, facts.low};
         facts.start = {facts.low, 0};
     }
     // Of a body that goes round the angle never comes back.
-    const auto turned = [&](int body) { return body < 0 ? 0 : whole.turned[static_cast<std::size_t>(body)]; };
+    const auto turned = [&](int body) { return body < 0 ? 0 : whole.bodies[static_cast<std::size_t>(body)].turned; };
     if (is_found(*part) && std::fabs(turned(system.joints[joint].first) - turned(system.joints[joint].second)) >
                                1e-6 * std::fabs(turned(system.joints[joint].first))) {
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
@@ -92,13 +92,13 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
     return part;
 }
 
-SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion motion) {
+SteadyHandle made(const analysis::RigQuestion& question, analysis::SteadyMotion motion) {
     auto rig = std::make_shared<RigSteady>(RigSteady{question, std::move(motion)});
-    if (rig->motion.run.history != nullptr) {
+    if (const auto& period = rig->motion.of_bodies) {
         auto run = std::make_shared<BodiesRun>();
-        run->system = question.system, run->drive = rig->motion.drive, run->run = rig->motion.run;
+        run->system = question.system, run->drive = period->drive, run->run = period->run;
         constexpr double rows = 400;
-        run->dt = rig->motion.facts.period / rows;
+        run->dt = rig->motion.period / rows;
         run->t_end = run->run.t_stop;
         rig->run = std::move(run);
     }
@@ -107,7 +107,7 @@ SteadyHandle made(const analysis::RigQuestion& question, analysis::RigMotion mot
         std::make_shared<Steady>(Steady{{.system = model::Oscillator::make(parameters_of(*question.system, 0)).value(),
                                          .excitation = {},
                                          .drive = question.repeats},
-                                        rig->motion.facts});
+                                        rig->motion});
     whole->rig = std::move(rig);
     return whole;
 }
@@ -134,10 +134,10 @@ int steady_of_rig(lua_State* L) {
         }
         question.settles = *common;
     }
-    analysis::RigMotion found;
+    analysis::SteadyMotion found;
     asking_bodies(L, question,
                   [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
-    check_motion(options, found.facts);
+    check_motion(options, found);
     lua::push<SteadyHandle>(L, made(question, std::move(found)));
     return 1;
 }
@@ -154,12 +154,12 @@ void run_of_rig(lua_State* L, const Steady& s) {
 
 const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig) {
     if (rig.others) return *rig.others;
-    std::vector<analysis::RigMotion> found;
+    std::vector<analysis::Other<analysis::RigQuestion>> found;
     asking_bodies(L, rig.question, [&](const motion::Monitor& monitor) {
         found = analysis::other_motions(rig.question, rig.motion, monitor);
     });
     rig.others.emplace();
-    for (analysis::RigMotion& other : found) rig.others->push_back(made(rig.question, std::move(other)));
+    for (auto& other : found) rig.others->push_back(made(other.question, std::move(other.motion)));
     return *rig.others;
 }
 
@@ -181,14 +181,13 @@ int body_of_steady(lua_State* L) {
 namespace {
 
 /// Options theta0 and velocity0 at `options`, from a motion that was found nearby, where the user gives neither.
-void start_near(lua_State* L, int options, const analysis::RigMotion& near, const model::Assembly& system) {
+void start_near(lua_State* L, int options, const motion::engine::Drive& near, const model::Assembly& system) {
     for (const char* name : {"theta0", "velocity0"}) {
         const bool given = lua_getfield(L, options, name) != LUA_TNIL;
         lua_pop(L, 1);
         if (given) return;
     }
-    for (const auto& [name, values] :
-         {std::pair("theta0", &near.drive.theta0), std::pair("velocity0", &near.drive.velocity0)}) {
+    for (const auto& [name, values] : {std::pair("theta0", &near.theta0), std::pair("velocity0", &near.velocity0)}) {
         lua_createtable(L, 0, static_cast<int>(values->size()));
         for (std::size_t i = 0; i < values->size(); ++i) {
             lua::set_number(L, system.bodies[i].name.c_str(), (*values)[i]);
@@ -243,7 +242,7 @@ int response_of_rig(lua_State* L) {
         if (point % grid.parameters().back().size() == 0) near = nullptr;
         push_point(L, options, grid, point);
         const int asked = lua_gettop(L);
-        if (near) start_near(L, asked, near->rig->motion, *first);
+        if (near) start_near(L, asked, near->rig->run->drive, *first);
         lua_pushcfunction(L, lua::guarded<steady_of_rig>);
         lua_insert(L, -3);
         lua_call(L, 2, 1);

@@ -126,7 +126,7 @@ using SteadyHandle = std::shared_ptr<Steady>;
 
 struct RigSteady {
     analysis::RigQuestion question;
-    analysis::RigMotion motion;
+    analysis::SteadyMotion motion;
     BodiesRunHandle run = {};                              ///< one period; none at rest
     std::optional<std::vector<SteadyHandle>> others = {};  ///< from other starts, once they were looked for
 };

@@ -96,6 +96,16 @@ test("a drill string sticks and slips while it goes round", function()
     near(even.link.mean, 0, 1e-9)
 end)
 
+test("bodies that come to rotate evenly do so from every start", function()
+    local rig = pair({ I = 1, C = 0.5 }, { I = 1 }, { k = 2, C = 0.1 })
+    for i = 200, 300, 5 do
+        local s = rig:steady { M = { a = 1 }, theta0 = { a = i * 0.01 }, velocity0 = { b = i * 0.037 } }
+        equal(s.status, "steady")
+        equal(s.multipliers, nil)
+        near(s.link.mean, 0, 1e-9)
+    end
+end)
+
 test("a relay that looks at another body hunts", function()
     local rig = pair({ I = 1, C = 0.3 }, { I = 0.5, k = 1, C = 0.1, Rd = 0.05 }, { k = 4, C = 0.2 })
     local M = { a = excitation.relay { on = -0.2, off = 0.2, amplitude = { 1, -1 }, of = "theta.b" } }
