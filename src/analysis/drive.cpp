@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/rig_steady.hpp"
 #include "model/controller.hpp"
 #include "model/forcing.hpp"
 
@@ -103,10 +104,16 @@ std::optional<Drive> drive_of(const model::Excitation& excitation, double otherw
 
 namespace {
 
-std::vector<double> starts_of(const model::Extras& extras) {
-    std::vector<double> starts;
-    for (const model::OwnState& state : extras.states) starts.push_back(state.start);
-    return starts;
+/// What functions are given as states: of bodies with names all angles and velocities, and then the states of the run.
+std::vector<double> states_of(const RigQuestion& question) {
+    const motion::engine::Drive& drive = question.drive;
+    std::vector<double> states;
+    if (question.system->named) {
+        states = drive.theta0;
+        states.insert(states.end(), drive.velocity0.begin(), drive.velocity0.end());
+    }
+    for (const model::OwnState& state : drive.states) states.push_back(state.start);
+    return states;
 }
 
 /// The function that a term asks at any time; none of one that samples, which is asked at its instants.
@@ -171,13 +178,27 @@ double value_of(const model::Excitation& excitation, double t, const model::Stat
 
 }  // namespace
 
-std::optional<Drive> drive_of(const model::Excitation& excitation, const model::Extras& extras,
-                              const model::State& initial) {
-    const std::vector<double> states = starts_of(extras);
+std::vector<Acting> acting_in(const RigQuestion& question) {
+    std::vector<Acting> all;
+    for (const model::Excitation& load : question.drive.loads) all.push_back({"M", &load});
+    for (const model::Joint& joint : question.system->joints) {
+        const model::ContactFriction& friction = joint.friction;
+        if (friction.sliding[0]) all.push_back({"Rd", &*friction.sliding[0]});
+        if (friction.holding[0]) all.push_back({"Re", &*friction.holding[0]});
+        if (friction.normal) all.push_back({"normal", &*friction.normal});
+    }
+    for (const model::Excitation& belt : question.drive.belts) all.push_back({"belt", &belt});
+    all.push_back({"base", &question.drive.base});
+    return all;
+}
+
+std::optional<Drive> drive_of(const RigQuestion& question) {
+    const std::vector<double> states = states_of(question);
+    const model::State initial{question.drive.theta0.front(), question.drive.velocity0.front()};
     double start = 0;
     model::Excitation driven;
-    for (const model::Excitation* of : {&excitation, &extras.belt, &extras.base}) {
-        for (const model::Component& c : of->components()) {
+    for (const Acting& acting : acting_in(question)) {
+        for (const model::Component& c : acting.what->components()) {
             const double from = timeless_from(c, initial, states);
             from < model::never ? void(start = std::max(start, from)) : void(driven = driven + alone(c));
         }
@@ -187,72 +208,46 @@ std::optional<Drive> drive_of(const model::Excitation& excitation, const model::
         if (drive) return Drive{std::max(start, drive->start), drive->period};
         return {};
     }
-    for (const model::OwnState& state : extras.states) {
+    for (const model::OwnState& state : question.drive.states) {
         if (!is_timeless(*state.rate, initial, states)) return {};
     }
-    for (const model::WantedEvent& event : extras.events) {
+    for (const model::WantedEvent& event : question.drive.events) {
         if (event.act != nullptr && !is_timeless(*event.when, initial, states)) return {};
     }
     return Drive{start, 0};
 }
 
-std::optional<text::Error> not_periodic(const model::Excitation& excitation, const model::Extras& extras,
-                                        const Drive& drive) {
-    const std::vector<double> states = starts_of(extras);
+std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive) {
+    const std::vector<double> states = states_of(question);
     const auto differs = [&](const std::string& name, auto&& value) -> std::optional<text::Error> {
         constexpr int probes = 50;
-        double most = 0, worst = 0, at = 0;
+        double most = 0, worst = 0, at = 0, before = 0, after = 0;
         for (int i = 0; i < probes; ++i) {
             const double t = probe(drive, i);
             const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
             const double now = value(t, y), later = value(t + drive.period, y);
             if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
             most = std::max({most, std::fabs(now), std::fabs(later)});
-            if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t;
+            if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t, before = now, after = later;
         }
         if (!(worst > 1e-9 * most)) return {};
         return text::Error{
-            .sentence = fmt::format("{} does not repeat itself after period = {:.10g}: it differs at t = "
-                                    "{:.6g} and {:.6g}",
-                                    name, drive.period, at, at + drive.period),
+            .sentence = fmt::format("{} does not repeat itself after period = {:.10g}: it is {:.6g} at t = {:.6g}, and "
+                                    "{:.6g} at t = {:.6g}",
+                                    name, drive.period, before, at, after, at + drive.period),
             .option = "period"};
     };
-    for (const auto& [name, of] :
-         {std::pair{"M", &excitation}, std::pair{"belt", &extras.belt}, {"base", &extras.base}}) {
+    for (const Acting& acting : acting_in(question)) {
         auto wrong =
-            differs(name, [&, own = of](double t, const model::State& y) { return value_of(*own, t, y, states); });
+            differs(acting.name, [&](double t, const model::State& y) { return value_of(*acting.what, t, y, states); });
         if (wrong) return wrong;
     }
-    for (const model::OwnState& state : extras.states) {
+    for (const model::OwnState& state : question.drive.states) {
         auto wrong = differs("states." + state.name + ".rate",
                              [&](double t, const model::State& y) { return state.rate->value_with(t, y, states); });
         if (wrong) return wrong;
     }
     return {};
-}
-
-std::optional<text::Error> not_periodic(const model::Excitation& excitation, const Drive& drive) {
-    constexpr int probes = 50;
-    constexpr double allowed = 1e-9;
-    double worst = 0, at = 0, most = 0;
-    for (int i = 0; i < probes; ++i) {
-        const double t = probe(drive, i);
-        const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
-        const double now = excitation.value(t, y), later = excitation.value(t + drive.period, y);
-        if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
-        most = std::max({most, std::fabs(now), std::fabs(later)});
-        if (std::fabs(now - later) > worst) {
-            worst = std::fabs(now - later);
-            at = t;
-        }
-    }
-    if (!(worst > allowed * most)) return {};
-    const double later = at + drive.period;
-    return text::Error{
-        .sentence = fmt::format("M does not repeat itself after period = {:.10g}: M({:.6g}) = {:.6g}, but "
-                                "M({:.6g}) = {:.6g}",
-                                drive.period, at, excitation.value(at), later, excitation.value(later)),
-        .option = "period"};
 }
 
 bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {

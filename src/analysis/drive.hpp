@@ -8,8 +8,6 @@
 #include <type_traits>
 
 #include "model/excitation.hpp"
-#include "model/extras.hpp"
-#include "text/expected.hpp"
 
 namespace dinal::analysis {
 
@@ -20,17 +18,6 @@ struct Drive {
 
 /// What is known of M without asking it: none when no period is. A constant M has any: `otherwise`.
 std::optional<Drive> drive_of(const model::Excitation& excitation, double otherwise);
-
-/// The same of all that drives a run from this state: period 0 where nothing depends on the time from `start` on. What
-/// is a function is looked at at some times: only its user knows its period.
-std::optional<Drive> drive_of(const model::Excitation& excitation, const model::Extras& extras,
-                              const model::State& initial);
-
-/// Asks M at times all over the period and one period later: the sentence that names the worst two that differ.
-std::optional<text::Error> not_periodic(const model::Excitation& excitation, const Drive& drive);
-/// The same of M, belt, base, and the rates of the states.
-std::optional<text::Error> not_periodic(const model::Excitation& excitation, const model::Extras& extras,
-                                        const Drive& drive);
 
 /// M half a period later is the opposite (of the opposite state, where it depends on that).
 bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive);

@@ -9,6 +9,7 @@
 #include "algebra/decompositions.hpp"
 #include "analysis/branch.hpp"
 #include "analysis/returns.hpp"
+#include "analysis/rig_steady.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "motion/engine/one_body.hpp"
@@ -24,16 +25,6 @@ using motion::Trajectory;
 const Chart& ground() {
     static const Chart chart({-1});
     return chart;
-}
-
-RigQuestion as_assembly(const SteadyQuestion& question) {
-    const model::Oscillator& system = question.system;
-    RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
-                      .drive = engine::drive_of(question.excitation, question.extras, question.initial),
-                      .repeats = question.drive,
-                      .periods = question.periods};
-    if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
-    return asked;
 }
 
 /// Of each relay: it is switched on, as M says or as it is remembered.
@@ -333,6 +324,16 @@ private:
 };
 
 }  // namespace
+
+RigQuestion as_assembly(const SteadyQuestion& question) {
+    const model::Oscillator& system = question.system;
+    RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
+                      .drive = engine::drive_of(question.excitation, question.extras, question.initial),
+                      .repeats = question.drive,
+                      .periods = question.periods};
+    if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
+    return asked;
+}
 
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor) {

@@ -131,40 +131,7 @@ private:
     }
 };
 
-/// All that drives a run as if it were one excitation, whose functions take y as states.
-std::pair<model::Excitation, model::Extras> together(const RigQuestion& question) {
-    const engine::Drive& drive = question.drive;
-    model::Excitation all;
-    for (const model::Excitation& load : drive.loads) all = all + load;
-    for (const model::Joint& joint : question.system->joints) {
-        const model::ContactFriction& friction = joint.friction;
-        if (friction.sliding[0]) all = all + *friction.sliding[0];
-        if (friction.holding[0]) all = all + *friction.holding[0];
-        if (friction.normal) all = all + *friction.normal;
-    }
-    model::Extras extras;
-    for (const model::Excitation& belt : drive.belts) extras.belt = extras.belt + belt;
-    extras.base = drive.base;
-    extras.events = drive.events;
-    struct Still final : model::UserFunction {
-        double value(double /*t*/, const model::State& /*state*/) override { return 0; }
-    };
-    if (question.system->named) {
-        const auto still = std::make_shared<Still>();
-        for (const auto* starts : {&drive.theta0, &drive.velocity0}) {
-            for (const double start : *starts) extras.states.push_back({"", start, still});
-        }
-    }
-    extras.states.insert(extras.states.end(), drive.states.begin(), drive.states.end());
-    return {std::move(all), std::move(extras)};
-}
-
 }  // namespace
-
-std::optional<Drive> drive_of(const RigQuestion& question) {
-    const auto [all, extras] = together(question);
-    return drive_of(all, extras, {question.drive.theta0.front(), question.drive.velocity0.front()});
-}
 
 std::optional<double> common_period(const RigQuestion& question) {
     double common = question.repeats.period;
@@ -185,11 +152,6 @@ std::optional<double> common_period(const RigQuestion& question) {
         }
     }
     return common > 0 ? std::optional(common) : std::nullopt;
-}
-
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive) {
-    const auto [all, extras] = together(question);
-    return not_periodic(all, extras, drive);
 }
 
 SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor) {

@@ -378,14 +378,13 @@ lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s) {
     return {};
 }
 
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
                               const std::optional<double>& period) {
-    const model::Excitation& excitation = question.excitation;
+    const auto acting = analysis::acting_in(question);
+    const auto is_script = [](const analysis::Acting& one) { return one.what->has_script(); };
+    const bool scripts = !question.drive.states.empty() || std::any_of(acting.begin(), acting.end(), is_script);
     std::optional<analysis::Drive> drive;
-    asking(L, question.extras,
-           [&](const motion::Monitor&) { drive = analysis::drive_of(excitation, question.extras, question.initial); });
-    const bool scripts = excitation.has_script() || question.extras.belt.has_script() ||
-                         question.extras.base.has_script() || !question.extras.states.empty();
+    asking_bodies(L, question, [&](const motion::Monitor&) { drive = analysis::drive_of(question); });
     if (!drive && !period) {
         options.fail("period",
                      scripts ? "the period of M is not known; give it with period = ..."
@@ -393,12 +392,9 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const a
                                "run:spectrum");
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
-    if (period || (excitation.has_script() && drive->period > 0)) {
+    if (drive->period > 0 && (period || scripts)) {
         std::optional<text::Error> wrong;
-        asking(L, question.extras, [&](const motion::Monitor&) {
-            wrong = question.extras.any() ? analysis::not_periodic(excitation, question.extras, *drive)
-                                          : analysis::not_periodic(excitation, *drive);
-        });
+        asking_bodies(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *drive); });
         if (wrong) options.fail(*wrong);
     }
     return *drive;
@@ -440,7 +436,7 @@ int steady_of_system(lua_State* L) {
     lua_pop(L, 1);
     check_relays(options, question.excitation, seen_by_relays(question.extras));
     find_period(L, question);
-    question.drive = drive_or_fail(L, options, question, period);
+    question.drive = drive_or_fail(L, options, as_assembly(question), period);
     return push_steady(L, options, std::move(question));
 }
 
@@ -462,7 +458,7 @@ int steady_of_run(lua_State* L) {
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
     find_period(L, question);
-    question.drive = drive_or_fail(L, options, question, period);
+    question.drive = drive_or_fail(L, options, as_assembly(question), period);
     if (question.extras.any()) {
         question.drive.start = std::max(question.drive.start, ended.t_stop);
     } else if (!question.is_timeless()) {

@@ -317,7 +317,7 @@ public:
         if (known) {
             question.drive = {known->start, period.value_or(known->period)};
         } else {
-            question.drive = drive_or_fail(L_, own, question, period);
+            question.drive = drive_or_fail(L_, own, as_assembly(question), period);
         }
         lua_pop(L_, 1);
         return question;
@@ -326,9 +326,7 @@ public:
 private:
     [[nodiscard]] std::optional<analysis::Drive> drive_between(const analysis::SteadyQuestion& question) const {
         std::optional<analysis::Drive> drive;
-        asking(L_, question.extras, [&](const motion::Monitor&) {
-            drive = analysis::drive_of(question.excitation, question.extras, question.initial);
-        });
+        asking(L_, question.extras, [&](const motion::Monitor&) { drive = analysis::drive_of(as_assembly(question)); });
         return drive;
     }
 

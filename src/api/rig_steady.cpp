@@ -17,32 +17,6 @@ namespace dinal::api {
 
 namespace {
 
-/// Calls the work, which may evaluate functions of the bodies, and raises their errors.
-template <class Work>
-void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work work) {
-    lua::CallState call(L);
-    name_functions(call, *question.system, question.drive);
-    work([](double) { return !lua::interrupt_requested(); });
-    if (lua::interrupt_requested()) lua::raise_interrupted(L);
-    call.check();
-}
-
-analysis::Drive repeats_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
-                                const std::optional<double>& period) {
-    std::optional<analysis::Drive> drive;
-    asking_bodies(L, question, [&](const motion::Monitor&) { drive = analysis::drive_of(question); });
-    if (!drive && !period) {
-        options.fail("period", "the period of the excitation is not known; give it with period = ...");
-    }
-    if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
-    if (drive->period > 0) {
-        std::optional<text::Error> wrong;
-        asking_bodies(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *drive); });
-        if (wrong) options.fail(*wrong);
-    }
-    return *drive;
-}
-
 /// The whole motion, or of one body without a name that of this body.
 SteadyHandle made(const analysis::RigQuestion& question, analysis::SteadyMotion motion);
 
@@ -121,7 +95,7 @@ int steady_of_rig(lua_State* L) {
     options.fill(asked);
     question.drive = asked_drive(L, options, *question.system);
     question.periods = asked.periods.value_or(0);
-    question.repeats = repeats_or_fail(L, options, question, asked_period(options));
+    question.repeats = drive_or_fail(L, options, question, asked_period(options));
     const auto settles = [](const model::Excitation& load) {
         return model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load);
     };

@@ -154,9 +154,19 @@ void asking(lua_State* L, Work work) {
     asking(L, model::Extras{}, std::move(work));
 }
 
-/// The drive of the question, with its period as the terms of M have it or as the user gives it; period 0 where nothing
-/// depends on t. Raises when the period is unknown or wrong.
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
+/// The same of functions of bodies.
+template <class Work>
+void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work work) {
+    lua::CallState call(L);
+    name_functions(call, *question.system, question.drive);
+    work([](double) { return !lua::interrupt_requested(); });
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);
+    call.check();
+}
+
+/// When all that drives the question repeats itself, as its terms have it or as the user gives it; period 0 where
+/// nothing depends on t. Raises when the period is unknown or wrong.
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
                               const std::optional<double>& period);
 
 /// Raises when the motion could not be followed, or M was found to be no function of its arguments.

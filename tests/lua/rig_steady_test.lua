@@ -152,7 +152,7 @@ test("rest, and what is refused", function()
     equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
     local function scripted(t) return math.sin(t) end
     refuses(function(o) rig:steady(o) end, {
-        { { M = { a = scripted } }, "the period of the excitation is not known; give it with period = ..." },
+        { { M = { a = scripted } }, "the period of M is not known; give it with period = ..." },
         { { M = { a = scripted }, period = 3 }, "does not repeat itself" },
         { { M = { a = excitation.sampled(function() return 0 end, { every = 0.1 }), b = sine(1) } }, "no common period", "run it for long" },
         { { M = { a = excitation.delayed(function(t, theta) return -theta.a end, { by = 0.1 }) } }, "no common period" },
