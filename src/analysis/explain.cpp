@@ -235,6 +235,7 @@ private:
         } else {
             add(" and dry friction: Rd = {:.5g} while sliding, Re = {:.5g} to break away.", Rd(forward), Re(forward));
         }
+        if (law.normal() != 1) say("These are the torques under the normal load {:.5g}.", law.normal());
         if (law.depends_on_speed()) {
             say("{}", stribeck ? "Friction falls from Re at rest to Rd at high speed."
                                : "These values hold near speed zero: friction depends on the speed.");

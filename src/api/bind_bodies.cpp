@@ -24,6 +24,7 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
+#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "plots/run_figure.hpp"
 #include "source/describe.hpp"
@@ -37,18 +38,11 @@ namespace {
 
 namespace engine = motion::engine;
 
-struct BodyNumbers {
-    double inertia = 0, stiffness = 0, damping = 0;
-};
-constexpr text::Option inertia_option[] = {
-    {"I", "torque time^2 per rad", text::needed, text::positive, "moment of inertia",
-     text::fills<&BodyNumbers::inertia>},
-};
+constexpr text::Option inertia_option[] = {model::mechanical_options[0]};
 constexpr text::Option joint_options[] = {
     {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
-     text::fills<&BodyNumbers::stiffness>},
-    {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
-     text::fills<&BodyNumbers::damping>},
+     text::fills<&model::OscillatorParameters::stiffness>},
+    model::mechanical_options[2],
     model::mechanical_options[6],
     model::mechanical_options[7],
 };
@@ -69,6 +63,7 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
     std::vector<std::string> names = names_in_table(L, options, option);
     for (const std::string& name : names) {
         check_name(options, option, name, bodies_run_class);
+        check_name(options, option, name, rig_class);
         if (lua_getfield(L, -1, name.c_str()) != LUA_TTABLE) {
             options.fail(
                 {.sentence = fmt::format("{}.{} must be a table such as {}, got {}", option, name,
@@ -82,21 +77,53 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
     return names;
 }
 
-/// All of a joint but its bodies, from the table on the top.
-model::Joint read_joint(lua_State* L, const std::string& call, std::span<const text::Option> rows,
-                        BodyNumbers& numbers) {
-    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", rows};
-    const lua::Options options(L, lua_gettop(L), own);
+/// All of a joint but its bodies.
+model::Joint asked_joint(lua_State* L, const lua::Options& options, double& inertia) {
+    model::OscillatorParameters numbers;
     options.fill(numbers);
+    inertia = numbers.inertia;
     model::Joint joint;
     joint.stiffness = numbers.stiffness, joint.damping = numbers.damping;
+    joint.friction = asked_friction(L, options, options.call());
     joint.spring = asked_spring(L, options).value_or(model::Spring());
     joint.walls = asked_walls(L, options);
-    if (joint.walls) {
-        if (auto wrong = joint.walls->complaint()) options.fail(*wrong);
-    }
-    joint.friction = asked_friction(L, options, call);
+    if (const auto wrong = joint.walls ? joint.walls->complaint() : std::nullopt) options.fail(*wrong);
     return joint;
+}
+
+/// The same from the table on the top.
+model::Joint read_joint(lua_State* L, const std::string& call, std::span<const text::Option> rows, double& inertia) {
+    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", rows};
+    return asked_joint(L, lua::Options(L, lua_gettop(L), own), inertia);
+}
+
+/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
+model::OscillatorParameters alone(const model::Assembly& system, std::size_t joint) {
+    const model::Joint& own = system.joints[joint];
+    model::OscillatorParameters parameters = parameters_of(system, joint);
+    if (own.second >= 0) {
+        const double other = system.bodies[static_cast<std::size_t>(own.second)].inertia;
+        parameters.inertia = parameters.inertia / (parameters.inertia + other) * other;
+    }
+    parameters.spring = own.spring, parameters.walls = own.walls;
+    if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
+    parameters.normal = own.friction.law.normal();
+    return parameters;
+}
+
+/// Pushes the body or link as a system of its own.
+int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
+    const model::OscillatorParameters parameters = alone(system, j);
+    const auto oscillator = lua::value_or_raise(L, call, model::Oscillator::make(parameters));
+    if (system.joints[j].friction.is_constant()) {
+        lua::push(L, oscillator);
+        return 1;
+    }
+    model::Assembly one{
+        .bodies = {{"", parameters.inertia}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
+    one.joints[0].name.clear(), one.joints[0].first = 0, one.joints[0].second = model::Joint::ground;
+    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
+    return 1;
 }
 
 int body_index(const lua::Options& options, const model::Assembly& system, const std::string& link, lua_State* L) {
@@ -129,10 +156,11 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     system.units = asked_units(L, options).value_or(model::Units());
     for (std::size_t i = 0; i < names.size(); ++i) {
         lua_getfield(L, -1, names[i].c_str());
-        BodyNumbers numbers;
-        model::Joint joint = read_joint(L, "system: bodies." + names[i], body_options, numbers);
+        double inertia = 0;
+        model::Joint joint =
+            read_joint(L, fmt::format("{}: bodies.{}", options.call(), names[i]), body_options, inertia);
         joint.name = names[i], joint.first = static_cast<int>(i);
-        system.bodies.push_back({names[i], numbers.inertia});
+        system.bodies.push_back({names[i], inertia});
         system.joints.push_back(std::move(joint));
         lua_pop(L, 1);
     }
@@ -157,8 +185,8 @@ int push_bodies(lua_State* L, const lua::Options& options) {
                              fmt::format("links.{} is between two bodies, and names {}", name, lua_rawlen(L, -1)));
             }
             lua::push_copy(L, -1, 2);
-            BodyNumbers numbers;
-            model::Joint joint = read_joint(L, "system: links." + name, link_options, numbers);
+            double none = 0;
+            model::Joint joint = read_joint(L, fmt::format("{}: links.{}", options.call(), name), link_options, none);
             joint.name = name, joint.first = ends[0], joint.second = ends[1];
             system.joints.push_back(std::move(joint));
             lua_pop(L, 2);
@@ -169,9 +197,12 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     return 1;
 }
 
-int push_varying_body(lua_State* L, model::Assembly assembly) {
-    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(assembly)));
-    return 1;
+int push_body(lua_State* L, const lua::Options& options) {
+    double inertia = 0;
+    model::Assembly system{.bodies = {}, .joints = {asked_joint(L, options, inertia)}, .named = false};
+    system.bodies.push_back({"", inertia});
+    system.units = asked_units(L, options).value_or(model::Units());
+    return push_alone(L, options.call(), system, 0);
 }
 
 model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
@@ -195,6 +226,15 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
         return is ? std::optional(options.number(name)) : std::nullopt;
     };
     friction.normal = varying("normal");
+    const auto normal = number("normal");
+    // A constant load of a law is part of it, so that nobody else needs to know; of bristles it stretches the state.
+    const auto of_law = [&](const model::Friction& law) {
+        friction.law = law;
+        if (!normal || friction.bristle() != nullptr) return friction;
+        friction.law = law.under(*normal);
+        friction.normal.reset();
+        return friction;
+    };
     options.push("friction");
     const bool function = lua::is_callable(L, -1) && lua::test<model::Friction>(L, -1) == nullptr;
     if (function) {
@@ -213,15 +253,13 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
         return friction;
     }
     if (const auto law = asked_law(L, options, {"Rd", "Re"}, true)) {
-        friction.law = *law;
-        return friction;
+        return of_law(*law);
     }
     const bool numbers = (!options.has("Rd") || Rd) && (!options.has("Re") || Re);
     if (numbers) {
         const model::laws::Coulomb law{Rd.value_or(0), Re.value_or(Rd.value_or(0))};
         if (auto wrong = law.complaint()) options.fail(*wrong);
-        if (law.breakaway > 0) friction.law = law;
-        return friction;
+        return of_law(law.breakaway > 0 ? model::Friction(law) : model::Friction());
     }
     auto sliding = varying("Rd"), holding = varying("Re");
     if (!sliding) {  // nothing brakes, but something holds
@@ -240,10 +278,11 @@ constexpr auto bodies_simulate_options = text::joined(bodies_drive_rows, window_
 constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
                                           bodies_simulate_options};
 
-/// Calls f with each name of the table of this option, the value on the top of the stack; names are those of `known`.
+/// Calls f with the joint of each name in the table of this option, the value on the top of the stack.
+enum class Names { bodies, links, both };
 template <class F>
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
-                    bool links_too, F f) {
+                    Names which, F f) {
     if (!options.has(option)) return;
     options.push(option);
     if (!system.named) {
@@ -253,22 +292,118 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
     }
     if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
     std::vector<std::string> known;
-    for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        if (links_too || !system.is_link(j)) known.push_back(system.joints[j].name);
-    }
+    const std::size_t first = which == Names::links ? system.bodies.size() : 0;
+    const std::size_t end = which == Names::bodies ? system.bodies.size() : system.joints.size();
+    for (std::size_t j = first; j < end; ++j) known.push_back(system.joints[j].name);
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : lua::written(L, -2);
         const auto found = std::find(known.begin(), known.end(), name);
         if (found == known.end()) {
-            options.fail({.sentence = fmt::format("{}: there is no body{} '{}'; there is {}", option,
-                                                  links_too ? " or link" : "", name, fmt::join(known, ", ")),
+            const char* kind = which == Names::bodies ? "body" : which == Names::links ? "link" : "body or link";
+            options.fail({.sentence = fmt::format("{}: there is no {} '{}'; there is {}", option, kind, name,
+                                                  known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))),
                           .option = option,
                           .culprit = name,
                           .cure = text::did_you_mean(name, known)});
         }
-        f(static_cast<std::size_t>(found - known.begin()));
+        f(first + static_cast<std::size_t>(found - known.begin()));
     }
     lua_pop(L, 1);
+}
+
+// ---- with
+
+/// The number or the function, where it is nothing else.
+void push_acting(lua_State* L, const model::Excitation& value) {
+    const auto& parts = value.components();
+    const auto* constant = parts.size() == 1 ? std::get_if<model::Constant>(&parts.front().term) : nullptr;
+    const bool always = constant != nullptr && parts.front().from == -model::never && parts.front().to == model::never;
+    if (const lua::LuaFunction* function = source::function_alone(value)) {
+        function->push(L);
+    } else if (always) {
+        lua_pushnumber(L, parts.front().gain * constant->amplitude);
+    } else {
+        lua::push(L, value);
+    }
+}
+
+/// Pushes the table of options that makes the body or link.
+void push_options(lua_State* L, const model::Assembly& system, std::size_t j) {
+    const model::Joint& joint = system.joints[j];
+    const model::ContactFriction& friction = joint.friction;
+    lua_newtable(L);
+    if (system.is_link(j)) {
+        for (const int end : {joint.first, joint.second}) {
+            lua::push_text(L, system.bodies[static_cast<std::size_t>(end)].name);
+            lua_rawseti(L, -2, end == joint.first ? 1 : 2);
+        }
+    } else {
+        lua::set_number(L, "I", system.bodies[j].inertia);
+    }
+    lua::set_number(L, "k", joint.stiffness);
+    lua::set_number(L, "C", joint.damping);
+    const auto acting = [&](const char* name, const std::optional<model::Excitation>& value) {
+        if (!value) return;
+        push_acting(L, *value);
+        lua_setfield(L, -2, name);
+    };
+    if (const auto* own = dynamic_cast<const lua::LuaFunction*>(friction.function.get())) {
+        own->push(L);
+        lua_setfield(L, -2, "friction");
+    }
+    const model::Friction law = friction.law.under(1);
+    if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
+        lua::set_number(L, "Rd", coulomb->kinetic);
+        lua::set_number(L, "Re", coulomb->breakaway);
+    } else if (!law.none()) {
+        lua::set_value(L, "friction", law);
+    }
+    if (friction.law.normal() != 1) lua::set_number(L, "normal", friction.law.normal());
+    acting("Rd", friction.sliding[1]);
+    acting("Re", friction.holding[1]);
+    acting("normal", friction.normal);
+    if (!joint.spring.none()) lua::set_value(L, "spring", joint.spring);
+    lua::set_value(L, "walls", walls_by_name(joint.walls));
+}
+
+/// Writes what stands in the table on the top into that below it, the options of a body. A new Rd and Re make another
+/// law one of Coulomb's again; Re goes with Rd where the two were one number.
+void overwrite(lua_State* L, const lua::Options& options) {
+    const int changes = lua_gettop(L), into = changes - 1;
+    const auto has = [L](int table, const char* name) {
+        const bool is = lua_getfield(L, table, name) != LUA_TNIL;
+        lua_pop(L, 1);
+        return is;
+    };
+    const auto remove = [&](const char* name) {
+        lua_pushnil(L);
+        lua_setfield(L, into, name);
+    };
+    const bool Rd = has(changes, "Rd"), Re = has(changes, "Re");
+    if (has(changes, "friction")) {
+        remove("Rd"), remove("Re");
+    } else if (has(into, "friction")) {
+        lua_getfield(L, into, "friction");
+        const auto* law = lua::test<model::Friction>(L, -1);
+        if (Rd != Re && (Rd || law != nullptr)) {
+            options.fail(Rd ? "Rd" : "Re",
+                         fmt::format("the friction of this system is {}: give both Rd and Re, or friction",
+                                     law == nullptr ? "a function" : source::lua_text(L, *law)));
+        }
+        lua_pop(L, 1);
+        if (Rd) remove("friction");
+    } else if (Rd && !Re) {
+        lua_getfield(L, into, "Rd");
+        lua_getfield(L, into, "Re");
+        const bool one_number = lua_rawequal(L, -1, -2) != 0;
+        lua_pop(L, 2);
+        if (one_number) remove("Re");
+    }
+    for (lua_pushnil(L); lua_next(L, changes) != 0; lua_pop(L, 1)) {
+        lua_pushvalue(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, into);
+    }
 }
 
 /// What relays can look at: theta.load, velocity.load and the states.
@@ -286,6 +421,51 @@ std::vector<std::string> names_for_relays(const model::Assembly& system, const e
 
 }  // namespace
 
+int system_with(lua_State* L) {
+    const auto* plain = lua::test<model::Oscillator>(L, 1);
+    if (plain == nullptr) static_cast<void>(lua::self<AssemblyHandle>(L, 1, with_call.example));
+    model::Assembly old = plain != nullptr ? engine::assembly_of(*plain) : **lua::test<AssemblyHandle>(L, 1);
+    if (plain != nullptr) old.units = plain->units();
+    const text::Call& call = old.named ? rig_with_call : with_call;
+    const lua::Options options(L, 2, call);
+    const int top = lua_gettop(L);
+    if (old.named) {
+        lua_newtable(L);
+        for (const Names which : {Names::bodies, Names::links}) {
+            lua_newtable(L);
+            for (std::size_t j = 0; j < old.joints.size(); ++j) {
+                if (old.is_link(j) != (which == Names::links)) continue;
+                push_options(L, old, j);
+                lua_setfield(L, -2, old.joints[j].name.c_str());
+            }
+            const char* option = which == Names::links ? "links" : "bodies";
+            for_each_named(L, options, option, old, which, [&](std::size_t j) {
+                if (!lua_istable(L, -1)) options.wrong(option);
+                lua_getfield(L, top + 2, old.joints[j].name.c_str());
+                lua_pushvalue(L, -2);
+                overwrite(L, options);
+                lua_pop(L, 2);
+            });
+            lua_setfield(L, top + 1, option);
+        }
+    } else {
+        push_options(L, old, 0);
+        lua_pushvalue(L, 2);
+        overwrite(L, options);
+        lua_pop(L, 1);
+    }
+    if (options.has("units")) {
+        options.push("units");
+        lua_setfield(L, top + 1, "units");
+    } else {
+        lua::set_value(L, "units", units_by_name(old.units));
+    }
+    lua_replace(L, 2);
+    lua_settop(L, 2);
+    const lua::Options all(L, 2, {call.name, call.example, system_options});
+    return old.named ? push_bodies(L, all) : push_body(L, all);
+}
+
 engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
     engine::Drive drive;
     const std::size_t n = system.bodies.size();
@@ -297,9 +477,9 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
     const auto named = [&](const char* option, std::size_t joint) {
         return fmt::format("{}: {}", options.call(), part(option, joint));
     };
-    for_each_named(L, options, "M", system, false,
+    for_each_named(L, options, "M", system, Names::bodies,
                    [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
-    for_each_named(L, options, "belt", system, true, [&](std::size_t j) {
+    for_each_named(L, options, "belt", system, Names::both, [&](std::size_t j) {
         drive.belts[j] = to_excitation(L, -1, named("belt", j), "belt");
         if (drive.belts[j].has_feedback() || model::has_memory(drive.belts[j])) {
             options.fail("belt", "belt must be a number, an excitation or a function of t alone");
@@ -307,7 +487,7 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
     });
     for (const auto& [option, values] :
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
-        for_each_named(L, options, option, system, false, [&, name = option, to = values](std::size_t i) {
+        for_each_named(L, options, option, system, Names::bodies, [&, name = option, to = values](std::size_t i) {
             if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
                 options.fail(name,
                              fmt::format("{} must be a finite number, got {}", part(name, i), lua::describe(L, -1)));
@@ -528,6 +708,56 @@ std::vector<std::string> joint_names(const model::Assembly& system) {
         if (system.is_link(j) == links) names.push_back(system.joints[j].name);
     }
     return names;
+}
+
+/// That which is no number or law of the options in the table on the top.
+const char* varying_option(lua_State* L) {
+    for (const char* name : {"friction", "Rd", "Re", "normal"}) {
+        const bool given = lua_getfield(L, -1, name) != LUA_TNIL;
+        const bool constant = lua_type(L, -1) == LUA_TNUMBER || lua::test<model::Friction>(L, -1) != nullptr;
+        lua_pop(L, 1);
+        if (given && !constant) return name;
+    }
+    return nullptr;
+}
+
+/// rig.load is the body or link as a system. One body without a name has the fields of a system.
+int field_of_rig(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) return 0;
+    const AssemblyHandle rig = lua::self<AssemblyHandle>(L, 1, "rig.load");
+    const std::string_view name = lua_tostring(L, 2);
+    const auto& members = system_class.members;
+    const auto member = std::find_if(members.begin(), members.end(), [&](const lua::Member& one) {
+        return one.name == name && one.kind == lua::Kind::field;
+    });
+    const bool own = std::any_of(rig->joints.begin(), rig->joints.end(), [&](const auto& j) { return j.name == name; });
+    if (rig->named && !own && member != members.end()) {
+        lua::raise(L, {.sentence = fmt::format("{0} is of one body or link: rig.{1}.{0}", name, rig->joints[0].name),
+                       .culprit = std::string(name)});
+    }
+    if (rig->named) {
+        return push_alone(L, fmt::format("rig.{}", name), *rig, joint_named(L, 2, *rig, "this system", rig_class));
+    }
+    if (member == members.end()) return 0;
+    push_options(L, *rig, 0);
+    const char* varying = varying_option(L);
+    if (member->name == "Rd" || member->name == "Re" || member->name == "normal" || member->name == "friction") {
+        if (lua_getfield(L, -1, lua_tostring(L, 2)) != LUA_TNIL) return 1;
+        lua_pop(L, 1);
+        if (name == "Re" && lua_getfield(L, -1, "Rd") != LUA_TNIL) return 1;
+        if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // of no matter to the law
+    } else if (name != "dead_zone") {
+        varying = nullptr;
+    }
+    if (varying != nullptr && name != "normal") {
+        lua_getfield(L, 3, varying);
+        lua::raise(L, fmt::format("this system has no constant {}: its {} is {}", name, varying,
+                                  lua::is_callable(L, -1) ? "a function" : lua::describe(L, -1)));
+    }
+    lua_pushcfunction(L, member->call);
+    lua::push(L, lua::value_or_raise(L, "rig", model::Oscillator::make(alone(*rig, 0))));
+    lua_call(L, 1, 1);
+    return 1;
 }
 
 std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
@@ -782,6 +1012,14 @@ constexpr lua::Member rig_members[] = {
       "end }\n"
       "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
       {&rig_response_call}}},
+    {lua::a_method<system_with>,
+     {"rig:with{ OPTIONS } -> rig",
+      "A copy of the system with some parameters of its bodies and links changed, each by the options of system{...}.",
+      DINAL_RIG "print(rig:with{ bodies = { load = { Rd = 0.5 } } }.load.Rd)  --> 0.5",
+      {&rig_with_call}}},
+    {lua::a_value<AssemblyHandle, [](const AssemblyHandle& rig) { return units_by_name(rig->units); }>,
+     {"rig.units -> table", "The names of the units of theta, t and M; nil without one.",
+      DINAL_RIG "print(rig.units.theta)  --> rad"}},
     {lua::a_value<AssemblyHandle, joint_names<false>>,
      {"rig.bodies -> table", "The names of the bodies, in alphabetical order.",
       DINAL_RIG "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
@@ -880,10 +1118,14 @@ constexpr lua::Member bodies_run_members[] = {
 const lua::Class rig_class = {
     "rig",
     {"system{ bodies = { ... }, links = { ... } } -> rig",
-     "A system of several bodies, or of one whose friction depends on more than its speed. It cannot be changed.",
+     "A system of several bodies, or of one whose friction depends on more than its speed. It cannot be changed. rig.load "
+     "is the body `load` as a system of its own, with all fields of a system: rig.load.omega0. For a link such as "
+     "rig.shaft, I is I1 I2/(I1 + I2), which is what turns if both of its bodies are free. One body without a name has "
+     "the fields of a system except for dead_zone.",
      "rig = system{ I = 1, k = 4, Rd = 0.3, normal = function(t) return 1 + t end }\n"
      "print(rig:simulate{ theta0 = 1, t_end = 20 }.outcome)  --> stuck at the end"},
-    rig_members};
+    rig_members,
+    field_of_rig};
 
 const lua::Class bodies_run_class = {
     "run of several bodies",

@@ -283,13 +283,14 @@ std::shared_ptr<model::UserFunction> function_at(lua_State* L, const lua::Option
 
 }  // namespace
 
-void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of_run) {
+void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of) {
     const auto refuse = [&](std::string_view why) {
         options.fail({.sentence = fmt::format("{}: '{}' {}", option, name, why), .option = option, .culprit = name});
     };
     if (!lua::is_name(name)) refuse("is not a name; use letters, digits and _");
-    for (const lua::Member& member : of_run.members) {
-        if (name == member.name) refuse("is a name that a run has already; take another");
+    for (const lua::Member& member : of.members) {
+        if (name == member.name)
+            refuse(fmt::format("is a name that a {} has already; take another", &of == &rig_class ? "system" : "run"));
     }
 }
 

@@ -22,26 +22,6 @@ namespace dinal::api {
 
 namespace {
 
-constexpr text::Option body_numbers[] = {
-    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia; needed unless bodies is given",
-     text::fills<&model::OscillatorParameters::inertia>},
-    model::mechanical_options[1],
-    model::mechanical_options[2],
-};
-constexpr text::Option other_system_options[] = {
-    model::mechanical_options[6],
-    model::mechanical_options[7],
-    {.name = "bodies",
-     .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with the options of a "
-                "system of one body, against the ground",
-     .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
-    {.name = "links",
-     .meaning = "connections between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
-                "the options of a body except I; the angle of a link is that of the first body minus that "
-                "of the second",
-     .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
-};
-constexpr auto system_options = text::joined(body_numbers, friction_options, other_system_options, model::units_option);
 constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }", system_options, false,
                                  &simulate_call};
 
@@ -63,7 +43,6 @@ constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta
 
 int system(lua_State* L) {
     const lua::Options options(L, 1, system_call);
-    model::OscillatorParameters parameters;
     if (options.has("bodies")) return push_bodies(L, options);
     if (options.has("links")) {
         options.push("links");
@@ -71,26 +50,7 @@ int system(lua_State* L) {
         options.fail("links", "links connect bodies: give bodies = { ... } as well");
     }
     if (!options.has("I")) options.missing("I");
-    options.fill(parameters);
-    const model::ContactFriction friction = asked_friction(L, options, "system");
-    parameters.spring = asked_spring(L, options).value_or(model::Spring());
-    parameters.walls = asked_walls(L, options);
-    parameters.units = asked_units(L, options).value_or(model::Units());
-    if (!friction.is_constant()) {
-        options.value_or_fail(model::Oscillator::make(parameters));  // all else is as of any system
-        model::Joint joint;
-        joint.stiffness = parameters.stiffness, joint.damping = parameters.damping;
-        joint.spring = parameters.spring, joint.friction = friction, joint.walls = parameters.walls;
-        model::Assembly assembly{.bodies = {{"", parameters.inertia}}, .joints = {joint}, .named = false};
-        assembly.units = parameters.units;
-        return push_varying_body(L, std::move(assembly));
-    }
-    if (const auto* law = friction.law.as<model::laws::Coulomb>(); law != nullptr && !options.has("friction")) {
-        parameters.kinetic_friction = law->kinetic, parameters.breakaway = law->breakaway;
-    } else {
-        parameters.friction = asked_law(L, options, {"Rd", "Re"});
-    }
-    return push_system(L, options, parameters);
+    return push_body(L, options);
 }
 
 int nondimensional(lua_State* L) {
@@ -120,14 +80,6 @@ int nondimensional(lua_State* L) {
 template <auto get>
 std::optional<double> with_spring(const model::Oscillator& system) {
     return system.has_spring() ? std::optional((system.*get)()) : std::nullopt;
-}
-
-std::optional<lua::NamedNumbers> walls_of(const model::Oscillator& system) {
-    const auto& walls = system.walls();
-    if (!walls) return {};
-    lua::NamedNumbers numbers{{"lower", walls->lower}, {"upper", walls->upper}, {"restitution", walls->restitution}};
-    std::erase_if(numbers, [](const auto& one) { return std::isinf(one.second); });
-    return numbers;
 }
 
 text::Expected<double> friction_ratio(const model::Oscillator& sys, double Mc) {
@@ -166,7 +118,8 @@ constexpr lua::Member system_members[] = {
     {lua::a_method<simulate_system>, simulate_doc},
     {lua::a_method<system_with>,
      {"sys:with{ OPTIONS } -> system",
-      "A copy of the system with some parameters changed.",
+      "A copy of the system with some parameters changed: the options of system{...}. Re changes with Rd if the two were "
+      "equal; spring.polynomial{} removes a spring, and walls = {} the walls.",
       "sys = system{ I = 1, k = 4, Rd = 0.5 }\nprint(sys:with{ Rd = 1 })  --> system{ I = 1, k = 4, Rd = 1, Re = 1 }",
       {&with_call}}},
     {lua::a_typed_method<friction_ratio>,
@@ -184,15 +137,20 @@ constexpr lua::Member system_members[] = {
     {lua::a_value<model::Oscillator, &model::Oscillator::damping>,
      {"sys.C -> number", "The viscous damping constant, torque per rad per time unit.",
       "print(system{ I = 2, k = 4 }.C)  --> 0.0"}},
-    {lua::a_value<model::Oscillator, &model::Oscillator::kinetic_friction>,
-     {"sys.Rd -> number", "The torque of dry friction while the mass moves.",
+    {lua::a_value<model::Oscillator,
+                  [](const model::Oscillator& system) { return system.friction().under(1).kinetic(); }>,
+     {"sys.Rd -> number", "The torque of dry friction while the mass moves, under a normal load of 1.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Rd)  --> 0.5"}},
-    {lua::a_value<model::Oscillator, &model::Oscillator::breakaway>,
-     {"sys.Re -> number", "The breakaway torque. Rd unless given.",
+    {lua::a_value<model::Oscillator,
+                  [](const model::Oscillator& system) { return system.friction().under(1).greatest_holding(); }>,
+     {"sys.Re -> number", "The breakaway torque under a normal load of 1. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
-    {lua::a_value<model::Oscillator, &model::Oscillator::friction>,
-     {"sys.friction -> law", "The law of friction.",
+    {lua::a_value<model::Oscillator, [](const model::Oscillator& system) { return system.friction().under(1); }>,
+     {"sys.friction -> law", "The law of friction, under a normal load of 1.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.friction)  --> friction.coulomb{ Rd = 0.5, Re = 0.5 }"}},
+    {lua::a_value<model::Oscillator, [](const model::Oscillator& system) { return system.friction().normal(); }>,
+     {"sys.normal -> number", "The constant normal load that multiplies the torques of friction.",
+      "sys = system{ I = 1, k = 4, Rd = 1, normal = 2 }\nprint(sys.normal, sys.dead_zone)  --> 2.0\t0.5"}},
     {lua::a_value<model::Oscillator,
                   [](const model::Oscillator& system) {
                       const model::Spring& spring = system.spring();
@@ -200,7 +158,7 @@ constexpr lua::Member system_members[] = {
                   }>,
      {"sys.spring -> spring or nil", "The spring in addition to k theta; nil if there is none.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
-    {lua::a_value<model::Oscillator, walls_of>,
+    {lua::a_value<model::Oscillator, [](const model::Oscillator& system) { return walls_by_name(system.walls()); }>,
      {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad; nil if there are none.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
     {lua::a_value<model::Oscillator, [](const model::Oscillator& system) { return units_by_name(system.units()); }>,
@@ -235,7 +193,7 @@ constexpr lua::Member system_members[] = {
                   }>,
      {"sys.dead_zone -> number",
       "Re/k, rad: without excitation the mass can rest wherever |theta| is at most this; nil if "
-      "k = 0 or with another spring.",
+      "k = 0 or with another spring. A normal load multiplies it.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {lua::a_text<model::Oscillator,
                  [](lua_State* L, const model::Oscillator& system) { return source::lua_text(L, system); }>,
@@ -304,44 +262,6 @@ std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& option
     return is_empty ? std::nullopt : asked_table<model::Walls>(L, options, "walls", model::walls_call);
 }
 
-/// A new Rd or Re makes another law one of Coulomb's again; Re goes with Rd where the two were one number.
-int system_with(lua_State* L) {
-    const model::Oscillator& old = lua::self<model::Oscillator>(L, 1, with_call.example);
-    const lua::Options options(L, 2, with_call);
-    model::OscillatorParameters parameters = old.parameters();
-    SystemChanges changes;
-    options.fill(changes);
-    parameters.inertia = changes.inertia.value_or(parameters.inertia);
-    parameters.stiffness = changes.stiffness.value_or(parameters.stiffness);
-    parameters.damping = changes.damping.value_or(parameters.damping);
-    if (const auto spring = asked_spring(L, options)) {
-        parameters.spring = *spring;
-    }
-    if (options.has("walls")) {
-        parameters.walls = asked_walls(L, options);
-    }
-    if (const auto units = asked_units(L, options)) {
-        parameters.units = *units;
-    }
-    const auto law = asked_law(L, options, {"Rd", "Re"});
-    if (law) {
-        parameters.friction = law;
-    } else if (changes.kinetic || changes.breakaway) {
-        if (parameters.friction && !(changes.kinetic && changes.breakaway)) {
-            options.fail(changes.kinetic ? "Rd" : "Re",
-                         fmt::format("the friction of this system is {}: give both Rd and Re, or friction",
-                                     source::lua_text(L, *parameters.friction)));
-        }
-        const bool one_number = parameters.breakaway == parameters.kinetic_friction;
-        parameters.friction.reset();
-        parameters.kinetic_friction = changes.kinetic.value_or(parameters.kinetic_friction);
-        if (changes.breakaway || one_number) {
-            parameters.breakaway = changes.breakaway ? changes.breakaway : parameters.kinetic_friction;
-        }
-    }
-    return push_system(L, options, parameters);
-}
-
 std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options) {
     auto units = asked_table<model::Units>(L, options, "units", model::units_call);
     if (const auto wrong = units ? units->complaint() : std::nullopt) options.fail(*wrong);
@@ -350,6 +270,13 @@ std::optional<model::Units> asked_units(lua_State* L, const lua::Options& option
 
 const model::Units& units_of(const Run& run) {
     return run.origin ? run.origin->system.units() : run.units;
+}
+
+std::optional<lua::NamedNumbers> walls_by_name(const std::optional<model::Walls>& walls) {
+    if (!walls) return {};
+    lua::NamedNumbers numbers{{"lower", walls->lower}, {"upper", walls->upper}, {"restitution", walls->restitution}};
+    std::erase_if(numbers, [](const auto& one) { return std::isinf(one.second); });
+    return numbers;
 }
 
 std::map<std::string, std::string> units_by_name(const model::Units& units) {

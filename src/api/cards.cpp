@@ -39,8 +39,12 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
                 screen);
     text += row("k", system.stiffness(), of_unit("stiffness", units.stiffness()), screen);
     text += row("C", system.damping(), of_unit("viscous damping", units.damping()), screen);
-    text += row("Rd", system.kinetic_friction(), of_unit("dry friction while sliding", units.M), screen);
-    text += row("Re", system.breakaway(), of_unit("breakaway torque", units.M), screen);
+    const model::Friction law = system.friction().under(1);
+    text += row("Rd", law.kinetic(), of_unit("dry friction while sliding", units.M), screen);
+    text += row("Re", law.greatest_holding(), of_unit("breakaway torque", units.M), screen);
+    if (system.friction().normal() != 1) {
+        text += row("normal", system.friction().normal(), "factor of the torques of friction", screen);
+    }
     if (!system.friction().none() && system.friction().as<model::laws::Coulomb>() == nullptr) {
         text += "\n  friction   " + source::lua_text(L, system.friction());
     }

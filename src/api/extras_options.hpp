@@ -82,7 +82,7 @@ void check_relays(const lua::Options& options, const model::Excitation& excitati
                   const std::string& M = "M");
 
 /// Raises when the name under the option is no name of Lua, or one that a run of the class has.
-void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of_run);
+void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of);
 
 /// The names in the table on the top, sorted, since a table has no order.
 std::vector<std::string> names_in_table(lua_State* L, const lua::Options& options, const char* option);

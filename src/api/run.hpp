@@ -89,6 +89,9 @@ std::optional<model::Units> asked_units(lua_State* L, const lua::Options& option
 /// Those of its system, or those that stand in the file that it was read from.
 const model::Units& units_of(const Run& run);
 
+/// Their numbers by name, without a wall that is none; none without walls.
+std::optional<lua::NamedNumbers> walls_by_name(const std::optional<model::Walls>& walls);
+
 /// Those that have a name, by "theta", "t" and "M".
 std::map<std::string, std::string> units_by_name(const model::Units& units);
 

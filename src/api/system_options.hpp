@@ -41,38 +41,70 @@ inline constexpr text::Option law_option[] = {
      .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
 };
 
-/// What sys:with changes.
-struct SystemChanges {
-    std::optional<double> inertia = {}, stiffness = {}, damping = {}, kinetic = {}, breakaway = {};
-};
-inline constexpr text::Option number_changes[] = {
-    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia",
-     text::fills<&SystemChanges::inertia>},
-    {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
-     text::fills<&SystemChanges::stiffness>},
-    {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
-     text::fills<&SystemChanges::damping>},
-    {"Rd", "torque", text::its_own, text::not_negative,
-     "dry friction while sliding; Re changes with it if the two were equal", text::fills<&SystemChanges::kinetic>},
-    {"Re", "torque", text::its_own, text::not_negative, "breakaway torque, at least Rd",
-     text::fills<&SystemChanges::breakaway>},
-};
-inline constexpr text::Option spring_change[] = {
-    {.name = "spring",
+/// A number, an excitation or a function, where a system of one body takes a number.
+inline constexpr const char* varying_wanted = "a number, an excitation or a function of t, theta, velocity, z";
+inline constexpr text::Option friction_options[] = {
+    {.name = "Rd",
      .unit = "torque",
-     .meaning = "another spring in addition to k theta; spring.polynomial{} removes it",
-     .object = "spring",
-     .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
-    {.name = "walls",
-     .unit = "rad",
-     .meaning = "other end stops; {} removes them",
-     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
-     .fields = {&model::walls_call}},
+     .otherwise = "0",
+     .range = text::not_negative,
+     .meaning = "dry friction while sliding: a number, an excitation or a function of t, theta, velocity, z",
+     .object = "excitation",
+     .wanted = varying_wanted},
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = "Rd",
+     .range = text::not_negative,
+     .meaning = "breakaway torque: a number, at least Rd, an excitation or a function of t, theta, velocity, z",
+     .object = "excitation",
+     .wanted = varying_wanted},
+    {.name = "friction",
+     .meaning = "another law of friction, instead of Rd and Re: a law, or a function of speed, t, theta, velocity, z",
+     .object = "friction",
+     .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }, or a function of speed, t, theta, "
+               "velocity, z"},
+    {.name = "normal",
+     .otherwise = "1",
+     .meaning = "normal load, a factor of the torques of friction: a number, an excitation or a function "
+                "of t, theta, velocity, z; a negative one counts as 0",
+     .object = "excitation",
+     .wanted = varying_wanted},
 };
-inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change, model::units_option);
-inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
 
-/// sys:with{ OPTIONS }.
+inline constexpr text::Option body_numbers[] = {
+    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia; needed unless bodies is given",
+     text::fills<&model::OscillatorParameters::inertia>},
+    model::mechanical_options[1],
+    model::mechanical_options[2],
+};
+inline constexpr text::Option spring_and_walls[] = {model::mechanical_options[6], model::mechanical_options[7]};
+inline constexpr text::Option bodies_and_links[] = {
+    {.name = "bodies",
+     .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with the options of a "
+                "system of one body, against the ground",
+     .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
+    {.name = "links",
+     .meaning = "connections between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
+                "the options of a body except I; the angle of a link is that of the first body minus that "
+                "of the second",
+     .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
+};
+inline constexpr auto system_options =
+    text::joined(body_numbers, friction_options, spring_and_walls, bodies_and_links, model::units_option);
+
+/// The same for a change, where none is needed and none has a default.
+constexpr auto none_needed(auto rows) {
+    for (text::Option& row : rows) row.otherwise = text::its_own, row.filled.initial = nullptr;
+    return rows;
+}
+inline constexpr auto change_options =
+    none_needed(text::joined(body_numbers, friction_options, spring_and_walls, model::units_option));
+inline constexpr auto rig_change_options = none_needed(text::joined(bodies_and_links, model::units_option));
+inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
+inline constexpr text::Call rig_with_call{"rig:with", "rig:with{ bodies = { load = { Rd = 0.5 } } }",
+                                          rig_change_options};
+
+/// sys:with{ OPTIONS } of one body or several.
 int system_with(lua_State* L);
 
 }  // namespace dinal::api

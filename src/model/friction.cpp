@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "model/laws/stribeck.hpp"
+
 namespace dinal::model {
 
 std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double Re) {
@@ -20,6 +22,11 @@ std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double 
     return error("Re", fmt::format("{0}Re = {1} must be at least {0}Rd = {2}: breakaway takes no less than "
                                    "kinetic friction",
                                    of, Re, Rd));
+}
+
+double Friction::kinetic() const {
+    const auto* stribeck = as<laws::Stribeck>();
+    return stribeck != nullptr ? normal_ * stribeck->kinetic : greatest_sliding();
 }
 
 }  // namespace dinal::model

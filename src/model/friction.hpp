@@ -72,12 +72,28 @@ public:
     Friction(const Law& law)  // NOLINT(google-explicit-constructor): a law is a friction
         : law_(std::make_shared<const Held<Law>>(law)) {}
 
-    [[nodiscard]] double sliding(Motion way, double speed) const { return law_ ? law_->sliding(way, speed) : 0; }
-    [[nodiscard]] double holding(Motion way) const { return law_ ? law_->holding(way) : 0; }
-    [[nodiscard]] bool depends_on_speed() const { return law_ && law_->depends_on_speed(); }
+    /// The same law under this constant normal load, which multiplies its torques; a negative one counts as 0.
+    [[nodiscard]] Friction under(double normal) const {
+        Friction loaded = *this;
+        loaded.normal_ = std::max(0.0, normal);
+        return loaded;
+    }
+    [[nodiscard]] double normal() const { return normal_; }
+
+    [[nodiscard]] double sliding(Motion way, double speed) const {
+        return law_ ? normal_ * law_->sliding(way, speed) : 0;
+    }
+    [[nodiscard]] double holding(Motion way) const { return law_ ? normal_ * law_->holding(way) : 0; }
+    [[nodiscard]] bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
+    /// Rd; the greater one of a law with other numbers each way, at speed 0 where a law has no Rd of its own.
+    [[nodiscard]] double kinetic() const;
     /// 0: it does not name its corners.
     [[nodiscard]] std::size_t ranges() const { return law_ ? law_->ranges() : 0; }
-    [[nodiscard]] SpeedRange range(std::size_t i) const { return law_->range(i); }
+    [[nodiscard]] SpeedRange range(std::size_t i) const {
+        SpeedRange range = law_->range(i);
+        range.torque *= normal_, range.slope *= normal_;
+        return range;
+    }
     /// The range of this speed; of a corner, the one above it.
     [[nodiscard]] std::size_t range_of(double speed) const {
         std::size_t low = 0, high = ranges();
@@ -87,12 +103,12 @@ public:
         }
         return low;
     }
-    [[nodiscard]] double slope(double speed) const { return law_->slope(speed); }
+    [[nodiscard]] double slope(double speed) const { return normal_ * law_->slope(speed); }
     [[nodiscard]] double scale(double speed) const { return law_->scale(speed); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
-    /// The Lua expression that makes the law again; empty when it knows none.
+    /// The Lua expression that makes the law again, without its normal load; empty when it knows none.
     [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
     /// Nothing brakes and nothing holds: velocity zero means nothing.
     [[nodiscard]] bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
@@ -103,7 +119,7 @@ public:
     [[nodiscard]] double greatest_holding() const {
         return std::max(holding(Motion::forward), holding(Motion::backward));
     }
-    /// The law itself, if it is of this kind.
+    /// The law itself, without its normal load, if it is of this kind.
     template <FrictionLaw Law>
     [[nodiscard]] const Law* as() const {
         const Any* law = law_.get();
@@ -171,6 +187,7 @@ private:
         Law law;
     };
     std::shared_ptr<const Any> law_;  // shared by the copies of a system, which never change it
+    double normal_ = 1;
 };
 
 }  // namespace dinal::model

@@ -18,7 +18,7 @@ Friction with_functions(const Friction& law, auto&& other) {
     if (own == nullptr) return law;
     laws::UserLaw changed = *own;
     changed.function = other(own->function);
-    return changed;
+    return Friction(changed).under(law.normal());
 }
 
 Spring with_functions(const Spring& spring, auto&& other) {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "model/laws/coulomb.hpp"
-#include "model/laws/stribeck.hpp"
 #include "model/laws/user_law.hpp"
 
 namespace dinal::model {
@@ -34,7 +33,7 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.inertia_ = p.inertia;
     o.stiffness_ = p.stiffness;
     o.damping_ = p.damping;
-    o.friction_ = friction;
+    o.friction_ = friction.under(p.normal);
     if (auto wrong = p.spring.complaint()) return *wrong;
     o.spring_ = p.spring;
     if (p.walls) {
@@ -115,11 +114,6 @@ Regime Oscillator::regime() const {
     return zeta < 1 ? Regime::underdamped : Regime::overdamped;
 }
 
-double Oscillator::kinetic_friction() const {
-    const auto* stribeck = friction_.as<laws::Stribeck>();
-    return stribeck != nullptr ? stribeck->kinetic : friction_.greatest_sliding();
-}
-
 double Oscillator::friction_ratio(double characteristic_torque) const {
     return kinetic_friction() / std::fabs(characteristic_torque);
 }
@@ -137,6 +131,7 @@ OscillatorParameters Oscillator::parameters() const {
     OscillatorParameters p{.inertia = inertia_,
                            .stiffness = stiffness_,
                            .damping = damping_,
+                           .normal = friction_.normal(),
                            .spring = spring_,
                            .walls = walls_,
                            .units = units()};
@@ -144,7 +139,7 @@ OscillatorParameters Oscillator::parameters() const {
         p.kinetic_friction = law->kinetic;
         p.breakaway = law->breakaway;
     } else {
-        p.friction = friction_;
+        p.friction = friction_.under(1);
     }
     return p;
 }

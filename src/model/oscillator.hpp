@@ -31,6 +31,7 @@ struct OscillatorParameters {
     double kinetic_friction = 0;            ///< Rd, torque of dry friction while moving
     std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
     std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
+    double normal = 1;                      ///< constant load that multiplies the torques of friction
     Spring spring = {};                     ///< besides k theta
     std::optional<Walls> walls = {};        ///< end stops
     Units units = {};                       ///< words, on which nothing depends
@@ -95,8 +96,8 @@ public:
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
     /// After a torque that was no number: whether what a user has written of the system may be asked again.
     [[nodiscard]] bool may_go_on() const;
-    /// Rd; the greater one of a law with other numbers each way, at speed 0 where a law has no Rd of its own.
-    [[nodiscard]] double kinetic_friction() const;
+    /// Rd under the normal load, as are all torques of friction here.
+    [[nodiscard]] double kinetic_friction() const { return friction_.kinetic(); }
     /// Re; of a law with other numbers each way the greater one.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 

@@ -49,11 +49,12 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
         text += ", walls = " + system.walls()->lua_text();
     }
     const model::Friction& law = system.friction();
-    if (!law.none()) {
-        text += law.as<model::laws::Coulomb>() != nullptr
-                    ? fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway())
-                    : ", friction = " + lua_text(L, law, whole);
+    if (!law.under(1).none()) {
+        const auto* coulomb = law.as<model::laws::Coulomb>();
+        text += coulomb != nullptr ? fmt::format(", Rd = {}, Re = {}", coulomb->kinetic, coulomb->breakaway)
+                                   : ", friction = " + lua_text(L, law, whole);
     }
+    if (law.normal() != 1) text += fmt::format(", normal = {}", law.normal());
     if (!system.units().usual()) {
         text += ", units = " + system.units().lua_text();
     }
@@ -90,6 +91,7 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
     } else if (!friction.law.none()) {
         parts.push_back("friction = " + lua_text(L, friction.law, whole));
     }
+    if (friction.law.normal() != 1) parts.push_back(fmt::format("normal = {}", friction.law.normal()));
     varying("normal", friction.normal);
     if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
     if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
@@ -223,6 +225,15 @@ std::string function_text(lua_State* L, const model::UserFunction& user_function
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     function->push(L);
     return popped_text(L, whole);
+}
+
+const lua::LuaFunction* function_alone(const model::Excitation& excitation) {
+    if (excitation.components().size() != 1) return nullptr;
+    const model::Component& only = excitation.components().front();
+    const auto* scripted = std::get_if<model::Scripted>(&only.term);
+    const bool plain = scripted != nullptr && only.gain == 1 && only.from == -model::never && only.to == model::never &&
+                       scripted->breaks.empty() && scripted->period == 0 && scripted->delay == 0;
+    return plain ? dynamic_cast<const lua::LuaFunction*>(scripted->function.get()) : nullptr;
 }
 
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {

@@ -9,9 +9,16 @@
 #include "model/oscillator.hpp"
 #include "motion/method.hpp"
 
+namespace dinal::lua {
+class LuaFunction;
+}
+
 namespace dinal::source {
 
 class ValueText;
+
+/// The function where the excitation is nothing else; nullptr otherwise.
+const lua::LuaFunction* function_alone(const model::Excitation& excitation);
 
 /// Lua text that makes the excitation again: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". Where
 /// that is not possible (a long table, a function whose source is not at hand), a comment stands in its place.

@@ -27,22 +27,14 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
     }
 }
 
-/// The function itself where M is nothing else, as its author wrote it.
+/// As its author wrote it, where M is nothing but a function.
 std::string excitation_text(lua_State* L, const model::Excitation& excitation, ValueText& writer) {
-    if (excitation.components().size() == 1) {
-        const model::Component& only = excitation.components().front();
-        const auto* scripted = std::get_if<model::Scripted>(&only.term);
-        const bool plain = scripted != nullptr && only.gain == 1 && only.from == -model::never &&
-                           only.to == model::never && scripted->breaks.empty() && scripted->period == 0 &&
-                           scripted->delay == 0;
-        if (const auto* function = plain ? dynamic_cast<const lua::LuaFunction*>(scripted->function.get()) : nullptr) {
-            function->push(L);
-            std::string text = writer.expression(-1);
-            lua_pop(L, 1);
-            return text;
-        }
-    }
-    return describe(L, excitation, &writer);
+    const lua::LuaFunction* function = function_alone(excitation);
+    if (function == nullptr) return describe(L, excitation, &writer);
+    function->push(L);
+    std::string text = writer.expression(-1);
+    lua_pop(L, 1);
+    return text;
 }
 
 /// "dt = 0.01", or the times themselves, ten to a line.

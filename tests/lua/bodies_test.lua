@@ -85,7 +85,8 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     near(states.path, theta - 0.5, 1e-12)
     states.path = nil
     equal(next(states), nil)
-    raises_here(function() system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } } end, "only system{ ... } supports")
+    local dahl = system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } }
+    equal(tostring(dahl), "system{ I = 1, k = 1, friction = friction.dahl{ Rd = 1, stiffness = 10 } }")
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)
 
@@ -323,6 +324,35 @@ test("a failed run tells at(t) why it ended, for one body and for several", func
             assert(run:at(0))
         end
     end
+end)
+
+test("each body and link is a system of its own, and with changes some of its numbers", function()
+    local rig = system {
+        bodies = { load = { I = 3, k = 12, Rd = 1, Re = 2, normal = 2 }, motor = { I = 1, normal = function(t) return t end, Rd = 1 } },
+        links = { shaft = { "motor", "load", k = 3, C = 0.5, walls = { upper = 1 } } }, units = { t = "s" },
+    }
+    equal(rig.load.omega0, 2.0)
+    equal(rig.load.dead_zone, 1 / 3)
+    equal(rig.load.units.t, "s")
+    equal(rig.shaft.I, 0.75)
+    equal(rig.shaft.omega0, 2.0)
+    equal(rig.shaft.walls.upper, 1.0)
+    equal(rig.motor.Rd, 1.0)
+    raises_here(function() return rig.motor.dead_zone end, "no constant dead_zone: its normal is a function")
+    raises_here(function() return rig.laod end, "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?")
+    raises_here(function() return rig.omega0 end, "omega0 is of one body or link: rig.load.omega0")
+    local other = rig:with { bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 27 } } }
+    equal(other.load.Rd, 0.5)
+    equal(other.load.Re, 2.0)
+    equal(other.load.normal, 2.0)
+    equal(other.shaft.omega0, 6.0)
+    equal(other.shaft.C, 0.5)
+    equal(tostring(other:with { bodies = { load = { Rd = 1 } }, links = { shaft = { k = 3 } } }), tostring(rig))
+    equal(rig:with { units = { t = "min" } }.units.t, "min")
+    raises_here(function() rig:with { bodies = { laod = { Rd = 1 } } } end, "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?")
+    raises_here(function() rig:with { links = { load = { Rd = 1 } } } end, "links: there is no link 'load'; there is shaft")
+    raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "rig:with: bodies.load has no option 'rd'")
+    raises_here(function() rig:with { k = 1 } end, "rig:with has no option 'k' among bodies, links and units")
 end)
 
 finish()

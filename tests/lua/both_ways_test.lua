@@ -311,7 +311,7 @@ only.steady.Dahl = nil -- as slow as LuGre, and as smooth
 local function asked(question) return only[question] or kinds end
 
 -- One body with one of these laws runs as a system of several today.
-local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal constant", "normal of t and theta" }
+local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal of t and theta" }
 local endless = "event that bounces endlessly"
 local groups = { ["laws of several"] = varying, acting = { "event", "event that acts", "event that stops" },
     states = { "state idle", "state acting" }, springs = { "spring.polynomial", "a spring in Lua" },

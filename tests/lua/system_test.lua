@@ -96,4 +96,43 @@ test("a spring of -0 is none, friction beyond all numbers is told", function()
     assert(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs() < 1e-12)
 end)
 
+test("a constant normal load makes an ordinary system with friction scaled", function()
+    local sys, same = system { I = 1, k = 4, C = 0.1, Rd = 0.25, Re = 0.5, normal = 2 }, system { I = 1, k = 4, C = 0.1, Rd = 0.5, Re = 1 }
+    equal(sys.dead_zone, same.dead_zone)
+    equal(sys.Rd, 0.25)
+    equal(sys.normal, 2.0)
+    equal(sys:friction_ratio(1), 0.5)
+    equal(tostring(sys), "system{ I = 1, k = 4, C = 0.1, Rd = 0.25, Re = 0.5, normal = 2 }")
+    equal(tostring(sys:with { Rd = 0.5 }), "system{ I = 1, k = 4, C = 0.1, Rd = 0.5, Re = 0.5, normal = 2 }")
+    equal(tostring(sys:with { normal = 1 }), "system{ I = 1, k = 4, C = 0.1, Rd = 0.25, Re = 0.5 }")
+    local M = excitation.harmonic { amplitude = 2, omega = 1.3 }
+    for _, by in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        local function theta(of) return of:simulate { M = M, t_end = 20, integrator = by }.theta end
+        equal((theta(sys) - theta(same)):abs():max(), 0.0)
+    end
+    equal(sys:steady { M = M }.amplitude, same:steady { M = M }.amplitude)
+    equal(repeated(sys:simulate { M = M, t_end = 5 }).system.normal, 2.0)
+    local law = friction.law(function(v) return v < 0.5 and 0.3 or 0.2 end)
+    local double = friction.law(function(v) return v < 0.5 and 0.6 or 0.4 end)
+    local a = system { I = 1, k = 4, friction = law, normal = 2 }:simulate { theta0 = 3, t_end = 9 }
+    local b = system { I = 1, k = 4, friction = double }:simulate { theta0 = 3, t_end = 9 }
+    near((a.theta - b.theta):abs():max(), 0, 1e-12)
+end)
+
+test("a system whose friction varies has the fields that need no constant law", function()
+    local Rd = function(t) return 1 + t end
+    local sys = system { I = 1, k = 4, C = 1, Rd = Rd }
+    equal(sys.k, 4.0)
+    equal(sys.omega0, 2.0)
+    equal(sys.regime, "underdamped")
+    equal(sys.units.theta, "rad")
+    equal(sys.Rd, Rd)
+    raises_here(function() return sys.dead_zone end, "this system has no constant dead_zone: its Rd is a function")
+    raises_here(function() return sys.friction end, "this system has no constant friction: its Rd is a function")
+    equal(sys:with { k = 9 }.omega0, 3.0)
+    equal(tostring(sys:with { Rd = 1 }), "system{ I = 1, k = 4, C = 1, Rd = 1, Re = 1 }")
+    equal(system { I = 1, k = 4, Rd = 1 }:with { normal = Rd }.normal, Rd)
+    raises_here(function() sys:with { bodies = {} } end, "sys:with has no option 'bodies'")
+end)
+
 finish()

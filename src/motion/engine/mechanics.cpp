@@ -271,6 +271,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
         const double smooth = speed >= 0 || law.is_held() ? law.value(at, speed) : model::never;
         // Where nothing tells how it goes on below 0, with the slope that it has there.
         torque = speed >= 0 || std::isfinite(smooth) ? smooth : 2 * law.value(at, 0) - law.value(at, -speed);
+        torque *= friction.law.normal();
     } else if (!own.none()) {
         torque = own.value(at);
     } else if (friction.law.ranges() > 0) {
