@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 
 #include "api/animate.hpp"
@@ -274,7 +275,16 @@ namespace {
 
 // ---- simulate
 
-constexpr auto bodies_simulate_options = text::joined(bodies_drive_rows, window_options, dense_option);
+constexpr text::Option rig_integrator_option[] = {
+    {.name = "integrator",
+     .otherwise = "spectral",
+     .meaning = "the method: integrator.spectral or integrator.rk4; exact and dinal1989 are for one body with constant "
+                "friction",
+     .object = "integrator",
+     .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
+};
+constexpr auto bodies_simulate_options =
+    text::joined(bodies_drive_rows, window_options, rig_integrator_option, dense_option);
 constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
                                           bodies_simulate_options};
 
@@ -583,7 +593,7 @@ std::vector<std::string> repeat_lines(lua_State* L, const BodiesRun& run) {
     std::vector<std::string> lines = run.set_up.empty() ? source::set_up_lines(L, *run.system, run.drive) : run.set_up;
     const auto times = run.run.table.column(0);
     const motion::Grid rows = run.spaced ? motion::Grid::every(run.dt) : motion::Grid::at({times.begin(), times.end()});
-    lines.push_back(source::repeat_line(*run.system, run.drive, {run.run.t_start, run.t_end}, rows));
+    lines.push_back(source::repeat_line(*run.system, run.drive, {run.run.t_start, run.t_end}, rows, run.integrator));
     return lines;
 }
 
@@ -645,6 +655,35 @@ motion::Grid grid_within(const lua::Options& options, const BodiesRun& run, cons
     return grid;
 }
 
+/// How the integrator cuts the run into stretches.
+engine::Cut cut_of(const motion::Integrator& integrator) {
+    if (const auto* rk4 = std::get_if<motion::Rk4>(&integrator)) return {.longest = rk4->h, .step = rk4->h};
+    const auto* spectral = std::get_if<motion::Spectral>(&integrator);
+    return {.tolerance = spectral->tolerance, .longest = std::min(spectral->max_panel, spectral->widest_looks())};
+}
+
+/// The integrator asked for, which suits each body on the stiffness around it.
+motion::Integrator asked_integrator(const lua::Options& options, const model::Assembly& system,
+                                    const engine::Drive& drive, const motion::Window& window) {
+    const auto* asked = options.object<motion::Integrator>("integrator");
+    if (asked == nullptr) return motion::Spectral{};
+    const motion::MethodView method = *asked;
+    if (!method.knows_more()) {
+        options.fail("integrator",
+                     fmt::format("{} is for one body with constant friction: use integrator.spectral or rk4",
+                                 method.about().call.name));
+    }
+    const std::vector<double> periods = system.natural_periods();
+    for (std::size_t i = 0; i < periods.size(); ++i) {
+        model::OscillatorParameters parameters = parameters_of(system, i);
+        const double omega = 2 * std::numbers::pi / periods[i];
+        parameters.stiffness = parameters.inertia * omega * omega;
+        const auto body = options.value_or_fail(model::Oscillator::make(parameters));
+        if (const auto wrong = motion::wrong_method(method, body, drive.loads[i], window)) options.fail(*wrong);
+    }
+    return *asked;
+}
+
 /// Runs what `problem` says, under the limits of the script.
 int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<BodiesRun>& run,
                const motion::Window& window, const motion::Grid& rows, const motion::Limits& limits,
@@ -661,6 +700,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
         progress.advance(t);
         return !lua::interrupt_requested();
     };
+    const engine::Cut cut = cut_of(run->integrator);
     run->run = engine::run({.system = *run->system,
                             .drive = run->drive,
                             .window = window,
@@ -668,6 +708,9 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
                             .monitor = monitor,
                             .limits = limits,
                             .before = std::move(before),
+                            .tolerance = cut.tolerance,
+                            .longest = cut.longest,
+                            .step = cut.step,
                             .keeps_torques = true});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
@@ -692,6 +735,7 @@ int simulate_bodies(lua_State* L) {
     const motion::Window window{asked.t_start,
                                 asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
     if (const auto wrong = window.complaint()) options.fail(*wrong);
+    run->integrator = asked_integrator(options, *system, run->drive, window);
     run->dt = asked.dt.value_or(usual_dt(window, system->shortest_natural_period()));
     run->t_end = window.end, run->spaced = !options.has("times");
     run->set_up = source::set_up_lines(L, *system, run->drive);  // before the functions change what they refer to
@@ -937,6 +981,7 @@ int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHand
     auto run = std::make_shared<BodiesRun>();
     run->system = first->system, run->drive = first->drive, run->dt = first->dt;
     run->t_end = *asked.t_end, run->spaced = first->spaced, run->set_up = first->set_up;
+    run->integrator = first->integrator;
     // The last row of the first run stands in the second one only where the spacing puts it there.
     const motion::Limits limits = limits_of_run(keeps_motion(first->run));
     const double start = first->run.t_start;
@@ -1103,6 +1148,9 @@ constexpr lua::Member bodies_run_members[] = {
      {"rig_run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
     {lua::a_value<BodiesRunHandle, &BodiesRun::system>,
      {"rig_run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
+    {lua::a_value<BodiesRunHandle, &BodiesRun::integrator>,
+     {"rig_run.integrator -> integrator", "The integrator.",
+      DINAL_RIG_RUN "print(run.integrator)  --> integrator.spectral{}"}},
     {lua::a_length<BodiesRunHandle, [](const BodiesRun& run) { return run.run.table.size(); }>,
      {"#rig_run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
     {lua::a_text<BodiesRunHandle, text_of_run>,

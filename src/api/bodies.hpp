@@ -72,8 +72,9 @@ struct BodiesRun {
     motion::engine::Drive drive;
     motion::engine::AssemblyRun run;
     double dt = 0;
-    double t_end = 0;                      ///< that was asked for
-    bool spaced = true;                    ///< a row every dt, not at times of the user
+    double t_end = 0;    ///< that was asked for
+    bool spaced = true;  ///< a row every dt, not at times of the user
+    motion::Integrator integrator = motion::Spectral{};
     std::vector<std::string> set_up = {};  ///< Lua text that makes all that was run, as it was at the start
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};

@@ -162,6 +162,14 @@ text::Expected<Grid> Grid::within(const Window& window) const {
     return grid;
 }
 
+std::optional<text::Error> wrong_method(MethodView method, const model::Oscillator& system,
+                                        const model::Excitation& excitation, const Window& window) {
+    if (auto wrong = method.wrong(system, excitation)) return wrong;
+    const auto [name, distance, is_step] = method.resolution(system);
+    if (auto lost = lost_in_time(name, distance, window)) return lost;
+    return is_step ? stepped_over(name, distance, excitation, window) : std::nullopt;
+}
+
 std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, const Limits& limits) {
     const Window& window = grid.window();
     const auto count = static_cast<double>(grid.count()), memory = static_cast<double>(limits.memory);
@@ -210,12 +218,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     for (const model::Excitation* terms : {&excitation, &extras.belt, &extras.base}) {
         if (auto lost = lost_term(*terms, window)) return *lost;
     }
-    if (auto wrong = method.wrong(system, excitation)) return *wrong;
-    const auto [name, distance, is_step] = method.resolution(system);
-    if (auto lost = lost_in_time(name, distance, window)) return *lost;
-    if (is_step) {
-        if (auto unseen = stepped_over(name, distance, excitation, window)) return *unseen;
-    }
+    if (auto wrong = wrong_method(method, system, excitation, window)) return *wrong;
 
     const std::size_t course_bytes = limits.memory / share_of_course;
     std::optional<UnderOath> oath;

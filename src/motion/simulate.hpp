@@ -71,6 +71,10 @@ struct Limits {
     bool dense = true;                          ///< keep the course: what the motion between the rows needs
 };
 
+/// What this method cannot run: the system under this M, or a window in which its steps are lost or pass over a bump.
+[[nodiscard]] std::optional<text::Error> wrong_method(MethodView method, const model::Oscillator& system,
+                                                      const model::Excitation& excitation, const Window& window);
+
 /// The reason why a run can not have these rows, in the user's options: more than memory may hold, or times that
 /// doubles can not tell apart. The grid went through within().
 [[nodiscard]] std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, const Limits& limits);

@@ -183,11 +183,14 @@ std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& syste
 }
 
 std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
-                        const motion::Grid& rows) {
-    return fmt::format("run = sys:simulate{{ {}{}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {} }}",
+                        const motion::Grid& rows, const motion::Integrator& integrator) {
+    const std::string by = lua_text(integrator);
+    const bool usual = by == lua_text(motion::Integrator(motion::Spectral{}));
+    return fmt::format("run = sys:simulate{{ {}{}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}{} }}",
                        acts(drive.loads) ? "M = M, " : "", acts(drive.belts) ? "belt = belt, " : "",
                        extras_text({drive.states, drive.events, {}, drive.base}), by_body(system, drive.theta0),
-                       by_body(system, drive.velocity0), window.start, window.end, rows_text(rows));
+                       by_body(system, drive.velocity0), window.start, window.end, rows_text(rows),
+                       usual ? "" : ", integrator = " + by);
 }
 
 }  // namespace dinal::source

@@ -37,6 +37,6 @@ std::vector<std::string> repeat_lines(const Origin& origin);
 /// The same of a run of several bodies: the lines that make them and all that drives them, and the line that runs them.
 std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const motion::engine::Drive& drive);
 std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
-                        const motion::Grid& rows);
+                        const motion::Grid& rows, const motion::Integrator& integrator);
 
 }  // namespace dinal::source

@@ -355,4 +355,31 @@ test("each body and link is a system of its own, and with changes some of its nu
     raises_here(function() rig:with { k = 1 } end, "rig:with has no option 'k' among bodies, links and units")
 end)
 
+test("several bodies take spectral and rk4, and say of exact that it is for one body", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.5 }, b = { I = 2, C = 0.1, walls = { lower = -0.5, upper = 0.5 } } },
+        links = { rod = { "a", "b", k = 3, Rd = 0.2 } } }
+    local function run(by, t_end)
+        return rig:simulate { M = { a = function(t) return 2 * math.sin(1.3 * t) end }, theta0 = { a = 0.4 }, t_end = t_end or 12, dt = 0.5,
+            integrator = by }
+    end
+    local spectral, rk4 = run(), run(integrator.rk4 { h = 0.002 })
+    equal(tostring(run(integrator.spectral {}).a.theta), tostring(spectral.a.theta))
+    equal(#rk4.events, #spectral.events)
+    for i, event in ipairs(spectral.events) do
+        equal(rk4.events[i].kind, event.kind)
+        equal(rk4.events[i].where, event.where)
+        near(rk4.events[i].t, event.t, 1e-7)
+    end
+    near(rk4.b.theta, spectral.b.theta, 1e-8)
+    equal((rk4.b.theta - spectral.b.theta):abs():max() > 0, true)
+    equal(tostring(rk4.integrator), "integrator.rk4{ h = 0.002 }")
+    local long = run(integrator.rk4 { h = 0.002 }, 6):continue { t_end = 12 }
+    equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
+    near(long.b.theta, rk4.b.theta, 1e-8)
+    equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } } end, "lost in the rounding of times")
+end)
+
 finish()

@@ -316,6 +316,8 @@ local endless = "event that bounces endlessly"
 local groups = { ["laws of several"] = varying, acting = { "event", "event that acts", "event that stops" },
     states = { "state idle", "state acting" }, springs = { "spring.polynomial", "a spring in Lua" },
     walls = { "walls of restitution 0", "walls of restitution 0.7" },
+    ["exact by default"] = { "Coulomb with Re = Rd", "Coulomb with Re above Rd", "no dry friction", "normal constant", "uneven" },
+    ["smooth laws"] = { "M that is not read", "M that is read", "Stribeck", "a law in Lua", "friction.table", "feedback" },
     ["constant laws"] = {}, ["not endless"] = {}, steady = {} }
 local rigs = {}
 for _, kind in ipairs(varying) do rigs[kind] = true end
@@ -345,7 +347,9 @@ local different = {
     ["repeated: states, states"] = stateless,
     ["fields of the body: excitation integrator system, constant laws, event that bounces endlessly"] =
         "the run of a body knows what moved only as a whole",
-    ["fields of the run: excitation gap integrator names units"] =
+    ["fields of the run: integrator, exact by default, laws of several"] =
+        "exact is the default of one body, and a run of one with a law of several names no integrator",
+    ["fields of the run: excitation gap names units"] =
         "the run of several bodies does not have these fields; its bodies have some",
     ["fields of the run: system, laws of several, springs, walls"] =
         "a run of one body with a law of several has no system, and springs and walls are written in another order",
@@ -361,8 +365,10 @@ local different = {
     ["cycle: amplitude change middle period, event"] =
         "defect: an event of the user that only looks changes the cycle of system{...}",
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
-    ["integrators: spectral exact rk4, constant laws, event that bounces endlessly"] =
-        "no integrator can be chosen for several bodies",
+    ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
+    ["integrators: spectral rk4, states"] = stateless,
+    ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
+        "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["steady of the run: refused, constant laws, event that bounces endlessly"] =
         "a run of several bodies has no steady(): it is asked of the system",
     ["pictures of the run: plot phase_plot"] =

@@ -16,11 +16,15 @@ Resolution Spectral::resolution(const model::Oscillator& system) const {
                            : Resolution{"T0/27", own / parts, false};
 }
 
-double Spectral::longest(const Problem& problem) const {
-    const model::Oscillator& system = problem.system;
+double Spectral::widest_looks() const {
     // The looks at both ends of the widest gap must not straddle a pulse.
     constexpr double within = chebyshev::widest_gap * (1 + 1e-9);
-    const double most = problem.excitation.has_script() ? std::min(max_panel, narrowest / within) : max_panel;
+    return narrowest / within;
+}
+
+double Spectral::longest(const Problem& problem) const {
+    const model::Oscillator& system = problem.system;
+    const double most = problem.excitation.has_script() ? std::min(max_panel, widest_looks()) : max_panel;
     return std::min(most, system.has_spring() ? longest_panel * system.natural_period()
                                               : part_of_run * (problem.window.end - problem.window.start));
 }

@@ -19,6 +19,8 @@ struct Spectral {
 
     static const MethodText about;
     static constexpr bool knows_more = true;
+    /// The longest panel whose samples miss no pulse of the width `narrowest`, time units.
+    [[nodiscard]] double widest_looks() const;
     /// The longest panel of a run, time units.
     [[nodiscard]] double longest(const Problem& problem) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
