@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "api/animate.hpp"
@@ -25,6 +24,7 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
+#include "motion/engine/modes.hpp"
 #include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "plots/run_figure.hpp"
@@ -432,10 +432,9 @@ std::vector<std::string> names_for_relays(const model::Assembly& system, const e
 }  // namespace
 
 int system_with(lua_State* L) {
-    const auto* plain = lua::test<model::Oscillator>(L, 1);
-    if (plain == nullptr) static_cast<void>(lua::self<AssemblyHandle>(L, 1, with_call.example));
-    model::Assembly old = plain != nullptr ? engine::assembly_of(*plain) : **lua::test<AssemblyHandle>(L, 1);
-    if (plain != nullptr) old.units = plain->units();
+    const auto* several = lua::test<AssemblyHandle>(L, 1);
+    model::Assembly old =
+        several != nullptr ? **several : engine::assembly_of(lua::self<model::Oscillator>(L, 1, with_call.example));
     const text::Call& call = old.named ? rig_with_call : with_call;
     const lua::Options options(L, 2, call);
     const int top = lua_gettop(L);
@@ -450,8 +449,12 @@ int system_with(lua_State* L) {
             }
             const char* option = which == Names::links ? "links" : "bodies";
             for_each_named(L, options, option, old, which, [&](std::size_t j) {
-                if (!lua_istable(L, -1)) options.wrong(option);
-                lua_getfield(L, top + 2, old.joints[j].name.c_str());
+                const std::string& name = old.joints[j].name;
+                if (!lua_istable(L, -1)) {
+                    options.fail(option, fmt::format("{}.{} must be a table such as {{ k = 3 }}, got {}", option, name,
+                                                     lua::describe(L, -1)));
+                }
+                lua_getfield(L, top + 2, name.c_str());
                 lua_pushvalue(L, -2);
                 overwrite(L, options);
                 lua_pop(L, 2);
@@ -553,10 +556,7 @@ std::size_t first_column(const model::Assembly& system, std::size_t joint) {
 /// The joint as a system of one body; none where the motion between the rows is not known.
 std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t joint) {
     if (!keeps_motion(run.run)) return {};
-    const model::Joint& own = run.system->joints[joint];
-    model::OscillatorParameters parameters = parameters_of(*run.system, joint);
-    parameters.friction = own.friction.law, parameters.spring = own.spring, parameters.walls = own.walls;
-    const auto made = model::Oscillator::make(parameters);
+    const auto made = model::Oscillator::make(alone(*run.system, joint));
     return made ? std::optional(made.value()) : std::nullopt;
 }
 
@@ -662,7 +662,7 @@ engine::Cut cut_of(const motion::Integrator& integrator) {
     return {.tolerance = spectral->tolerance, .longest = std::min(spectral->max_panel, spectral->widest_looks())};
 }
 
-/// The integrator asked for, which suits each body on the stiffness around it.
+/// The integrator asked for, which suits each mode of the bodies. Contacts that hold make none of them faster.
 motion::Integrator asked_integrator(const lua::Options& options, const model::Assembly& system,
                                     const engine::Drive& drive, const motion::Window& window) {
     const auto* asked = options.object<motion::Integrator>("integrator");
@@ -673,13 +673,10 @@ motion::Integrator asked_integrator(const lua::Options& options, const model::As
                      fmt::format("{} is for one body with constant friction: use integrator.spectral or rk4",
                                  method.about().call.name));
     }
-    const std::vector<double> periods = system.natural_periods();
-    for (std::size_t i = 0; i < periods.size(); ++i) {
-        model::OscillatorParameters parameters = parameters_of(system, i);
-        const double omega = 2 * std::numbers::pi / periods[i];
-        parameters.stiffness = parameters.inertia * omega * omega;
-        const auto body = options.value_or_fail(model::Oscillator::make(parameters));
-        if (const auto wrong = motion::wrong_method(method, body, drive.loads[i], window)) options.fail(*wrong);
+    for (const model::Oscillator& mode : engine::modes_of(system)) {
+        for (const model::Excitation& load : drive.loads) {
+            if (const auto wrong = motion::wrong_method(method, mode, load, window)) options.fail(*wrong);
+        }
     }
     return *asked;
 }
@@ -752,6 +749,11 @@ std::vector<std::string> joint_names(const model::Assembly& system) {
         if (system.is_link(j) == links) names.push_back(system.joints[j].name);
     }
     return names;
+}
+
+int rig_with(lua_State* L) {
+    static_cast<void>(lua::self<AssemblyHandle>(L, 1, rig_with_call.example));
+    return system_with(L);
 }
 
 /// That which is no number or law of the options in the table on the top.
@@ -1057,7 +1059,7 @@ constexpr lua::Member rig_members[] = {
       "end }\n"
       "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
       {&rig_response_call}}},
-    {lua::a_method<system_with>,
+    {lua::a_method<rig_with>,
      {"rig:with{ OPTIONS } -> rig",
       "A copy of the system with some parameters of its bodies and links changed, each by the options of system{...}.",
       DINAL_RIG "print(rig:with{ bodies = { load = { Rd = 0.5 } } }.load.Rd)  --> 0.5",

@@ -352,6 +352,8 @@ test("each body and link is a system of its own, and with changes some of its nu
     raises_here(function() rig:with { bodies = { laod = { Rd = 1 } } } end, "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?")
     raises_here(function() rig:with { links = { load = { Rd = 1 } } } end, "links: there is no link 'load'; there is shaft")
     raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "rig:with: bodies.load has no option 'rd'")
+    raises_here(function() rig:with { bodies = { load = 3 } } end, "bodies.load must be a table such as { k = 3 }, got 3")
+    raises_here(function() rig.with { links = {} } end, "use a colon: rig:with")
     raises_here(function() rig:with { k = 1 } end, "rig:with has no option 'k' among bodies, links and units")
 end)
 
@@ -379,6 +381,15 @@ test("several bodies take spectral and rk4, and say of exact that it is for one 
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
+    -- each body alone would be stable with this h, and their common mode is not
+    local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }
+    raises_here(function() stiff:simulate { theta0 = { a = 1e-3 }, t_end = 1, integrator = integrator.rk4 { h = 0.0025 } } end,
+        "h = 0.0025 exceeds the stability limit 0.002 of rk4 (w0 = 1414.21, zeta = 0): use h <= 0.002")
+    local damped = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", C = 1e4 } } }
+    raises_here(function() damped:simulate { velocity0 = { a = 1 }, t_end = 1, integrator = integrator.rk4 { h = 2e-4 } } end,
+        "exceeds the stability limit")
+    near(stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1, integrator = integrator.rk4 { h = 1e-5 } }.a.theta,
+        stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1 }.a.theta, 1e-9)
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } } end, "lost in the rounding of times")
 end)
 

@@ -10,7 +10,7 @@ model::Assembly assembly_of(const model::Oscillator& system) {
     model::Joint ground;
     ground.stiffness = system.stiffness(), ground.damping = system.damping();
     ground.spring = system.spring(), ground.friction.law = system.friction(), ground.walls = system.walls();
-    return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = {}};
+    return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = system.units()};
 }
 
 Drive drive_of(const model::Excitation& excitation, const model::Extras& extras, const model::State& initial) {

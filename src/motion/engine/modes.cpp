@@ -1,0 +1,39 @@
+#include "motion/engine/modes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <complex>
+
+#include "algebra/decompositions.hpp"
+
+namespace dinal::motion::engine {
+
+std::vector<model::Oscillator> modes_of(const model::Assembly& system) {
+    const auto n = static_cast<Eigen::Index>(system.bodies.size());
+    // y' = A y for all angles and then all velocities.
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    A.topRightCorner(n, n).setIdentity();
+    for (const model::Joint& joint : system.joints) {
+        const std::array<int, 2> ends{joint.first, joint.second};
+        for (const int of : ends) {
+            for (const int by : ends) {
+                if (of < 0 || by < 0) continue;
+                const double share = (of == by ? -1 : 1) / system.bodies[static_cast<std::size_t>(of)].inertia;
+                A(n + of, by) += share * joint.stiffness;
+                A(n + of, n + by) += share * joint.damping;
+            }
+        }
+    }
+    std::vector<model::Oscillator> modes;
+    for (const std::complex<double>& value : algebra::eigenvalues(A)) {
+        if (value.imag() < 0) continue;
+        const bool swings = value.imag() > 0;
+        const auto mode = model::Oscillator::make({.inertia = 1,
+                                                   .stiffness = swings ? std::norm(value) : 0,
+                                                   .damping = std::max(0.0, (swings ? -2 : -1) * value.real())});
+        if (mode) modes.push_back(*mode);
+    }
+    return modes;
+}
+
+}  // namespace dinal::motion::engine
