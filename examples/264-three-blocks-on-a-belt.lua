@@ -12,7 +12,7 @@ for i = #run.events - 5, #run.events do
 end
 
 --[[ prints
-3 bodies, 3821 rows, t 0 … 200; 143 events (71 stops, 71 slips); reached the end
+3 bodies, 3821 rows, t 0 … 200; 143 events (1 turn, 71 sticks, 71 slips); moving at the end
  196.9210  slip  c  1.19361
  197.3060  stick b  1.13259
  197.8735  slip  b  1.18934

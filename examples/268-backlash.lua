@@ -10,6 +10,6 @@ print(run)
 print(string.format("%d impacts, the hardest at %.3f rad per time unit", #impacts, math.max(impacts.velocity:max(), -impacts.velocity:min())))
 
 --[[ prints
-2 bodies, 1001 rows, t 0 … 4; 79 events (4 stops, 4 slips); reached the end
+2 bodies, 1001 rows, t 0 … 4; 79 events (6 turns, 4 sticks, 4 slips, 65 impacts); moving at the end
 65 impacts, the hardest at 0.612 rad per time unit
 ]]

@@ -54,7 +54,7 @@ AnimationViewer animation_viewer = nullptr;
 /// The surface that the run slides on, where it moves.
 const model::Excitation* belt_of(const Run& run) {
     const model::Excitation* belt = run.origin  ? &run.origin->extras.belt
-                                    : run.whole ? &run.whole->drive.belts[run.joint]
+                                    : run.whole ? &run.whole->drive.belts[*run.joint]
                                                 : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;
 }
@@ -124,15 +124,16 @@ void play(const std::vector<animation::Scene>& scenes, const AnimateOptions& ask
 }
 
 /// All bodies, and the links between them.
-animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const BodiesRunHandle& run,
+animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const RunHandle& run,
                               const animation::Take& take, const model::Units& units) {
     std::vector<animation::Scene> bodies;
     std::vector<animation::RigScene::Link> links;
-    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
-        const model::Joint& joint = run->system->joints[j];
-        animation::Scene scene = asked_scene(L, options, part_of(run, j), take, units);
+    const model::Assembly& system = *run->whole->system;
+    for (const RunHandle& part : parts_of(run)) {
+        const model::Joint& joint = system.joints[*part->joint];
+        animation::Scene scene = asked_scene(L, options, part, take, units);
         scene.name = joint.name;
-        if (run->system->is_link(j)) {
+        if (system.is_link(*part->joint)) {
             links.push_back(
                 {std::move(scene), static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second)});
         } else {
@@ -225,17 +226,13 @@ int animate_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:animate()");
     const lua::Options options(L, 2, animate_call);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
-    return animate(L, options, run->trajectory,
+    const motion::Trajectory& whole = run->trajectory;
+    if (run->whole && !run->joint) {
+        return animate(L, options, whole,
+                       [&](const animation::Take& take) { return asked_rig(L, options, run, take, units); });
+    }
+    return animate(L, options, whole,
                    [&](const animation::Take& take) { return asked_scene(L, options, run, take, units); });
-}
-
-int animate_bodies(lua_State* L) {
-    lua::refuse_in_worker(L, "run:animate");
-    const BodiesRunHandle run = lua::self<BodiesRunHandle>(L, 1, "run:animate()");
-    const lua::Options options(L, 2, animate_call);
-    const model::Units units = asked_units(L, options).value_or(run->system->units);
-    return animate(L, options, part_of(run, 0)->trajectory,
-                   [&](const animation::Take& take) { return asked_rig(L, options, run, take, units); });
 }
 
 }  // namespace dinal::api

@@ -38,8 +38,6 @@ inline constexpr text::Call report_animate_call{"r:animate", "r:animate(run, { s
                                                 all_report_animate_options, true};
 
 int animate_run(lua_State* L);
-/// Of a run of several bodies.
-int animate_bodies(lua_State* L);
 
 /// A run in motion as SVG that a browser plays, and its title.
 struct Animation {
@@ -56,7 +54,8 @@ inline constexpr lua::Doc animate_doc{
     "run:animate{ OPTIONS }",
     "Shows the mass in motion, with spring, walls, surface and sticking: in the terminal until "
     "Ctrl-C, in a notebook, on the page of --report, or in a file. Pictures are drawn at equal "
-    "steps of time, also between rows.",
+    "steps of time, also between rows. Several bodies stand side by side, or are discs on one axis if one of them "
+    "rotates.",
     "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }:simulate{ theta0 = 1, t_end = 6, dt = 1 }\n"
     "file = os.tmpname() .. \".svg\"\n"
     "run:animate{ file = file, speed = 2 }\n"

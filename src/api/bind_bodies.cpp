@@ -58,12 +58,22 @@ std::vector<std::string> body_names(const model::Assembly& system) {
 
 // ---- system{ bodies, links }
 
+/// What everybody asks of a run of several bodies; all else gives way to a body or link of that name.
+constexpr std::string_view names_in_runs[] = {"at",     "continue", "data",  "energy",  "events",    "explain",
+                                              "plot",   "animate",  "save",  "states",  "status",    "outcome",
+                                              "system", "t",        "t_end", "t_start", "integrator"};
+
 /// The names under the option, each of a table; that stays on the top.
 std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& options, const char* option) {
     options.push(option);
     std::vector<std::string> names = names_in_table(L, options, option);
     for (const std::string& name : names) {
-        check_name(options, option, name, bodies_run_class);
+        if (std::find(std::begin(names_in_runs), std::end(names_in_runs), name) != std::end(names_in_runs)) {
+            options.fail(
+                {.sentence = fmt::format("{}: '{}' is a name that a run has already; take another", option, name),
+                 .option = option,
+                 .culprit = name});
+        }
         check_name(options, option, name, rig_class);
         if (lua_getfield(L, -1, name.c_str()) != LUA_TTABLE) {
             options.fail(
@@ -112,7 +122,8 @@ model::OscillatorParameters alone(const model::Assembly& system, std::size_t joi
     return parameters;
 }
 
-/// Pushes the body or link as a system of its own.
+}  // namespace
+
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
     const model::OscillatorParameters parameters = alone(system, j);
     const auto oscillator = lua::value_or_raise(L, call, model::Oscillator::make(parameters));
@@ -126,6 +137,8 @@ int push_alone(lua_State* L, std::string_view call, const model::Assembly& syste
     lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
     return 1;
 }
+
+namespace {
 
 int body_index(const lua::Options& options, const model::Assembly& system, const std::string& link, lua_State* L) {
     const std::string name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
@@ -546,13 +559,6 @@ bool keeps_motion(const engine::AssemblyRun& run) {
     return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
 }
 
-/// Where the columns of a joint begin in the table of a run.
-std::size_t first_column(const model::Assembly& system, std::size_t joint) {
-    const std::size_t n = system.bodies.size();
-    return 1 + (joint < n ? engine::columns_of_body * joint
-                          : engine::columns_of_body * n + engine::columns_of_link * (joint - n));
-}
-
 /// The joint as a system of one body; none where the motion between the rows is not known.
 std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t joint) {
     if (!keeps_motion(run.run)) return {};
@@ -560,23 +566,47 @@ std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t jo
     return made ? std::optional(made.value()) : std::nullopt;
 }
 
+/// The run as seen from a body or link, with its columns.
 motion::Trajectory trajectory_of(const BodiesRun& run, std::size_t joint) {
     const model::Assembly& system = *run.system;
-    const bool link = system.is_link(joint);
     motion::Trajectory part = engine::part_of(system, run.drive, run.run, joint, seen_alone(run, joint));
     if (part.rough) part.rough->other_integrators = false;
-    if (link) {
+    if (system.is_link(joint)) {
         part.own_names = {"t", "theta", "velocity", "torque", "friction"};
         part.computed = false;
     }
-    const std::size_t columns = part.names().size(), rows = run.run.table.size();
-    motion::Growing<double> table(rows, columns);
-    for (std::size_t c = 0; c < columns; ++c) {
-        const auto from = run.run.table.column(c == 0 ? 0 : first_column(system, joint) + c - 1);
+    const std::vector<std::string> all = engine::column_names_of(system, run.drive);
+    const std::vector<std::string>& names = part.names();
+    const std::size_t rows = run.run.table.size();
+    motion::Growing<double> table(rows, names.size());
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        const bool own = c > 0 && c < motion::column_names().size() && system.named;
+        const auto place =
+            std::find(all.begin(), all.end(), own ? system.joints[joint].name + "." + names[c] : names[c]);
+        const auto from = run.run.table.column(static_cast<std::size_t>(place - all.begin()));
         std::copy(from.begin(), from.end(), table.writable() + c * rows);
     }
     part.rows = motion::Rows(std::move(table));
     return part;
+}
+
+/// The run of all bodies: all columns and events, but no motion between the rows, which is that of its parts.
+motion::Trajectory trajectory_of(const BodiesRun& run) {
+    motion::Trajectory all = engine::part_of(*run.system, run.drive, run.run, 0, {});
+    if (all.rough) all.rough->other_integrators = false;
+    all.own_names = engine::column_names_of(*run.system, run.drive);
+    all.rows = motion::Rows(run.run.table);
+    all.events = motion::Growing<model::Event>(run.run.events);
+    return all;
+}
+
+/// As seen from this body or link, or from all of them.
+std::shared_ptr<Run> seen_from(const BodiesRunHandle& run, std::optional<std::size_t> joint) {
+    auto seen = std::make_shared<Run>();
+    seen->trajectory = joint ? trajectory_of(*run, *joint) : trajectory_of(*run);
+    seen->whole = run, seen->joint = joint;
+    seen->units = run->system->units;
+    return seen;
 }
 
 }  // namespace
@@ -589,33 +619,16 @@ model::OscillatorParameters parameters_of(const model::Assembly& system, std::si
     return parameters;
 }
 
-std::vector<std::string> repeat_lines(lua_State* L, const BodiesRun& run) {
-    std::vector<std::string> lines = run.set_up.empty() ? source::set_up_lines(L, *run.system, run.drive) : run.set_up;
-    const auto times = run.run.table.column(0);
-    const motion::Grid rows = run.spaced ? motion::Grid::every(run.dt) : motion::Grid::at({times.begin(), times.end()});
-    lines.push_back(source::repeat_line(*run.system, run.drive, {run.run.t_start, run.t_end}, rows, run.integrator));
-    return lines;
-}
-
-lua::Vector table_column(const BodiesRunHandle& run, std::size_t column) {
-    const bool empty = run->run.table.size() == 0;
-    return view_of(run, empty ? std::span<const double>() : run->run.table.column(column));
-}
-
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     run->parts.resize(run->system->joints.size());
     if (RunHandle known = run->parts[joint].lock()) return known;
-    auto made = std::make_shared<Run>();
-    made->trajectory = trajectory_of(*run, joint);
-    made->whole = run, made->joint = joint;
-    made->units = run->system->units;
+    auto made = seen_from(run, joint);
     run->parts[joint] = made;
     return made;
 }
 
-std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what,
+std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of) {
-    const std::string name = lua_tostring(L, index);
     std::vector<std::string> own;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         if (system.joints[j].name == name) return j;
@@ -625,26 +638,15 @@ std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, 
                        name, own, of);
 }
 
-int push_bodies_run(lua_State* L, BodiesRunHandle run) {
-    if (!run->system->named) {
-        auto whole = std::make_shared<Run>();
-        whole->trajectory = trajectory_of(*run, 0);
-        whole->whole = run;
-        whole->units = run->system->units;
-        push_run(L, std::move(whole));
-        return 1;
-    }
-    const std::size_t bytes = run->run.table.own_bytes();
-    lua::push<BodiesRunHandle>(L, std::move(run));
-    lua::note_external_memory(L, bytes);
-    return 1;
+void push_bodies_run(lua_State* L, BodiesRunHandle run) {
+    lua::note_external_memory(L, run->run.table.own_bytes());
+    push_run(L, seen_from(run, run->system->named ? std::nullopt : std::optional<std::size_t>(0)));
 }
 
 namespace {
 
 std::size_t columns_of_run(const BodiesRun& run) {
-    const std::size_t bodies = run.system->bodies.size(), links = run.system->joints.size() - bodies;
-    return 1 + (engine::columns_of_body + 1) * bodies + engine::columns_of_link * links + run.drive.states.size();
+    return engine::column_names_of(*run.system, run.drive).size();
 }
 
 /// The rows in this window, of which memory can hold all.
@@ -782,7 +784,7 @@ int field_of_rig(lua_State* L) {
                        .culprit = std::string(name)});
     }
     if (rig->named) {
-        return push_alone(L, fmt::format("rig.{}", name), *rig, joint_named(L, 2, *rig, "this system", rig_class));
+        return push_alone(L, fmt::format("rig.{}", name), *rig, joint_named(L, name, *rig, "this system", rig_class));
     }
     if (member == members.end()) return 0;
     push_options(L, *rig, 0);
@@ -810,189 +812,30 @@ std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
     return source::lua_text(L, *rig);
 }
 
-// ---- their run
+// ---- a run that goes on
 
-const BodiesRunHandle& bodies_run_self(lua_State* L, const char* call) {
-    return lua::self<BodiesRunHandle>(L, 1, call);
-}
+}  // namespace
 
-int part_by_name(lua_State* L) {
-    if (lua_type(L, 2) != LUA_TSTRING) return 0;
-    const BodiesRunHandle run = bodies_run_self(L, "run.load");
-    const std::string_view name = lua_tostring(L, 2);
-    const auto& joints = run->system->joints;
-    const bool own = std::any_of(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
-    const auto is_it = [&](const lua::Member& member) {
-        return name == member.name && member.kind != lua::Kind::metamethod;
-    };
-    const auto member = std::find_if(run_class.members.begin(), run_class.members.end(), is_it);
-    if (!own && member != run_class.members.end()) {
-        lua::raise(L, {.sentence = fmt::format("{0} is of one body or link: run.{1}{2}{0}", name, joints.front().name,
-                                               member->kind == lua::Kind::field ? "." : ":"),
-                       .culprit = std::string(name)});
-    }
-    push_run(L, part_of(run, joint_named(L, 2, *run->system, "this run", bodies_run_class)));
-    return 1;
-}
-
-std::map<std::string, lua::Vector> states_of_bodies(lua_State*, const BodiesRunHandle& run) {
-    std::map<std::string, lua::Vector> states;
-    for (std::size_t k = 0; k < run->drive.states.size(); ++k) {
-        states.emplace(run->drive.states[k].name, table_column(run, first_state_column(*run) + k));
-    }
-    return states;
-}
-
-lua::Pushed events_of_bodies(lua_State* L, const BodiesRunHandle& run) {
-    const ColumnUnits in(run->system->units);
-    using model::Event;
-    Data data =
-        table_of(run->run.events, ListColumn{"t", &Event::t, in.t},
-                 ListColumn{"kind", [](const Event& e) { return model::name(e.kind); }},
-                 ListColumn{"where",
-                            [&](const Event& e) {
-                                return e.where < 0 ? "" : run->system->joints[static_cast<std::size_t>(e.where)].name;
-                            }},
-                 ListColumn{"theta", &Event::theta, in.theta}, ListColumn{"velocity", &Event::velocity, in.speed},
-                 ListColumn{"M", &Event::M, in.M});
-    const ListColumn names{"name", [&](const Event& e) {
-                               return e.user < 0 ? "" : run->drive.events[static_cast<std::size_t>(e.user)].name;
-                           }};
-    if (!run->drive.events.empty()) data.columns.push_back(names.of(run->run.events));
-    push_data(L, std::move(data));
-    return {};
-}
-
-/// All columns with their names: "load.theta".
-int rows_of_bodies(lua_State* L) {
-    const BodiesRunHandle run = bodies_run_self(L, "run:data()");
-    const model::Assembly& system = *run->system;
-    const ColumnUnits in(system.units);
-    Data data;
-    const auto add = [&](std::string name, std::string_view kind, std::size_t column) {
-        data.columns.push_back({std::move(name), table_column(run, column), in.of(kind)});
-    };
-    add("t", "t", 0);
-    for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        const std::size_t first = first_column(system, j);
-        std::size_t c = 0;
-        const bool link = system.is_link(j);
-        for (const char* kind : {"theta", "velocity", link ? "torque" : "M", "friction", "damping"}) {
-            if (link && c == engine::columns_of_link) break;
-            add(system.joints[j].name + "." + kind, kind, first + c++);
-        }
-        if (!link) add(system.joints[j].name + ".acceleration", "acceleration", acceleration_column(*run, j));
-    }
-    const std::size_t count = run->drive.states.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        add(run->drive.states[k].name, "", first_state_column(*run) + k);
-    }
-    return push_data(L, std::move(data));
-}
-
-int at_of_bodies(lua_State* L) {
-    const BodiesRunHandle run = bodies_run_self(L, "run:at(t)");
-    const double t = lua::finite_argument(L, 2, "run:at(t): t");
-    const bool within = t >= run->run.t_start && t <= run->run.t_stop;
-    if (!within || !keeps_motion(run->run) || t > run->run.history->whole_until()) {
-        lua::fail(L, "run:at(t)", part_of(run, 0)->trajectory.at(t).error());
-    }
-    const std::vector<double> y = run->run.history->at(t);
-    const std::size_t n = run->system->bodies.size();
-    const auto push_part = [&](const auto& named, std::size_t from) {
-        lua_createtable(L, 0, static_cast<int>(named.size()));
-        for (std::size_t i = 0; i < named.size(); ++i) lua::set_value(L, named[i].name.c_str(), y[from + i]);
-    };
-    push_part(run->system->bodies, 0);
-    push_part(run->system->bodies, n);
-    if (run->drive.states.empty()) return 2;
-    push_part(run->drive.states, 2 * n);
-    return 3;
-}
-
-constexpr text::Call bodies_save_call{
-    "rig_run:save", "rig_run:save(\"run.csv\", { columns = { \"t\", \"load.theta\" } })", save_options, true};
-
-/// The columns asked for, or all.
-int save_bodies(lua_State* L) {
-    const lua::Options options(L, 3, bodies_save_call);
-    const std::vector<std::string> comments = repeat_lines(L, *bodies_run_self(L, bodies_save_call.example));
-    rows_of_bodies(L);
-    lua_replace(L, 1);
-    if (options.has("columns")) {
-        lua_pushcfunction(L, lua::guarded<data_functions::select>);
-        lua_pushvalue(L, 1);
-        options.push("columns");
-        if (!lua_istable(L, -1)) options.wrong("columns");
-        const int list = lua_gettop(L), count = static_cast<int>(lua_rawlen(L, list));
-        luaL_checkstack(L, count, "too many columns");
-        for (int i = 1; i <= count; ++i) lua_rawgeti(L, list, i);
-        lua_remove(L, list);
-        lua_call(L, 1 + count, 1);
-        lua_replace(L, 1);
-    }
-    lua_settop(L, 2);
-    return data_functions::save_rows(L, comments);
-}
-
-constexpr text::Call bodies_plot_call{"rig_run:plot", "rig_run:plot{ file = \"run.svg\" }", plot_options, true};
-
-/// The angles of all bodies, one below the other, and of the links that rub; with bars where they stick.
-int plot_bodies(lua_State* L) {
-    const BodiesRunHandle run = bodies_run_self(L, "run:plot()");
-    const lua::Options options(L, 2, bodies_plot_call);
-    std::vector<plots::Figure> figures;
-    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
-        const model::Joint& joint = run->system->joints[j];
-        if (run->system->is_link(j) && joint.friction.none()) continue;
-        const auto part = drawn_trajectory(L, part_of(run, j), options.numbers("xlim"));
-        const plots::RunData data{part, part.get(), nullptr, run->system->units};
-        std::vector<plots::Figure> own = options.value_or_fail(plots::column_figures(data, {.ys = {"theta"}}));
-        own.front().y.label = joint.name + " " + own.front().y.label;
-        own.front().below = !figures.empty();
-        figures.push_back(std::move(own.front()));
-    }
-    apply_options(L, options, figures);
-    return deliver(L, options, std::move(figures));
-}
-
-std::string text_of_run(lua_State*, const BodiesRunHandle& handle) {
-    const BodiesRun& run = *handle;
-    std::size_t sticks = 0, slips = 0;
-    for (const model::Event& e : run.run.events) {
-        sticks += model::is_stop(e.kind) ? 1 : 0;
-        slips += e.kind == model::EventKind::slip ? 1 : 0;
-    }
-    return fmt::format("{}, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}{}",
-                       text::counted(run.system->bodies.size(), "body"), run.run.table.size(), run.run.t_start,
-                       run.run.t_stop, text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
-                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory),
-                       motion::too_few_rows(run.run.table.size(), run.run.events.size()));
-}
-
-constexpr text::Option bodies_continue_rows[] = {continue_options[0]};
-constexpr text::Call bodies_continue_call{
-    "rig_run:continue", "rig_run:continue{ t_end = 40 }", bodies_continue_rows, false, nullptr, "t_end"};
-
-int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked) {
-    if (!asked.t_end) options.missing("t_end");
+int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked) {
+    if (asked.times) options.fail("times", "this run goes on with a row every dt; times are for other runs");
     const double from = first->run.t_stop;
-    if (!(*asked.t_end > from)) {
-        options.fail("t_end", fmt::format("t_end = {} must be after t = {}, where the run ended", *asked.t_end, from));
+    const double end = asked_end(options, asked, from, first->t_end);
+    if (!(end > from)) {
+        options.fail("t_end", fmt::format("t_end = {} must be after t = {}, where the run ended", end, from));
     }
     auto run = std::make_shared<BodiesRun>();
     run->system = first->system, run->drive = first->drive, run->dt = first->dt;
-    run->t_end = *asked.t_end, run->spaced = first->spaced, run->set_up = first->set_up;
+    run->t_end = end, run->spaced = first->spaced, run->set_up = first->set_up;
     run->integrator = first->integrator;
     // The last row of the first run stands in the second one only where the spacing puts it there.
     const motion::Limits limits = limits_of_run(keeps_motion(first->run));
     const double start = first->run.t_start;
-    const motion::Grid grid = grid_within(options, *run, motion::Grid::every(run->dt), {start, *asked.t_end}, limits);
+    const motion::Grid grid = grid_within(options, *run, motion::Grid::every(run->dt), {start, end}, limits);
     std::vector<double> times;
     for (auto row = static_cast<std::size_t>((from - start) / run->dt * (1 - 1e-12)); row < grid.count(); ++row) {
         if (grid.time(row) > from + 1e-15 * std::fabs(from)) times.push_back(grid.time(row));
     }
-    run_bodies(L, options, run, {from, *asked.t_end}, motion::Grid::at(std::move(times)), limits, first->run.carry);
+    run_bodies(L, options, run, {from, end}, motion::Grid::at(std::move(times)), limits, first->run.carry);
     std::size_t kept = first->run.table.size();
     const double last = kept == 0 ? start : first->run.table(kept - 1, 0);
     const double nearest = start + std::round((last - start) / run->dt) * run->dt;
@@ -1001,25 +844,9 @@ int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHand
         first->run.table.followed_by(kept, run->run.table, limits.memory / (columns_of_run(*run) * sizeof(double)));
     run->run.events.insert(run->run.events.begin(), first->run.events.begin(), first->run.events.end());
     run->run.t_start = start;
-    if (run->system->named) return 1;
-    lua_pop(L, 1);  // of one body it was made of the second part
-    return push_bodies_run(L, run);
-}
-
-/// The first run, and how it goes on.
-int continue_bodies(lua_State* L) {
-    const BodiesRunHandle first = bodies_run_self(L, bodies_continue_call.example);
-    const lua::Options options(L, 2, bodies_continue_call);
-    MoreTime asked;
-    options.fill(asked);
-    return continue_this(L, options, first, asked);
-}
-
-}  // namespace
-
-int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked) {
-    if (asked.times) options.fail("times", "this run goes on with a row every dt; times are for other runs");
-    return continue_this(L, options, run, asked);
+    lua_pop(L, 1);  // it was made of the second part
+    push_bodies_run(L, run);
+    return 1;
 }
 
 namespace {
@@ -1079,88 +906,6 @@ constexpr lua::Member rig_members[] = {
       "= 2, k = 4 } } }"}},
 };
 
-#define DINAL_RIG_RUN DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10, dt = 2 }\n"
-
-constexpr lua::Member bodies_run_members[] = {
-    {lua::a_method<at_of_bodies>,
-     {"rig_run:at(t) -> theta, velocity, z",
-      "Angles (rad) and velocities (rad per time unit) at any time of the run, as tables by body, and the states.",
-      DINAL_RIG_RUN "theta, velocity = run:at(2)\nprint(velocity.motor == velocity.load)  --> true"}},
-    {lua::a_method<rows_of_bodies>,
-     {"rig_run:data() -> data",
-      "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
-      DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
-    {lua::a_question<BodiesRunHandle, story_of_bodies>,
-     {"rig_run:explain() -> string",
-      "Describes the run: the motion of each body and link, when they stuck, where the energy went, how it ended.",
-      DINAL_RIG_RUN "print((run:explain():match(\"clutch links[^.]*\")))  --> clutch links motor and load"}},
-    {lua::a_question<BodiesRunHandle, energy_of_bodies>,
-     {"rig_run:energy() -> energy",
-      "The energy balance: the work of M on each body, and the losses by each damping, friction and impact. The "
-      "run is repeated to compute it.",
-      DINAL_RIG_RUN "print(string.format(\"%.6f\", run:energy().clutch.dry))  --> 3.461538"}},
-    {lua::a_method<plot_bodies>,
-     {"rig_run:plot{ OPTIONS }",
-      "Draws the angles of all bodies, and of the links with friction, over time, with bars where they stick.",
-      DINAL_RIG_RUN "picture = run:plot{ show = false }",
-      {&bodies_plot_call}}},
-    {lua::a_method<animate_bodies>,
-     {"rig_run:animate{ OPTIONS }",
-      "Shows the bodies in motion, side by side with belts and springs, or as discs on one axis if one of them rotates: in "
-      "the terminal until Ctrl-C, in a notebook, or in a file.",
-      DINAL_RIG_RUN "file = os.tmpname() .. \".svg\"\n"
-                    "run:animate{ file = file }\n"
-                    "print(io.open(file):read(\"a\"):match(\"<desc>([^;]*)\"))  --> 2 bodies as discs on one axis\n"
-                    "os.remove(file)",
-      {&animate_call}}},
-    {lua::a_method<save_bodies>,
-     {"rig_run:save(file, { OPTIONS })",
-      "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns, behind a comment block "
-      "with the units and the Lua text that repeats the run.",
-      DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
-                    "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)",
-      {&bodies_save_call}}},
-    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return status_word(run.run.outcome); }>,
-     {"rig_run.status -> string", "How the run ended, in one word, as for one body.",
-      DINAL_RIG_RUN "print(run.status)  --> end"}},
-    {lua::a_method<continue_bodies>,
-     {"rig_run:continue{ OPTIONS } -> rig_run",
-      "A new run that continues this one from its end.",
-      DINAL_RIG_RUN "print(run:continue{ t_end = 12 }.t_end)  --> 12.0",
-      {&bodies_continue_call}}},
-    {lua::a_value<BodiesRunHandle, [](lua_State*, const BodiesRunHandle& run) { return table_column(run, 0); }>,
-     {"rig_run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
-    {lua::a_kept_value<BodiesRunHandle, events_of_bodies>,
-     {"rig_run.events -> data",
-      "The events in order of time: t, kind, where (the body or link), theta, velocity (relative, for a link) and "
-      "M (on its first body); name for your own events.",
-      DINAL_RIG_RUN "print(run.events.kind[1], run.events.where[1])  --> stick\tclutch"}},
-    {lua::a_value<BodiesRunHandle, states_of_bodies>,
-     {"rig_run.states -> table", "The columns of the states by name: vectors.",
-      DINAL_RIG_RUN "print(next(run.states))  --> nil"}},
-    {lua::a_value<BodiesRunHandle,
-                  [](lua_State*, const BodiesRunHandle& run) {
-                      return motion::outcome_text(part_of(run, 0)->trajectory);
-                  }>,
-     {"rig_run.outcome -> string", "How the run ended, as a sentence.",
-      DINAL_RIG_RUN "print(run.outcome)  --> reached the end"}},
-    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return run.run.t_start; }>,
-     {"rig_run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},
-    {lua::a_value<BodiesRunHandle, [](const BodiesRun& run) { return run.run.t_stop; }>,
-     {"rig_run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
-    {lua::a_value<BodiesRunHandle, &BodiesRun::system>,
-     {"rig_run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
-    {lua::a_value<BodiesRunHandle, &BodiesRun::integrator>,
-     {"rig_run.integrator -> integrator", "The integrator.",
-      DINAL_RIG_RUN "print(run.integrator)  --> integrator.spectral{}"}},
-    {lua::a_length<BodiesRunHandle, [](const BodiesRun& run) { return run.run.table.size(); }>,
-     {"#rig_run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
-    {lua::a_text<BodiesRunHandle, text_of_run>,
-     {"tostring(rig_run) -> string", "A summary in one line.",
-      DINAL_RIG_RUN "print((tostring(run):match(\"^%d+ bodies\")))  --> 2 bodies"}},
-};
-
-#undef DINAL_RIG_RUN
 #undef DINAL_RIG
 
 }  // namespace
@@ -1177,20 +922,8 @@ const lua::Class rig_class = {
     rig_members,
     field_of_rig};
 
-const lua::Class bodies_run_class = {
-    "run of several bodies",
-    {"rig:simulate{ ... } -> rig_run",
-     "A run of several bodies. run.load is the run as seen from the body `load`: columns theta, velocity, M, friction, "
-     "damping, acceleration, its events, at(t), energy, plots; run.shaft that of a link: theta (first less second), velocity, torque (on the "
-     "first) and friction.",
-     "rig = system{ bodies = { a = { I = 1, k = 4 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
-     "run = rig:simulate{ theta0 = { a = 1 }, t_end = 3 }\nprint(run.a.theta[1], run.rod.torque[1])  --> 1.0\t-2.0"},
-    bodies_run_members,
-    part_by_name};
-
 void register_bodies(lua_State* L) {
     lua::add_class<AssemblyHandle>(L, rig_class);
-    lua::add_class<BodiesRunHandle>(L, bodies_run_class);
 }
 
 }  // namespace dinal::api

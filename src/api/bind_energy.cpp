@@ -24,9 +24,8 @@ namespace {
 struct RunEnergy {
     RunHandle run = {};
     analysis::Energy energy = {};
-    BodiesRunHandle rig = {};                   ///< of several bodies together, instead of run
-    std::vector<analysis::Energy> joints = {};  ///< of which that energy is the sum
-    Eigen::MatrixXd columns = {};               ///< at the rows; made when first asked for
+    std::vector<analysis::Energy> parts = {};  ///< of which that energy is the sum
+    Eigen::MatrixXd columns = {};              ///< at the rows; made when first asked for
 };
 // Shared, because a column that Lua takes out is a view that keeps it alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
@@ -38,8 +37,8 @@ bool is_part(const RunEnergy& energy) {
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
 analysis::Whose whose_of(const Run& run) {
-    return !run.whole || run.whole->system->joints.size() == 1 ? analysis::Whose::all
-           : run.whole->system->is_link(run.joint)             ? analysis::Whose::link
+    return !run.joint || run.whole->system->joints.size() == 1 ? analysis::Whose::all
+           : run.whole->system->is_link(*run.joint)            ? analysis::Whose::link
                                                                : analysis::Whose::body;
 }
 
@@ -47,12 +46,10 @@ analysis::Whose whose_of(const Run& run) {
 void make_columns(lua_State* L, RunEnergy& energy) {
     if (energy.columns.size() > 0) return;
     lua::CallState call(L);  // a law of friction may be a user's function
-    const std::size_t parts = energy.rig ? energy.rig->system->joints.size() : 1;
-    for (std::size_t j = 0; j < parts; ++j) {
-        const RunHandle run = energy.rig ? part_of(energy.rig, j) : energy.run;
-        const Eigen::MatrixXd own = analysis::energy_columns(run->trajectory, whose_of(*run));
+    for (const RunHandle& part : parts_of(energy.run)) {
+        const Eigen::MatrixXd own = analysis::energy_columns(part->trajectory, whose_of(*part));
         call.check();
-        energy.columns = j == 0 ? own : energy.columns + own;
+        energy.columns = energy.columns.size() == 0 ? own : energy.columns + own;
     }
     if (is_part(energy)) energy.columns.col(error_column) *= -1;  // then it is the work of the others
     lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
@@ -76,7 +73,6 @@ std::optional<lua::Vector> rest_of_energy(lua_State* L, const EnergyHandle& hand
 }
 
 lua::Vector times(const RunEnergy& energy) {
-    if (energy.rig) return table_column(energy.rig, 0);
     return view_of(energy.run, energy.run->trajectory.column(motion::Column::t));
 }
 
@@ -112,7 +108,7 @@ NamedNumbers stored(const RunEnergy& own) {
 }
 
 std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
-    if (own.joints.size() > 1) return {};
+    if (own.parts.size() > 1) return {};
     std::vector<NamedNumbers> list;
     for (const auto& half : own.energy.half_cycles) {
         list.push_back({{"t_start", half.t_start},
@@ -128,16 +124,17 @@ std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
 int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
-    if (energy->rig == nullptr) return 0;
+    const Run& run = *energy->run;
+    if (!run.whole || run.joint) return 0;
     NamedNumbers numbers;
-    add_balance(numbers, energy->joints[joint_named(L, 2, *energy->rig->system, "this energy", energy_class)].total,
-                true);
+    const std::size_t joint = joint_named(L, lua_tostring(L, 2), *run.whole->system, "this energy", energy_class);
+    add_balance(numbers, energy->parts[joint].total, true);
     lua::push_value(L, numbers);
     return 1;
 }
 
 std::string text_of_rig(const RunEnergy& energy) {
-    const auto& joints = energy.rig->system->joints;
+    const auto& joints = energy.run->whole->system->joints;
     const analysis::Energy& all = energy.energy;
     const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * all.flow ? 0.0 : x; };
     std::string text =
@@ -151,7 +148,7 @@ std::string text_of_rig(const RunEnergy& energy) {
                             shown(own.work.input), shown(own.change.kinetic), shown(own.change.spring),
                             shown(own.work.viscous), shown(own.work.dry));
     };
-    for (std::size_t j = 0; j < joints.size(); ++j) line(joints[j].name, energy.joints[j].total);
+    for (std::size_t j = 0; j < joints.size(); ++j) line(joints[j].name, energy.parts[j].total);
     line("all", all.total);
     const motion::Work& work = all.total.work;
     for (const auto& [name, value] :
@@ -164,8 +161,7 @@ std::string text_of_rig(const RunEnergy& energy) {
 }
 
 std::string text_of_energy(const RunEnergy& energy) {
-    if (energy.joints.size() > 1) return text_of_rig(energy);
-    return analysis::text(energy.energy, energy.rig ? energy.rig->system->units : units_of(*energy.run));
+    return energy.parts.size() > 1 ? text_of_rig(energy) : analysis::text(energy.energy, units_of(*energy.run));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -269,7 +265,7 @@ const lua::Class energy_class = {
 
 std::string energy_card(lua_State* L, int index, const terminal::Display& screen) {
     const RunEnergy& energy = **lua::test<EnergyHandle>(L, index);
-    if (energy.joints.size() > 1) return text_of_rig(energy);
+    if (energy.parts.size() > 1) return text_of_rig(energy);
     constexpr std::size_t name_and_number = 23;
     std::string card;
     const std::string whole = terminal::spelled(text_of_energy(energy), screen);
@@ -282,23 +278,13 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     return text::wrapped(card, screen.width - 1);
 }
 
-lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
-    lua::CallState call(L);
-    auto energy = analysis::energy_of(run->trajectory, whose_of(*run));
-    call.check();
-    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{
-                                   .run = run, .energy = lua::value_or_raise(L, "run:energy()", std::move(energy))}));
-    return {};
-}
-
 namespace {
 
-/// Of each joint; fails with the sentence of the first that fails.
-text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const BodiesRunHandle& run) {
+/// Of each part of the run; fails with the sentence of the first that fails.
+text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const std::vector<RunHandle>& parts) {
     lua::CallState call(L);  // a law of friction may be a user's function
     std::vector<analysis::Energy> energies;
-    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
-        const RunHandle part = part_of(run, j);
+    for (const RunHandle& part : parts) {
         auto energy = analysis::energy_of(part->trajectory, whose_of(*part));
         call.check();
         if (!energy) return energy.error();
@@ -309,23 +295,22 @@ text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const Bo
 
 }  // namespace
 
-lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
-    auto joints = lua::value_or_raise(L, "run:energy()", energies_of(L, run));
-    RunEnergy energy{.energy = analysis::sum_of(joints), .rig = run};
-    energy.joints = std::move(joints);
-    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(std::move(energy)));
+lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
+    auto parts = lua::value_or_raise(L, "run:energy()", energies_of(L, parts_of(run)));
+    auto energy = std::make_shared<RunEnergy>(
+        RunEnergy{.run = run, .energy = run->joint ? parts.front() : analysis::sum_of(parts), .parts = {}});
+    energy->parts = std::move(parts);
+    lua::push<EnergyHandle>(L, std::move(energy));
     return {};
 }
 
-std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run) {
-    std::vector<RunHandle> kept;
-    std::vector<const motion::Trajectory*> parts;
-    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
-        kept.push_back(part_of(run, j));
-        parts.push_back(&kept.back()->trajectory);
-    }
-    const auto energies = energies_of(L, run);
-    return analysis::explain(*run->system, run->drive, run->run, parts,
+std::string story_of_bodies(lua_State* L, const RunHandle& run) {
+    const std::vector<RunHandle> parts = parts_of(run);
+    std::vector<const motion::Trajectory*> seen;
+    for (const RunHandle& part : parts) seen.push_back(&part->trajectory);
+    const auto energies = energies_of(L, parts);
+    const BodiesRun& whole = *run->whole;
+    return analysis::explain(*whole.system, whole.drive, whole.run, seen,
                              energies ? energies.value() : std::vector<analysis::Energy>());
 }
 

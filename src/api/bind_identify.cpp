@@ -129,6 +129,7 @@ Data record_of(lua_State* L, const lua::Options& options) {
     if (const auto* data = lua::test<DataHandle>(L, place)) {
         record.columns = (*data)->columns;
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
+        check_one(L, **run, ":data");
         record = rows_of(*run);
     } else if (lua_istable(L, place)) {
         for (const std::string& name : lua::text_keys(L, place)) {

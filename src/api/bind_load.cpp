@@ -42,7 +42,7 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
     const ColumnUnits in(model::Units::from_file(content.comments));
     Data data;
     for (files::ReadColumn& column : content.columns) {
-        if (column.unit.empty()) column.unit = in.of(column.name.substr(column.name.find('.') + 1));
+        if (column.unit.empty()) column.unit = in.of(column.name);
         data.columns.push_back(column_of(std::move(column)));
     }
     return push_data(L, std::move(data));

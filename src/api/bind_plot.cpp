@@ -106,6 +106,7 @@ RunHandle run_on_top(lua_State* L) {
 plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string& call) {
     plots::Curve curve;
     if (lua_istable(L, -1)) curve = curve_with_options(L, lua_gettop(L), 1, call);
+    check_one(L, *run, ".theta");
     const auto drawn = drawn_trajectory(L, run);
     curve.x = numbers_of_run(L, drawn, "t", call);
     curve.y = numbers_of_run(L, drawn, "theta", call);
@@ -196,9 +197,17 @@ std::optional<double> constant_load(const Run& run) {
     return *M - task.system.inertia() * *base;
 }
 
+/// Without its events, which are those of all bodies.
+std::shared_ptr<const motion::Trajectory> without_events(const motion::Trajectory& trajectory) {
+    auto rows = std::make_shared<motion::Trajectory>(trajectory);
+    rows->events = {};
+    return rows;
+}
+
 plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run,
                        const std::vector<double>& window = {}) {
-    const auto drawn = drawn_trajectory(L, run, window);
+    const bool of_all = run->whole && !run->joint;
+    const auto drawn = of_all ? without_events(run->trajectory) : drawn_trajectory(L, run, window);
     if (drawn->size() == 0) {
         options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
     }
@@ -286,7 +295,7 @@ void join_columns(lua_State* L) {
 motion::BetweenRows between_rows(const Run& run) {
     const model::Excitation* M = nullptr;
     if (run.origin) M = run.terms ? &*run.terms : &run.origin->excitation;
-    if (run.whole && !run.whole->system->is_link(run.joint)) M = &run.whole->drive.loads[run.joint];
+    if (run.joint && !run.whole->system->is_link(*run.joint)) M = &run.whole->drive.loads[*run.joint];
     const bool of_state = run.origin && run.origin->extras.states.empty();  // of theta and velocity alone
     const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
@@ -359,22 +368,44 @@ int plot_vectors(lua_State* L) {
     return deliver(L, options, std::move(items.panels));
 }
 
+namespace {
+
+/// The angles of all bodies, one below the other, and of the links that rub; with bars where they stick.
+std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& options, const RunHandle& run) {
+    std::vector<plots::Figure> figures;
+    for (const RunHandle& part : parts_of(run)) {
+        const model::Joint& joint = part->whole->system->joints[*part->joint];
+        if (part->whole->system->is_link(*part->joint) && joint.friction.none()) continue;
+        std::vector<plots::Figure> own = options.value_or_fail(
+            plots::column_figures(data_of(L, options, part, options.numbers("xlim")), {.ys = {"theta"}}));
+        own.front().y.label = joint.name + " " + own.front().y.label;
+        own.front().below = !figures.empty();
+        figures.push_back(std::move(own.front()));
+    }
+    return figures;
+}
+
+}  // namespace
+
 int plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
     const lua::Options options(L, 2, plot_run_call);
+    if (run->whole && !run->joint && !options.has("x") && !options.has("y")) {
+        std::vector<plots::Figure> figures = angles_of_all(L, options, run);
+        apply_options(L, options, figures);
+        return deliver(L, options, std::move(figures));
+    }
     const std::vector<std::string> x = asked_columns(L, options, "x", run);
     if (x.size() > 1) {
         options.fail("x", "x must be one column");
     }
+    const std::vector<std::string> ys = asked_columns(L, options, "y", run);
     const bool over_time = x.empty() || x.front() == "t";
     const plots::RunData data = data_of(L, options, run, over_time ? options.numbers("xlim") : std::vector<double>());
     // Who names the axis has decided that there is one.
     const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
-    std::vector<plots::Figure> figures =
-        options.value_or_fail(plots::column_figures(data, {.x = x.empty() ? "" : x.front(),
-                                                           .ys = asked_columns(L, options, "y", run),
-                                                           .labels = asked_labels(L, options),
-                                                           .axes = axes}));
+    std::vector<plots::Figure> figures = options.value_or_fail(plots::column_figures(
+        data, {.x = x.empty() ? "" : x.front(), .ys = ys, .labels = asked_labels(L, options), .axes = axes}));
     apply_options(L, options, figures);
     return deliver(L, options, std::move(figures));
 }
@@ -383,9 +414,10 @@ int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
     if (run->whole) {
-        options.fail(
-            {"the phase plane is that of a system of one body with constant Rd and Re; use run:plot{ x = \"theta\", "
-             "y = \"velocity\" }"});
+        options.fail({fmt::format(
+            "the phase plane is that of a system of one body with constant Rd and Re; use run{}:plot{{ x = "
+            "\"theta\", y = \"velocity\" }}",
+            run->joint ? "" : "." + run->whole->system->joints.front().name)});
     }
     plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, run)));
     apply_options(L, options, figure);

@@ -50,9 +50,18 @@
 
 namespace dinal::api {
 
-std::string story_of_run(lua_State* L, const Run& run) {
-    if (run.whole && !run.whole->system->named) return story_of_bodies(L, run.whole);
-    if (run.whole) return motion::summary(run.trajectory) + ". The run of all bodies tells more: run:explain().";
+std::string line_of(const Run& run) {
+    const bool of_all = run.whole && !run.joint;
+    return (of_all ? text::counted(run.whole->system->bodies.size(), "body") + ", " : "") +
+           motion::summary(run.trajectory);
+}
+
+std::string story_of_run(lua_State* L, const RunHandle& handle) {
+    const Run& run = *handle;
+    if (run.whole && run.whole->system->named && run.joint) {
+        return line_of(run) + ". The run of all bodies tells more: run:explain().";
+    }
+    if (run.whole) return story_of_bodies(L, handle);
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
     std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system,
                                                       run.terms ? *run.terms : run.origin->excitation,
@@ -242,9 +251,19 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
     return {.values = {values.begin(), end}, .dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1)};
 }
 
+/// Of which body or link "load.theta" is; none of columns of the whole run.
+std::optional<std::size_t> joint_of_column(const Run& run, std::string_view column) {
+    if (!run.whole || run.joint) return {};
+    const auto& joints = run.whole->system->joints;
+    const auto is_its = [&](const model::Joint& joint) {
+        return column.starts_with(joint.name) && column.substr(joint.name.size()).starts_with('.');
+    };
+    const auto found = std::find_if(joints.begin(), joints.end(), is_its);
+    return found == joints.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - joints.begin()));
+}
+
 int spectrum_of_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, spectrum_call.example);
-    const motion::Trajectory& trajectory = run->trajectory;
+    RunHandle run = lua::self<RunHandle>(L, 1, spectrum_call.example);
     const bool positional = lua_gettop(L) > 1 && !lua_istable(L, 2);
     if (positional && lua_type(L, 2) != LUA_TSTRING) {
         lua::fail(L, "run:spectrum",
@@ -257,7 +276,13 @@ int spectrum_of_run(lua_State* L) {
     SpectrumOptions asked;
     options.fill(asked);
     const std::string name = positional ? std::string(lua_tostring(L, 2)) : asked.of;
-    const auto column = files::find_column(trajectory.names(), std::string_view(name));
+    std::string_view own_name = name;
+    if (const auto joint = joint_of_column(*run, name)) {
+        run = part_of(run->whole, *joint);
+        own_name.remove_prefix(name.find('.') + 1);
+    }
+    check_one(L, *run, "." + name);
+    const auto column = files::find_column(run->trajectory.names(), own_name);
     if (!column) options.fail(column.error());
     const auto [values, dt, kind] = samples_of(L, options, *run, *column, asked.from);
     const std::size_t rows = values.size();
@@ -288,6 +313,7 @@ int spectrum_of_run(lua_State* L) {
 int poincare_of_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, poincare_call.example);
     const lua::Options options(L, 2, poincare_call);
+    check_one(L, *run, ":poincare");
     PoincareOptions asked;
     options.fill(asked);
     const motion::Trajectory& trajectory = run->trajectory;
@@ -332,6 +358,7 @@ int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
     const motion::Trajectory& trajectory = run->trajectory;
     const auto column = trajectory.find(name);
+    if (!column && run->whole && !run->joint) joint_named(L, name, *run->whole->system, "this run", run_class);
     if (!column) {
         raise_unknown_name(
             L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
@@ -343,7 +370,9 @@ int column_by_name(lua_State* L, const char* name) {
 
 template <motion::Column column>
 int column_field(lua_State* L) {
-    return column_by_name(L, motion::column_names()[static_cast<std::size_t>(column)].c_str());
+    const std::string& name = motion::column_names()[static_cast<std::size_t>(column)];
+    if (column != motion::Column::t) check_one(L, *run_self(L, "run.theta"), "." + name);
+    return column_by_name(L, name.c_str());
 }
 
 /// A method of data, of the rows of the run.
@@ -372,6 +401,18 @@ int other_column(lua_State* L) {
     return column_by_name(L, lua_tostring(L, 2));
 }
 
+/// run.load
+int body_or_link(lua_State* L) {
+    const RunHandle& run = run_self(L, "run.load");
+    if (!run->whole || run->joint) return 0;
+    const std::string_view name = lua_tostring(L, 2);
+    const auto& joints = run->whole->system->joints;
+    const auto own = std::find_if(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
+    if (own == joints.end()) return 0;
+    push_run(L, part_of(run->whole, static_cast<std::size_t>(own - joints.begin())));
+    return 1;
+}
+
 int columns(lua_State* L) {
     const RunHandle run = run_self(L, "run:columns(\"t\", \"theta\")");
     const auto& names = run->trajectory.names();
@@ -391,8 +432,14 @@ int columns(lua_State* L) {
     return asked;
 }
 
+int data_of_run(lua_State* L) {
+    return push_data(L, rows_of(run_self(L, "run:data()")));
+}
+
 lua::Pushed events(lua_State* L, const RunHandle& run) {
-    push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run));
+    const bool of_all = run->whole && !run->joint;
+    push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run),
+                of_all ? &*run->whole->system : nullptr);
     return {};
 }
 
@@ -406,6 +453,35 @@ Data rows_of(const RunHandle& run) {
         data.columns.push_back({name, view_of(run, numbers), in.of(name)});
     }
     return data;
+}
+
+void check_one(lua_State* L, const Run& run, std::string_view member) {
+    if (!run.whole || run.joint) return;
+    const std::string name(member.substr(1));
+    lua::raise(L, {.sentence = fmt::format("{} is of one body or link: run.{}{}", name,
+                                           run.whole->system->joints.front().name, member),
+                   .culprit = name});
+}
+
+std::vector<RunHandle> parts_of(const RunHandle& run) {
+    if (!run->whole || run->joint) return {run};
+    std::vector<RunHandle> parts;
+    for (std::size_t j = 0; j < run->whole->system->joints.size(); ++j) parts.push_back(part_of(run->whole, j));
+    return parts;
+}
+
+std::vector<std::string> repeat_lines(lua_State* L, const Run& run) {
+    if (run.origin) return source::repeat_lines(*run.origin);
+    if (!run.whole) return run.comments;
+    const BodiesRun& whole = *run.whole;
+    std::vector<std::string> lines =
+        whole.set_up.empty() ? source::set_up_lines(L, *whole.system, whole.drive) : whole.set_up;
+    const auto times = whole.run.table.column(0);
+    const motion::Grid rows =
+        whole.spaced ? motion::Grid::every(whole.dt) : motion::Grid::at({times.begin(), times.end()});
+    lines.push_back(
+        source::repeat_line(*whole.system, whole.drive, {whole.run.t_start, whole.t_end}, rows, whole.integrator));
+    return lines;
 }
 
 void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,
@@ -438,6 +514,7 @@ std::string_view status_word(model::Outcome outcome) {
 namespace {
 
 lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
+    check_one(L, *run, ":cycle");
     const motion::Trajectory& trajectory = run->trajectory;
     lua::CallState call(L);
     std::vector<model::Event> events(trajectory.events.begin(), trajectory.events.end());
@@ -467,10 +544,29 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
 }
 
 /// What was simulated, and how; nil where the run was read from a file.
-template <auto member>
-auto origin_of(const Run& run) {
-    using Value = std::remove_cvref_t<decltype((*run.origin).*member)>;
-    return run.origin ? std::optional<Value>((*run.origin).*member) : std::nullopt;
+lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
+    if (run->origin) {
+        lua::push(L, run->origin->system);
+    } else if (!run->whole) {
+        lua_pushnil(L);
+    } else if (run->joint && run->whole->system->named) {
+        push_alone(L, "run.system", *run->whole->system, *run->joint);
+    } else {
+        lua::push<AssemblyHandle>(L, run->whole->system);
+    }
+    return {};
+}
+
+std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle& run) {
+    check_one(L, *run, ".excitation");
+    if (run->origin) return run->origin->excitation;
+    if (!run->whole || run->whole->system->is_link(*run->joint)) return {};
+    return run->whole->drive.loads[*run->joint];
+}
+
+std::optional<motion::Integrator> integrator_of_run(const Run& run) {
+    if (run.origin) return run.origin->integrator;
+    return run.whole ? std::optional(run.whole->integrator) : std::nullopt;
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
@@ -482,12 +578,16 @@ constexpr lua::Member run_members[] = {
     {lua::a_method<run_at>,
      {"run:at(t) -> theta, velocity, z",
       "Angle (rad) and velocity (rad per time unit) at any time of the run, at the accuracy of the integrator; in "
-      "a run with states also the table z. A run read from a file is interpolated by cubics.",
+      "a run with states also the table z. Of several bodies tables by body. A run read from a file is interpolated by "
+      "cubics.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {lua::a_method<columns>,
      {"run:columns(name, ...) -> vector, ...",
       "The columns with these names or numbers (t is 1); all of them without arguments.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
+    {lua::a_method<data_of_run>,
+     {"run:data() -> data", "All columns and rows, as data that can be filtered, joined with others and plotted.",
+      DINAL_RUN "print(table.concat(run:data().names, \" \"))  --> t theta velocity M friction damping"}},
     {lua::a_method<as_data<data_functions::column>>,
      {"run:column(name) -> vector", "The column of this name, also if the run has a member of that name.",
       DINAL_RUN "print(run:column(\"theta\") == run.theta)  --> true"}},
@@ -514,21 +614,22 @@ constexpr lua::Member run_members[] = {
       {&continue_call}}},
     {lua::a_question<RunHandle, energy_of_run>,
      {"run:energy() -> energy",
-      "The energy balance: work of M, stored energy, losses; in total, for each half cycle and at the rows. Only "
-      "for runs by integrator.exact and integrator.spectral.",
+      "The energy balance: work of M, stored energy, losses; in total, for each half cycle and at the rows; of several "
+      "bodies the sum, and that of each body and link. Only for runs by integrator.exact and integrator.spectral.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
-    {lua::a_question<RunHandle, [](lua_State* L, const RunHandle& run) { return story_of_run(L, *run); }>,
+    {lua::a_question<RunHandle, story_of_run>,
      {"run:explain() -> string",
       "Describes the run in sentences: half cycles, where, when and why the mass stopped and "
       "slipped (|M - k theta| against Re), and the end: rest, or a steady motion with its "
-      "period, amplitude, lag and stops.",
+      "period, amplitude, lag and stops. Of several bodies: how each moved, when each contact held, where the energy "
+      "went.",
       DINAL_RUN "print(run:explain():match(\"It made[^.]*\"))  --> It made 4 half cycles with 3 turns and 0 stops"}},
     {lua::a_method<save_run>,
      {"run:save(file, { OPTIONS })",
       "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
       "rows; file.dat gets the record of 1989 (NPUNT, then t, theta, velocity/omega0, M/k, friction/k, damping/k). "
-      "Both read back exactly with load.",
+      "Both read back exactly with load. A run of several bodies is saved as .csv, with names such as load.theta.",
       DINAL_RUN "file = os.tmpname() .. \".csv\"\n"
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
                 "print(#load(file))  --> 5\n"
@@ -568,8 +669,8 @@ constexpr lua::Member run_members[] = {
       "The events in order of time: the columns t, kind, theta, M and velocity, and by number { t, kind, theta, M, "
       "velocity }. kind is \"turn\" (the motion reverses), \"stick\", \"slip\" (the mass breaks away), \"rest\" "
       "(nothing can move it any more), \"impact\" (at a wall; velocity is that before it), \"switch\" (of a relay) "
-      "or \"user\" (of the option `events`, which adds a column name). At t_start only an impact is recorded. "
-      "Empty in a run read from a file.",
+      "or \"user\" (of the option `events`, which adds a column name). Of several bodies the third column is where: the "
+      "body or link; M acts on its first body. At t_start only an impact is recorded. Empty in a run read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"
@@ -624,21 +725,21 @@ constexpr lua::Member run_members[] = {
     {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.names(); }>,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
-    {lua::a_value<RunHandle, origin_of<&source::Origin::system>>,
-     {"run.system -> system or nil", "The system; nil for a run read from a file.",
+    {lua::a_value<RunHandle, system_of_run>,
+     {"run.system -> system or nil", "The system; nil for a run read from a file. That of run.load is run.system.load.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
     {lua::a_value<RunHandle, [](const Run& run) { return units_by_name(units_of(run)); }>,
      {"run.units -> table", "The names of the units of theta, t and M; nil for those without one.",
       DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
-    {lua::a_value<RunHandle, origin_of<&source::Origin::excitation>>,
-     {"run.excitation -> excitation or nil", "The excitation M; nil for a run read from a file.",
+    {lua::a_value<RunHandle, excitation_of_run>,
+     {"run.excitation -> excitation or nil", "The excitation M; nil for a link and for a run read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},
-    {lua::a_value<RunHandle, origin_of<&source::Origin::integrator>>,
+    {lua::a_value<RunHandle, integrator_of_run>,
      {"run.integrator -> integrator or nil", "The integrator; nil for a run read from a file.",
       integrator_example.c_str()}},
     {lua::a_length<RunHandle, [](const Run& run) { return run.trajectory.size(); }>,
      {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},
-    {lua::a_text<RunHandle, [](const Run& run) { return motion::summary(run.trajectory); }>,
+    {lua::a_text<RunHandle, line_of>,
      {"tostring(run) -> string", "A summary in one line.",
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
       "--> 13 rows, t 0 … 1.2; 2 events (2 turns); moving at the end; peak |theta| 1"}},
@@ -650,11 +751,16 @@ const lua::Class run_class = {
     "run",
     {"sys:simulate{ ... } or load(file) -> run",
      "The result of a simulation: columns (vectors), events, the outcome, and the motion between the rows. A run "
-     "read from a file has the columns of its file as fields.",
-     DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
+     "read from a file has the columns of its file as fields. Of a run of several bodies, run.load is the run as seen "
+     "from the body `load`, with its theta, velocity, M, friction, damping, its events, at(t), energy and plots; "
+     "run.shaft that of a link: theta (first less second), velocity, torque (on the first) and friction. Columns of all "
+     "are run:column(\"load.theta\").",
+     "rig = system{ bodies = { a = { I = 1, k = 4 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
+     "run = rig:simulate{ theta0 = { a = 1 }, t_end = 3 }\nprint(run.a.theta[1], run.rod.torque[1])  --> 1.0\t-2.0"},
     run_members,
     other_column,
-    run_card};
+    run_card,
+    body_or_link};
 
 #undef DINAL_RUN
 
@@ -696,6 +802,13 @@ int no_such_state(lua_State* L) {
                               text::did_you_mean(wanted, names)));
 }
 
+/// Pushes a table of the numbers from this place on.
+template <class Named>
+void push_by_name(lua_State* L, const std::vector<Named>& named, const std::vector<double>& numbers, std::size_t from) {
+    lua_createtable(L, 0, static_cast<int>(named.size()));
+    for (std::size_t i = 0; i < named.size(); ++i) lua::set_value(L, named[i].name.c_str(), numbers[from + i]);
+}
+
 }  // namespace
 
 int run_at(lua_State* L) {
@@ -703,10 +816,21 @@ int run_at(lua_State* L) {
         lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
     lua::CallState call(L);  // between rows the integrator asks the excitation again
-    const auto state = run->trajectory.at(t);
+    const bool of_all = run->whole && !run->joint;
+    const auto state = (of_all ? *part_of(run->whole, 0) : *run).trajectory.at(t);
     call.check();
     if (!state) {
         lua::fail(L, "run:at(t)", state.error());
+    }
+    if (of_all) {
+        const BodiesRun& whole = *run->whole;
+        const std::vector<double> y = whole.run.history->at(t);
+        const std::size_t n = whole.system->bodies.size();
+        push_by_name(L, whole.system->bodies, y, 0);
+        push_by_name(L, whole.system->bodies, y, n);
+        if (whole.drive.states.empty()) return 2;
+        push_by_name(L, whole.drive.states, y, 2 * n);
+        return 3;
     }
     lua_pushnumber(L, state->theta);
     lua_pushnumber(L, state->velocity);
@@ -724,9 +848,12 @@ int run_at(lua_State* L) {
 
 /// From the equation of motion at the rows.
 lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
+    check_one(L, *run, ".acceleration");
     const motion::Trajectory& trajectory = run->trajectory;
-    if (run->whole && !run->whole->system->is_link(run->joint)) {
-        lua::push(L, table_column(run->whole, acceleration_column(*run->whole, run->joint)));
+    if (run->whole && !run->whole->system->is_link(*run->joint)) {
+        constexpr std::size_t last = motion::engine::columns_of_body;
+        const auto numbers = run->whole->run.table.column(last * (*run->joint + 1));
+        lua::push(L, view_of(run->whole, numbers));
         return {};
     }
     if (!run->origin) {
@@ -759,11 +886,13 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run) {
     const std::vector<std::string>& names = run->trajectory.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
-    const std::size_t count = has_all ? names.size() - always.size() : 0;
-    lua_createtable(L, 0, static_cast<int>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto column = static_cast<Eigen::Index>(motion::column_count + i);
-        lua::set_value(L, names[motion::column_count + i].c_str(), view_of(run, run->trajectory.rows.col(column)));
+    const bool of_all = run->whole && !run->joint;
+    const std::size_t first = of_all    ? names.size() - run->whole->drive.states.size()
+                              : has_all ? always.size()
+                                        : names.size();
+    lua_createtable(L, 0, static_cast<int>(names.size() - first));
+    for (std::size_t i = first; i < names.size(); ++i) {
+        lua::set_value(L, names[i].c_str(), view_of(run, run->trajectory.rows.col(static_cast<Eigen::Index>(i))));
     }
     lua_createtable(L, 0, 1);
     lua_pushcfunction(L, lua::guarded<no_such_state>);
@@ -793,23 +922,21 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
     return task.rows.followed_by(static_cast<std::size_t>(end - times.begin()), std::move(more));
 }
 
-/// t_end, the last of the times, or where a run that was stopped should have ended.
-double asked_end(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
-                 const source::Task& task) {
+}  // namespace
+
+double asked_end(const lua::Options& options, const MoreTime& asked, double stopped, double wanted) {
     if (asked.t_end) {
         return *asked.t_end;
     }
     if (asked.times && !asked.times->empty()) {
         return *std::max_element(asked.times->begin(), asked.times->end());
     }
-    if (so_far.t_stop < task.window.end) {
-        return task.window.end;
+    if (stopped < wanted) {
+        return wanted;
     }
     options.fail("t_end", fmt::format("the run reached its end at t = {:.6g}: give a later end, for example {}",
-                                      so_far.t_stop, continue_call.example));
+                                      stopped, continue_call.example));
 }
-
-}  // namespace
 
 int continue_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // kept: M may drop the last reference
@@ -817,10 +944,10 @@ int continue_run(lua_State* L) {
     MoreTime asked;
     options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
-    if (run->whole && !run->whole->system->named) return continue_one_body(L, options, run->whole, asked);
-    if (run->whole) {
+    if (run->whole && run->whole->system->named && run->joint) {
         options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
     }
+    if (run->whole) return continue_bodies(L, options, run->whole, asked);
     if (!run->origin) {
         options.fail(
             {"a run read from a file cannot be continued; start one from its end with sys:simulate{ theta0, "
@@ -840,7 +967,7 @@ int continue_run(lua_State* L) {
                      fmt::format("this run has a row every dt = {:.6g} and keeps dt; times are for runs with times",
                                  origin.rows.dt()));
     }
-    origin.window.end = asked_end(options, asked, so_far, origin);
+    origin.window.end = asked_end(options, asked, so_far.t_stop, origin.window.end);
     if (!spaced) {
         origin.rows = asked_rows(options, asked, so_far, origin, origin.window.end);
     }
@@ -894,10 +1021,7 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
                                      const Run& run) {
     const std::string ending = text::ending_of(file);
     if (ending == ".csv") {
-        return files::write_csv(file, asked_columns(L, options, run.trajectory),
-                                run.origin  ? source::repeat_lines(*run.origin)
-                                : run.whole ? repeat_lines(L, *run.whole)
-                                            : run.comments);
+        return files::write_csv(file, asked_columns(L, options, run.trajectory), repeat_lines(L, run));
     }
     if (ending != ".dat") {
         return text::Error{.sentence = fmt::format(

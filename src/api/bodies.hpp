@@ -9,7 +9,6 @@
 #include "api/run.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
-#include "lua/vector.hpp"
 #include "model/assembly.hpp"
 #include "motion/engine/run.hpp"
 
@@ -82,28 +81,18 @@ struct BodiesRun {
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
 model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
-/// Lua text that makes the same run again, as lines.
-std::vector<std::string> repeat_lines(lua_State* L, const BodiesRun& run);
-/// A column of its table.
-lua::Vector table_column(const BodiesRunHandle& run, std::size_t column);
-/// The columns of a run: the first state, and the acceleration of a body.
-inline std::size_t first_state_column(const BodiesRun& run) {
-    return run.run.table.columns() - run.system->bodies.size() - run.drive.states.size();
-}
-inline std::size_t acceleration_column(const BodiesRun& run, std::size_t body) {
-    return run.run.table.columns() - run.system->bodies.size() + body;
-}
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
-lua::Pushed energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
-std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
-/// Pushes the run of one body without a name, continued.
-int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked);
-/// Pushes it; of one body without a name as a run of one body.
-int push_bodies_run(lua_State* L, BodiesRunHandle run);
-/// The joint whose name stands at `index`; raises that `what`, which has these members, has none of that name.
-std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what, const lua::Class& of);
+/// Goes on with a run that is not one of an Oscillator.
+int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked);
+/// Pushes it; of one body without a name as seen from that.
+void push_bodies_run(lua_State* L, BodiesRunHandle run);
+/// The joint of this name; raises that `what`, which has these members, has none of that name.
+std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
+                        const lua::Class& of);
 
+/// Pushes the body or link as a system of its own.
+int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t joint);
 /// Pushes the system of one body of these options, or that of the options `bodies` and `links`.
 int push_body(lua_State* L, const lua::Options& options);
 int push_bodies(lua_State* L, const lua::Options& options);

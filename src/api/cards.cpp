@@ -102,7 +102,7 @@ std::string vector_card(lua_State* L, int index, const terminal::Display& screen
 
 std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
     const Run& run = **lua::test<RunHandle>(L, index);
-    std::string text = motion::summary(run.trajectory);
+    std::string text = line_of(run);
     if (run.origin) {
         const std::string_view name = motion::MethodView(run.origin->integrator).about().call.name;
         text.append("; by ").append(name.substr(name.find('.') + 1));

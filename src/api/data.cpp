@@ -161,6 +161,7 @@ ColumnUnits::ColumnUnits(const model::Units& units) {
 }
 
 std::string ColumnUnits::of(std::string_view column) const {
+    column.remove_prefix(column.find('.') + 1);  // that of "load.theta"
     const bool torque = column == "M" || column == "friction" || column == "damping" || column == "torque";
     return column == "t" ? t : column == "theta" ? theta : column == "velocity" ? speed : torque ? M : "";
 }
@@ -173,7 +174,7 @@ int push_data(lua_State* L, Data data) {
 }
 
 void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
-                 const model::Units& units) {
+                 const model::Units& units, const model::Assembly* several) {
     const ColumnUnits in(units);
     using model::Event;
     Data data = table_of(events, ListColumn{"t", &Event::t, in.t},
@@ -183,6 +184,10 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
     const ListColumn names{
         "name", [&](const Event& e) { return e.user < 0 ? "" : user_names[static_cast<std::size_t>(e.user)]; }};
     if (!user_names.empty()) data.columns.push_back(names.of(events));
+    const ListColumn where{"where", [&](const Event& e) {
+                               return e.where < 0 ? "" : several->joints[static_cast<std::size_t>(e.where)].name;
+                           }};
+    if (several != nullptr) data.columns.insert(data.columns.begin() + 2, where.of(events));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
 }

@@ -158,7 +158,8 @@ inline constexpr lua::Doc plot_run_doc{
     "run:plot{ OPTIONS }",
     "Draws columns over a column, with bars where the mass sticks. theta, velocity, damping and states are drawn from the "
     "motion between the rows, and M if t, theta and velocity determine it; other columns, and runs that kept only their "
-    "rows (dense = false, files, rk4, dinal1989), from the rows.",
+    "rows (dense = false, files, rk4, dinal1989), from the rows. Of several bodies the angles are drawn, each in a picture "
+    "of its own, and those of links with friction; columns with names such as load.theta are drawn from the rows.",
     "run = system{ I = 1, k = 39.5, C = 0.6 }:simulate{ theta0 = 1, t_end = 4, dt = 0.01 }\n"
     "print(run:plot{ width = 60, height = 11, ascii = true, show = false })\n"
     "--> theta, rad\n"

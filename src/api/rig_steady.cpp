@@ -145,7 +145,8 @@ int body_of_steady(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const SteadyHandle s = lua::self<SteadyHandle>(L, 1, "s.load");
     if (s->rig == nullptr || s->of_body) return 0;
-    const std::size_t joint = joint_named(L, 2, *s->rig->question.system, "this steady motion", steady_class);
+    const std::size_t joint =
+        joint_named(L, lua_tostring(L, 2), *s->rig->question.system, "this steady motion", steady_class);
     lua::push<SteadyHandle>(L, seen_from(s->rig, joint));
     return 1;
 }

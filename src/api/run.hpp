@@ -18,6 +18,7 @@
 namespace dinal::api {
 
 struct BodiesRun;
+struct MoreTime;
 struct Data;
 
 struct Run {
@@ -28,8 +29,8 @@ struct Run {
     std::string readings = {};                    ///< which functions were read as formulas: sentences
     model::Units units = {};                      ///< that stand in these; of another run those of its system
     lua::MemoryCharge rows = {};                  ///< of the file it was read from
-    std::shared_ptr<const BodiesRun> whole = {};  ///< of a run of several bodies, seen from one of them
-    std::size_t joint = 0;                        ///< of `whole`: which one
+    std::shared_ptr<const BodiesRun> whole = {};  ///< what was simulated, if it had names or a friction that varies
+    std::optional<std::size_t> joint = {};        ///< of `whole`: the body or link it is seen from; none: all of them
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.
@@ -53,6 +54,12 @@ std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const R
 /// The rows as data, which keep the run.
 Data rows_of(const RunHandle& run);
 
+/// Raises that `member`, written as ".theta" or ":cycle", is of one body or link, if the run is that of several.
+void check_one(lua_State* L, const Run& run, std::string_view member);
+
+/// The runs, as seen from each of its bodies and links, that make up this one.
+std::vector<RunHandle> parts_of(const RunHandle& run);
+
 /// Raises the sentence about a name that is none of the known ones nor of the members of the class.
 [[noreturn]] void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,
                                      const std::vector<std::string>& known, const lua::Class& of);
@@ -60,8 +67,15 @@ Data rows_of(const RunHandle& run);
 /// How a run ended, in one word.
 std::string_view status_word(model::Outcome outcome);
 
+/// tostring(run)
+std::string line_of(const Run& run);
+
 /// What run:explain() says; raises what a user's spring does.
-std::string story_of_run(lua_State* L, const Run& run);
+std::string story_of_run(lua_State* L, const RunHandle& run);
+/// Lua text that makes the run again, as lines, or the comments of the file that it was read from.
+std::vector<std::string> repeat_lines(lua_State* L, const Run& run);
+/// The t_end that is asked for, the last of the times, or where a run that stopped should have ended.
+double asked_end(const lua::Options& options, const MoreTime& asked, double stopped, double wanted);
 
 /// run:save(file [, { columns = { "t", "theta" } }]).
 inline constexpr text::Option save_options[] = {
@@ -74,7 +88,8 @@ inline constexpr text::Call save_call{"run:save", "run:save(\"run.csv\", { colum
 int save_run(lua_State* L);
 /// run:continue{ t_end }.
 int continue_run(lua_State* L);
-/// run:energy(), in bind_energy.cpp.
+/// run:explain() of what has bodies, and run:energy(), in bind_energy.cpp.
+std::string story_of_bodies(lua_State* L, const RunHandle& run);
 lua::Pushed energy_of_run(lua_State* L, const RunHandle& run);
 /// run:at(t), run.states and run.acceleration.
 int run_at(lua_State* L);

@@ -364,12 +364,12 @@ int add_value(lua_State* L) {
         report->items.emplace_back(*data);
     } else if (const auto* run = lua::test<RunHandle>(L, 2)) {
         const RunHandle kept = *run;
-        const std::string story = story_of_run(L, *kept);
+        const std::string story = story_of_run(L, kept);
         add_lines(*report, printed(L, 2));
         report->items.emplace_back(ReportText{story});
-        if (kept->origin) {
-            report->items.emplace_back(ReportLines{
-                fmt::format("{}", fmt::join(source::repeat_lines(*kept->origin), "\n")), "How to repeat this run"});
+        if (kept->origin || kept->whole) {
+            report->items.emplace_back(
+                ReportLines{fmt::format("{}", fmt::join(repeat_lines(L, *kept), "\n")), "How to repeat this run"});
         }
     } else {
         add_lines(*report, printed(L, 2));

@@ -76,6 +76,7 @@ const Class& class_of_closure(lua_State* L, int upvalue) {
 int index_object(lua_State* L) {
     const Class& description = class_of_closure(L, 3);
     if (lua_type(L, 2) == LUA_TSTRING) {
+        if (description.first_keys != nullptr && description.first_keys(L) == 1) return 1;
         lua_pushvalue(L, 2);
         if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) {
             return 1;

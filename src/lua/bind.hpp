@@ -85,6 +85,8 @@ struct Class {
     lua_CFunction other_keys = nullptr;
     /// What the prompt shows for the object at `index`; without it, what tostring says.
     std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
+    /// As other_keys, for strings that go before members.
+    lua_CFunction first_keys = nullptr;
 };
 
 /// Raises the message of the error as a Lua error, headed by the file and line of the user's code that led here. The

@@ -180,7 +180,8 @@ std::string summary(const Trajectory& trajectory) {
     if (trajectory.noise > 0) text += fmt::format("; noise of M {:.2g}", trajectory.noise);
     if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
     text += too_few_rows(static_cast<std::size_t>(rows.rows()), trajectory.events.size());
-    return text + fmt::format("; peak |theta| {:.3g}", peak(trajectory));
+    if (trajectory.find("theta")) text += fmt::format("; peak |theta| {:.3g}", peak(trajectory));
+    return text;
 }
 
 }  // namespace dinal::motion

@@ -233,8 +233,31 @@ test("mistakes are named with the body or link, and the nearest name", function(
     end
     local run, nothing = rig:simulate { t_end = 1 }, system { bodies = { a = { I = 1, Rd = 1, normal = function() return 0 / 0 end } } }
     raises_here(function() return run.laod end, "this run has no 'laod'", "did you mean 'load'?")
-    raises_here(function() return run.spectrum end, "spectrum is of one body or link: run.load:spectrum")
+    raises_here(function() return run.theta end, "theta is of one body or link: run.load.theta")
+    raises_here(function() return run:cycle() end, "cycle is of one body or link: run.load:cycle")
+    raises_here(function() return run:spectrum() end, "theta is of one body or link: run.load.theta")
+    raises_here(function() plot { run, show = false } end, "theta is of one body or link: run.load.theta")
+    raises_here(function() identify { data = run } end, "data is of one body or link: run.load:data")
+    refuses(system, { { { bodies = { events = { I = 1 } } }, "bodies: 'events' is a name that a run has already" } })
     raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
+end)
+
+test("a run of several bodies has their columns and pictures by name, and gives way to a link called as one of its fields", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 2, k = 1 } },
+        links = { gap = { "a", "b", k = 3 } }, units = { theta = "deg", M = "N m" } }
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 20, dt = 0.1 }
+    equal(run.gap.theta[1], 1.0)
+    equal(run:column "gap.theta", run.gap.theta)
+    equal(run[2]["b.velocity"], run.b.velocity[2])
+    equal(table.concat(run:select("t", "a.M", "b.friction").names, " "), "t a.M b.friction")
+    local all, own = run:spectrum "a.theta", run.a:spectrum()
+    equal(all.amplitude, own.amplitude)
+    has(tostring(all), "spectrum of a.theta: 1024 samples of the motion")
+    has(run:markdown(), "| a.theta, deg |")
+    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a.theta") end
+    equal(tostring(run.a.system), tostring(rig.a))
+    equal(tostring(run.a.excitation), "excitation.constant{ amplitude = 0 }")
+    equal(run.gap.excitation, nil)
 end)
 
 test("some columns can be saved, and what is rough is told", function()

@@ -329,6 +329,8 @@ for kind in pairs(kinds) do
     end
 end
 
+local exact_of_one = "exact is the default of one body"
+local read_gap = "defect: a body with a name has a gap, though all its functions are read as formulas and no pulse is missed"
 local blamed = "defect: several bodies blame friction for bounces that an act makes"
 local uncut = "events of the user are left out of those of a body, so its acts do not begin half cycles"
 local cut_elsewhere = "defect: turns of a body with a name are looked for in the motion, also where it leans at a wall"
@@ -345,16 +347,12 @@ local different = {
     ["continue: states, states"] = stateless,
     ["steady: run, states"] = stateless,
     ["repeated: states, states"] = stateless,
-    ["fields of the body: excitation integrator system, constant laws, event that bounces endlessly"] =
-        "the run of a body knows what moved only as a whole",
-    ["fields of the run: integrator, exact by default, laws of several"] =
-        "exact is the default of one body, and a run of one with a law of several names no integrator",
-    ["fields of the run: excitation gap names units"] =
-        "the run of several bodies does not have these fields; its bodies have some",
-    ["fields of the run: system, laws of several, springs, walls"] =
-        "a run of one body with a law of several has no system, and springs and walls are written in another order",
-    ["fields of the body: gap, M that is read, belt of t, feedback, state acting"] =
-        "defect: the body has a gap, though all its functions are read as formulas and no pulse is missed",
+    ["fields of the body: integrator, exact by default"] = exact_of_one,
+    ["fields of the run: integrator, exact by default"] = exact_of_one,
+    ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
+    ["fields of the run: system, springs, walls"] = "springs and walls are written in another order",
+    ["fields of the run: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
+    ["fields of the body: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
     ["events of the body: M kind name t theta velocity, acting, event that bounces endlessly"] =
         "events of the user belong to the run of all bodies and are left out of those of a body",
     ["continue: events line, acting, event that bounces endlessly"] = left_out,
@@ -371,8 +369,9 @@ local different = {
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["steady of the run: refused, constant laws, event that bounces endlessly"] =
         "a run of several bodies has no steady(): it is asked of the system",
-    ["pictures of the run: plot phase_plot"] =
-        "the run of several bodies draws the angles of all and has no phase plane",
+    ["pictures of the run: plot"] = "the run of several bodies draws the angles of all",
+    ["pictures of the run: phase_plot, constant laws, event that bounces endlessly"] =
+        "the run of several bodies has no phase plane",
     ["pictures of the body: plot phase_plot, constant laws, event that bounces endlessly"] =
         "the run of a body draws no M/k and has no phase plane",
     ["words of the run: line story"] = writers,
@@ -397,8 +396,6 @@ local different = {
     ["cycle: amplitude change drift middle period since steady stops stuck, walls of restitution 0.7"] =
         "defect: the cycle of the only body counts less as stuck, and from some starts is not found",
     ["bifurcation: refused, event that bounces endlessly"] = blamed,
-    ["continue: outcome, event that bounces endlessly"] = blamed,
-    ["fields of the run: outcome, event that bounces endlessly"] = blamed,
     ["fields of the body: outcome, event that bounces endlessly"] = blamed,
     ["response: refused, event that bounces endlessly"] = "one body answers that there is none, several raise",
 }

@@ -350,7 +350,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
-                                mechanics_.states_of_user() + (problem.joined_elsewhere ? 0 : n());
+                                mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
     result_.table = Growing<double>(problem.rows.count(), columns);
 }
 
@@ -2517,6 +2517,7 @@ bool Engine::put_row(double t, double x) {
         good = put(sampled ? *sampled : mechanics_.load(i, at)) && good;
         good = put(friction(i, at, look_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
+        if (!problem_.joined_elsewhere) good = put(look_.accelerations[i]) && good;
     }
     for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
@@ -2528,7 +2529,6 @@ bool Engine::put_row(double t, double x) {
         good = put(friction(j, at, look_)) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
-    for (std::size_t i = 0; i < n() && !problem_.joined_elsewhere; ++i) good = put(look_.accelerations[i]) && good;
     if (good) ++next_row_;
     return good;
 }
@@ -2544,6 +2544,20 @@ double Engine::friction(std::size_t joint, const Moment& at, const Look& look) c
 }
 
 }  // namespace
+
+std::vector<std::string> column_names_of(const model::Assembly& system, const Drive& drive) {
+    std::vector<std::string> names{"t"};
+    const auto add = [&](const std::string& joint, std::initializer_list<const char*> columns) {
+        for (const char* column : columns) names.push_back(joint.empty() ? column : joint + "." + column);
+    };
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        const std::string& name = system.joints[j].name;
+        system.is_link(j) ? add(name, {"theta", "velocity", "torque", "friction"})
+                          : add(name, {"theta", "velocity", "M", "friction", "damping", "acceleration"});
+    }
+    for (const model::OwnState& state : drive.states) names.push_back(state.name);
+    return names;
+}
 
 AssemblyRun run_plain(const AssemblyProblem& problem) {
     AssemblyRun result;

@@ -31,8 +31,7 @@ struct Carry {
 };
 
 struct AssemblyRun {
-    /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states;
-    /// accelerations of the bodies, unless joined_elsewhere.
+    /// The columns that column_names_of(system, drive) names; of a run that is joined elsewhere without accelerations.
     Growing<double> table;
     std::vector<model::Event> events;
     model::Outcome outcome = model::Outcome::reached_end;
@@ -48,7 +47,10 @@ struct AssemblyRun {
     std::shared_ptr<const Carry> carry;
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
 };
-inline constexpr std::size_t columns_of_body = 5, columns_of_link = 4;
+inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
+/// t; theta, velocity, M, friction, damping and acceleration of each body, theta, velocity, torque and friction of each
+/// link, as in "load.theta"; states.
+std::vector<std::string> column_names_of(const model::Assembly& system, const Drive& drive);
 
 struct AssemblyProblem {
     const model::Assembly& system;
