@@ -82,7 +82,7 @@ private:
 std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 /// Of theta, velocity and states: from period to period, from passage to passage of a cycle, or of a rest that slides;
-/// in returning.cpp. None where the motion does not say all of its state.
+/// in return_circuit.cpp. None where the motion does not say all of its state.
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/rig_steady.hpp"
+#include "analysis/returns.hpp"
 #include "model/controller.hpp"
 #include "model/forcing.hpp"
 

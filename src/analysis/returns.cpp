@@ -21,22 +21,6 @@ VectorXd vector_of(const std::vector<double>& values) {
 
 namespace {
 
-bool has_acts(const engine::Drive& drive) {
-    return std::any_of(drive.events.begin(), drive.events.end(),
-                       [](const model::WantedEvent& event) { return event.act != nullptr; });
-}
-
-/// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
-bool is_linear(const model::Assembly& system, const engine::Drive& drive) {
-    const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
-    const auto bends = [](const model::Joint& joint) {
-        return !joint.spring.none() || joint.walls || !joint.friction.is_constant() ||
-               joint.friction.law.depends_on_speed();
-    };
-    return std::none_of(drive.loads.begin(), drive.loads.end(), loaded) &&
-           std::none_of(system.joints.begin(), system.joints.end(), bends);
-}
-
 /// Passes zero where a measured number passes a place.
 class Passage final : public model::UserFunction {
 public:
@@ -54,19 +38,14 @@ private:
     bool named_;
 };
 
-/// Ends a run.
+}  // namespace
+
 model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named) {
     return {.name = "",
             .when = std::make_shared<Passage>(chart, section, named),
             .direction = model::Crossing::up,
             .stop = true};
 }
-
-double size_of_step(const VectorXd& step) {
-    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
-}
-
-}  // namespace
 
 bool operator==(const HeldMode& a, const HeldMode& b) {
     for (std::size_t j = 0; j < a.mode.friction.size(); ++j) {
@@ -92,6 +71,27 @@ Moment Runs::first() const {
     return {vector_of(y)};
 }
 
+std::vector<bool> relays_of(const model::Excitation& excitation) {
+    std::vector<bool> on;
+    for (const model::Component& component : excitation.components()) {
+        const auto* relay = model::controller_of<model::RelayController>(component);
+        if (relay != nullptr) on.push_back(relay->starts_on);
+    }
+    return on;
+}
+
+model::Excitation with_relays(const model::Excitation& excitation, const std::vector<bool>& on) {
+    if (on.empty()) return excitation;
+    std::size_t next = 0;
+    return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
+        const auto* relay = dynamic_cast<const model::RelayController*>(function.get());
+        if (relay == nullptr) return function;
+        auto own = model::copied(*relay, relay->function);
+        own->starts_on = on[next++];
+        return std::shared_ptr<model::UserFunction>(std::move(own));
+    });
+}
+
 engine::Drive Runs::from(const Moment& moment) const {
     engine::Drive drive = question_.drive;
     const Index n = bodies();
@@ -101,6 +101,16 @@ engine::Drive Runs::from(const Moment& moment) const {
     }
     for (std::size_t k = 0; k < drive.states.size(); ++k) {
         drive.states[k].start = moment.y[2 * n + static_cast<Index>(k)];
+    }
+    if (!moment.mode) return drive;
+    for (std::size_t i = 0; i < drive.loads.size(); ++i) {
+        std::vector<bool> on;
+        const auto components = drive.loads[i].components();
+        for (std::size_t c = 0; c < components.size(); ++c) {
+            const bool relay = model::controller_of<model::RelayController>(components[c]) != nullptr;
+            if (relay) on.push_back(moment.mode->controllers[i][c].on);
+        }
+        drive.loads[i] = with_relays(drive.loads[i], on);
     }
     return drive;
 }
@@ -314,587 +324,6 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 void note_family(SteadyMotion& motion) {
     const auto& m = motion.multipliers;
     if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
-}
-
-namespace {
-
-/// The longest dead time of a controller.
-double longest_delay(const model::Excitation& excitation) {
-    double most = 0;
-    for (const model::Component& c : excitation.components()) {
-        if (const auto* delayed = model::controller_of<model::DelayedController>(c)) most = std::max(most, delayed->by);
-    }
-    return most;
-}
-
-double shortest_sampling(const model::Excitation& excitation) {
-    double least = model::never;
-    for (const model::Component& c : excitation.components()) {
-        if (const auto* sampled = model::controller_of<model::SampledController>(c))
-            least = std::min(least, sampled->every);
-    }
-    return least;
-}
-
-/// The sizes of the greatest angle or velocity.
-double greatest(const Reach& reach, Index count) {
-    return reach.range().head(count).cwiseAbs().maxCoeff();
-}
-
-}  // namespace
-
-/// A motion that comes back after some returns.
-struct ReturnSearch::Closed {
-    VectorXd x;
-    HeldMode mode;
-    int returns = 1;
-    double period = 0, residual = 0;
-};
-
-/// Finds it from the returns that it makes, by Newton's method where these lead near.
-class ReturnSearch::ClosedSearch {
-public:
-    using Return = Returns::Return;
-    ClosedSearch(Returns& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
-
-    /// What one return after the other leads to.
-    std::optional<Closed> follow(Return first, const std::vector<int>& counts) {
-        seen_ = {std::move(first)};
-        for (const int until : counts) {
-            while (static_cast<int>(seen_.size()) <= until) {
-                Return next = map_(seen_.back().to, seen_.back().mode);
-                ++maps_;
-                if (!next.finished) {
-                    failed_ = next.outcome;
-                    return {};
-                }
-                seen_.push_back(std::move(next));
-            }
-            for (const double near : {1e-5, 5e-2}) {
-                if (auto found = closes(near)) return found;
-            }
-        }
-        return {};
-    }
-
-    /// By Newton's method from here.
-    std::optional<Closed> at_once(const Return& from) { return newton(from, 1, 1e6); }
-    [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
-    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
-
-private:
-    static constexpr double to_rounding = 1e-11;
-
-    std::optional<Closed> closes(double near) {
-        const std::size_t last = seen_.size() - 1;
-        int tries = 0;  // chaos comes near to itself again and again
-        for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
-            if (seen_[last].mode != seen_[last - m].mode) continue;
-            const double off = size_of_step(seen_[last].to - seen_[last - m].to);
-            if (off > near) continue;
-            ++tries;
-            auto found = newton(seen_[last], static_cast<int>(m));
-            if (found && approaches(found->x, m)) return shortest(*found);
-            if (found || off > to_rounding) continue;
-            return itself(seen_[last], static_cast<int>(m));
-        }
-        return {};
-    }
-
-    /// It may have come back before: what dies out slowly is nearer to itself after more returns.
-    Closed shortest(Closed found) {
-        for (int m = 1; m < found.returns; ++m) {
-            if (found.returns % m != 0) continue;
-            const Return back = map_(found.x, found.mode, m);
-            maps_ += m;
-            constexpr double there = 1e-10;
-            const double off = back.finished ? size_of_step(back.to - found.x) : 1;
-            if (!back.finished || back.mode != found.mode || off > std::max(there, 10 * found.residual)) continue;
-            found.returns = m, found.period = back.time, found.residual = off;
-            break;
-        }
-        return found;
-    }
-
-    /// The run comes nearer to it all the time, and is there soon.
-    [[nodiscard]] bool approaches(const VectorXd& x, std::size_t m) const {
-        const std::size_t last = seen_.size() - 1;
-        const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
-        constexpr double there = 1e-7, close = 0.3;
-        return now <= there || (now <= close && now < 0.98 * before);
-    }
-
-    /// It has come back to rounding, and differences do not tell more.
-    std::optional<Closed> itself(const Return& from, int m) {
-        const Return back = map_(from.to, from.mode, m);
-        maps_ += m;
-        if (!back.finished) return {};
-        return Closed{from.to, *from.mode, m, back.time, size_of_step(back.to - from.to)};
-    }
-
-    std::optional<Closed> newton(const Return& from, int m, double farthest = 1) {
-        VectorXd x = from.to;
-        std::optional<Closed> best;
-        std::optional<Returns::Derivative> D;
-        constexpr int most = 14;
-        for (int i = 0; i < most; ++i) {
-            const Return there = map_(x, from.mode, m);
-            maps_ += m;
-            if (!there.finished || there.mode != from.mode) return good(best);
-            const VectorXd off = there.to - x;
-            const double residual = size_of_step(off);
-            const bool slower = best && residual > 0.1 * best->residual;
-            if (best && residual >= best->residual && best->residual <= to_rounding) return best;
-            if (!best || residual < best->residual) best = Closed{x, *from.mode, m, there.time, residual};
-            if (residual <= 4 * std::numeric_limits<double>::epsilon()) return best;
-            if (!D || slower) {
-                D = map_.derivative(x, *from.mode, m, 2);
-                maps_ += 2 * m * static_cast<int>(x.size());
-                if (!D) return good(best);
-            }
-            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - D->by_place;
-            const VectorXd step = algebra::solve_shortest(left, off);
-            if (!step.allFinite()) return good(best);
-            x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
-        }
-        return good(best);
-    }
-
-    static std::optional<Closed> good(const std::optional<Closed>& best) {
-        constexpr double enough = 1e-9;
-        return best && best->residual <= enough ? best : std::nullopt;
-    }
-
-    Returns& map_;
-    int& maps_;
-    int longest_;
-    std::vector<Return> seen_;
-    std::optional<model::Outcome> failed_;
-};
-
-double ReturnSearch::pace() const {
-    if (question().repeats.period > 0) return question().repeats.period;
-    const double natural = runs_.natural_period();
-    return natural > 0 ? natural : 1;
-}
-
-/// A stretch of the run; none when it failed, and the answer says how.
-std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
-    Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
-    facts_.outcome = run.outcome;
-    reach = reach_of(run, chart_);
-    constexpr double beyond = 1e100, no_number = 1e50;  // there M may have none
-    const double greatest = analysis::greatest(reach, 2 * n());
-    const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
-    if (whole && greatest < beyond) return run;
-    if (whole || (run.outcome == model::Outcome::excitation_not_finite && greatest > no_number)) {
-        facts_.outcome = model::Outcome::state_not_finite;
-    }
-    if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
-    return {};
-}
-
-/// Units of places: never zero.
-VectorXd ReturnSearch::units_of(const Reach& reach) const {
-    VectorXd units = reach.range();
-    const VectorXd most = reach.high.cwiseAbs().cwiseMax(reach.low.cwiseAbs());
-    const double angles = std::max(units.head(n()).maxCoeff(), 1e-300);
-    const double speeds = std::max(units.segment(n(), n()).maxCoeff(), 1e-300);
-    for (Index k = 0; k < units.size(); ++k) {
-        if (units[k] > 1e-9 * most[k]) continue;
-        units[k] = std::max(most[k], k < n() ? angles : k < 2 * n() ? speeds : 0.0);
-        if (!(units[k] > 0)) units[k] = 1;
-    }
-    return units;
-}
-
-// ---- with a period
-
-void ReturnSearch::forced() {
-    const double period = question().repeats.period;
-    // An act at the very beginning of a run would not happen: returns are looked at where nothing does.
-    constexpr double nowhere = 0.3819660112501051;
-    Moment now = runs_.first();
-    double start = question().repeats.start;
-    Reach reach;
-    if (has_acts(question().drive)) {
-        const auto run = stretch(now, start, nowhere * period, reach);
-        if (!run) return;
-        now = Runs::at_stop(*run);
-        start += nowhere * period;
-    }
-    const auto first = stretch(now, start, period, reach);
-    if (!first) return;
-    now = Runs::at_stop(*first);
-    if (question().periods <= 1 && is_linear(runs_.system(), question().drive)) {
-        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
-        ClosedSearch search(map, facts_.maps, 1);
-        const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
-        if (found && tells_closed(map, *found)) return;
-    }
-    std::vector<double> ranges{greatest(reach, n())};  // of single periods
-    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one,
-    std::size_t between = 1;    // whose ends are so many returns apart
-    const double natural = runs_.natural_period();
-    const int longest = question().periods > 0 ? question().periods : 32;
-    for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
-        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
-        ClosedSearch search(map, facts_.maps, longest);
-        const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
-        if (found && tells_closed(map, *found)) return;
-        if (search.failed()) {
-            facts_.outcome = *search.failed();
-            if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
-            return;
-        }
-        const auto& seen = search.seen();
-        const auto largest = [&](std::size_t from, std::size_t until) {
-            double size = 0;
-            for (std::size_t i = from; i < until; ++i) {
-                const VectorXd y = chart_.measured(map.moment(seen[i].to, seen[i].mode).y).cwiseAbs();
-                // Bodies that nothing pulls back may drift without an end.
-                if (natural > 0) size = std::max(size, y.head(n()).maxCoeff());
-                const double pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
-                size = std::max(size, y.segment(n(), n()).maxCoeff() * pace);
-            }
-            return size;
-        };
-        const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
-        sizes.push_back(largest(0, half));
-        if (half < seen.size()) sizes.push_back(largest(half, seen.size())), between = seen.size() - half;
-        now = map.moment(seen.back().to, seen.back().mode);
-        if (!stretch(now, start, period, reach)) return;
-        ranges.push_back(greatest(reach, n()));
-    }
-    // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
-    const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
-    if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
-        facts_.status = SteadyStatus::grows;
-        facts_.growth = (sizes[2] - sizes[1]) / static_cast<double>(between);
-    }
-}
-
-// ---- with controllers that sample or wait
-
-/// The run itself goes on until it repeats itself: from period to period of what drives it and samples, or behind a
-/// dead time, where nothing prescribes a period, from passage to passage.
-class ReturnSearch::Settling {
-public:
-    explicit Settling(ReturnSearch& search)
-        : s_(search),
-          length_(search.question().settles),
-          timeless_(search.question().repeats.period == 0),
-          t_(search.question().repeats.start) {
-        for (const model::Excitation& load : s_.question().drive.loads) {
-            delay_ = std::max(delay_, longest_delay(load));
-            if (timeless_ && length_ > 0) beside_ = std::min(beside_, shortest_sampling(load) / 2);
-        }
-        if (beside_ == model::never) beside_ = 0;
-        stretch_ = 2 * std::max(s_.pace(), delay_);
-    }
-
-    void search() {
-        const auto periods = static_cast<std::size_t>(s_.question().periods);
-        const auto reaches_back = static_cast<std::size_t>(std::min(4 * delay_ / s_.pace(), 1e6));
-        const std::size_t least = !timeless_ ? 4096 : length_ > 0 ? 20000 : 2048;
-        const std::size_t most = std::clamp(std::max(reaches_back, 8 * periods), least, 4 * least);
-        constexpr std::size_t least_returns = 16;
-        for (std::size_t until = least_returns; sizes_.size() < most; until += std::max(least_returns, until / 4)) {
-            until = std::min(until, most);
-            for (; sizes_.size() < until; ++s_.facts_.maps) {
-                if (!goes_on()) return;
-            }
-            const bool alone = timeless_ && s_.question().drive.states.empty();
-            if (alone && small_ >= least_returns && run_.motion_at_stop != model::Motion::stuck) {
-                s_.note_rest(run_, false);
-                return;
-            }
-            constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
-            std::size_t m = comes_back(settled);
-            if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
-            if (m == 0) continue;
-            tell(m);
-            return;
-        }
-        judge_growth();
-    }
-
-private:
-    static constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
-    static constexpr double finest = 1e-12;  // sizes: of rounding in runs
-
-    /// One return more; false when that is the end.
-    bool goes_on() {
-        const double start = t_;
-        t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
-                         : start + stretch_;
-        run_ = s_.runs_.go_on(run_.carry, start, t_, motion::Grid::none(), passage_);
-        SteadyMotion& facts = s_.facts_;
-        facts.outcome = run_.outcome;
-        const Reach reach = reach_of(run_, s_.chart_, timeless_ && length_ > 0 ? 4 : 64);
-        const double size = greatest(reach, 2 * s_.n());
-        constexpr double beyond = 1e50;
-        if (!(size < beyond)) facts.outcome = model::Outcome::state_not_finite;
-        if (!model::is_whole(facts.outcome) && !(passage_ && facts.outcome == model::Outcome::stopped)) {
-            if (facts.outcome != model::Outcome::state_not_finite) return false;
-            facts.status = SteadyStatus::grows;
-            const std::size_t last = sizes_.size();
-            if (!timeless_ && last > 1) facts.growth = sizes_[last - 1] - sizes_[last - 2];
-            return false;
-        }
-        s_.largest_ = std::max(s_.largest_, size);
-        sizes_.push_back(size);
-        constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
-        small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
-        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
-        t_ = run_.t_stop;
-        times_.push_back(t_);
-        seen_.push_back(seen(t_ - start));
-        const VectorXd units = s_.units_of(reach);
-        size_ = seen_.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
-        constexpr double nothing = 1e-12;  // of what it was: it dies out
-        size_.head(units.size()) = units.cwiseMax(nothing * s_.largest_);
-        return true;
-    }
-
-    /// No passage has come: the motion has moved away from the section, or stands. False when that is the end.
-    bool looks_elsewhere(const Reach& reach) {
-        constexpr int most_looks = 40, most_longer = 24;
-        const bool rests = small_ > 0 && s_.question().drive.states.empty();
-        if (rests) s_.note_rest(run_, false);
-        if (rests || ++looks_ > most_looks) return false;
-        const Index widest = s_.widest(reach);
-        if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
-        if (looks_ <= most_longer) stretch_ *= 1.3;
-        seen_.clear();
-        times_.clear();
-        return true;
-    }
-
-    /// Angles and velocities as they are measured, states, what the controllers give, and how long the return took.
-    /// What controllers remember besides is not seen, so a motion must return more than once.
-    [[nodiscard]] VectorXd seen(double time) const {
-        const VectorXd y = s_.chart_.measured(vector_of(run_.carry->y));
-        std::vector<double> all(y.begin(), y.end());
-        for (const auto& controllers : run_.carry->controllers) {
-            for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
-        }
-        all.push_back(length_ > 0 ? 1 : time);
-        return vector_of(all);
-    }
-
-    /// How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
-    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
-        std::size_t past = 1;  // returns that the dead time reaches back to
-        while (past < times_.size() && times_.back() - times_[times_.size() - 1 - past] < delay_) ++past;
-        const std::size_t span = std::max(m, past + 1) + 1;
-        if (seen_.size() < back + m + span) return model::never;
-        double worst = 0;
-        for (std::size_t i = seen_.size() - back - span; i < seen_.size() - back; ++i) {
-            worst = std::max(worst, (seen_[i] - seen_[i - m]).cwiseQuotient(size_).cwiseAbs().maxCoeff());
-            if (worst > alike) break;
-        }
-        return worst;
-    }
-
-    /// The fewest returns after which it comes back to this part of its size; 0: it does not.
-    [[nodiscard]] std::size_t comes_back(double within) const {
-        const auto periods = static_cast<std::size_t>(s_.question().periods);
-        const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
-                                                                               : length_ > 0 ? 2048
-                                                                                             : 16;
-        for (std::size_t m = first; m <= (periods > 0 ? first : longest); ++m) {
-            const double now = off(m, 0);
-            if (!(now <= alike)) continue;
-            // Differences that shrink by so much in a period of the motion add up to this.
-            const double kept = std::pow(now / off(m, 4 * m), 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
-            if (now > finest && left > within) continue;
-            // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
-            for (std::size_t fewer = first; fewer < m; ++fewer) {
-                if (off(fewer, 0) <= alike) return fewer;
-            }
-            return m;
-        }
-        return 0;
-    }
-
-    void tell(std::size_t m) {
-        SteadyMotion& facts = s_.facts_;
-        facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
-        facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
-        facts.residual = off(m, 0);
-        if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
-        if (const auto middle = s_.tell_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
-    }
-
-    /// A motion that beats is as large in the first half as in the second.
-    void judge_growth() {
-        const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
-        const double before = *std::max_element(sizes_.begin(), half + 1);
-        const double last = *std::max_element(half, sizes_.end());
-        constexpr double clearly = 1.3;
-        if (last < clearly * before) return;
-        s_.facts_.status = SteadyStatus::grows;
-        s_.facts_.growth = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
-    }
-
-    ReturnSearch& s_;
-    double length_, delay_ = 0, stretch_;  // of a return, or 0; of the greatest dead time; of a run to a passage
-    /// How long after the instants at which all controllers sample it is looked at: by rounding some of them sample
-    /// before such an instant and some after it. None samples half of the shortest interval later.
-    double beside_ = model::never;
-    bool timeless_;
-    double t_;
-    std::optional<model::WantedEvent> passage_;
-    int looks_ = 0;               // for another section
-    Runs::Run run_;               // the last one
-    std::vector<double> sizes_;   // of all runs
-    std::size_t small_ = 0;       // the last runs in which hardly anything moved
-    std::vector<VectorXd> seen_;  // at each return,
-    std::vector<double> times_;   // and when that was
-    VectorXd size_;               // of what is seen
-};
-
-// ---- without
-
-void ReturnSearch::cycle() {
-    const double natural = runs_.natural_period(), base = pace(), start = question().repeats.start;
-    Moment now = runs_.first();
-    double length = base, time = 0;
-    std::size_t events = 0;
-    std::vector<std::pair<double, double>> ranges;  // time, range
-    VectorXd most_changed;
-    constexpr int most_stretches = 40;
-    for (int i = 0; i < most_stretches; ++i) {
-        Reach reach;
-        const auto run = stretch(now, start, length, reach);
-        if (!run) return;
-        time += length;
-        events += run->events.size();
-        const VectorXd range = reach.range();
-        most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
-        ranges.emplace_back(time, greatest(reach, n()));
-        largest_ = std::max(largest_, greatest(reach, 2 * n()));
-        now = Runs::at_stop(*run);
-        if (rests(*run, range, most_changed)) return;
-        if (closes_from(now, reach, length, i)) return;
-        constexpr std::size_t many_events = 6000, few_events = 200;
-        const bool cheap = !(natural > 0) && events < few_events;
-        if (events > many_events || (!cheap && time > 3000 * base)) break;
-        length *= 1.5;
-    }
-    const auto last = ranges.rbegin();
-    if (ranges.size() < 4 || !(last[0].second > 1.2 * last[1].second) || !(last[1].second > 1.2 * last[2].second)) {
-        return;
-    }
-    facts_.status = SteadyStatus::grows;
-    facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
-}
-
-/// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
-Index ReturnSearch::widest(const Reach& reach) const {
-    const VectorXd range = reach.range();
-    Index widest = -1;
-    for (const Index from : {Index{0}, n()}) {
-        for (Index k = from; k < from + n() && (widest < 0 || widest >= from); ++k) {
-            const double most = std::max(std::fabs(reach.low[k]), std::fabs(reach.high[k]));
-            if (!chart_.measures(k) || !(range[k] > 1e-9 * most)) continue;
-            if (widest < 0 || range[k] > range[widest]) widest = k;
-        }
-        if (widest >= 0) break;
-    }
-    return widest;
-}
-
-bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
-    const Index widest = this->widest(reach);
-    if (widest < 0) return false;
-    Returns map(runs_, chart_, question().repeats.start, 3 * length, section(reach, widest), units_of(reach), now.y);
-    const Returns::Return first = map.arrival(now);
-    if (!first.finished) return false;
-    ClosedSearch search(map, facts_.maps, 16);
-    const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
-    const auto found = search.follow(first, counts);
-    return found && tells_closed(map, *found);
-}
-
-/// Nothing depends on the time: what stands, or goes round evenly, and leaves everything as it is, does so for ever.
-bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const VectorXd& most_changed) {
-    const bool stands = run.outcome == model::Outcome::at_rest ||
-                        (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
-    bool still = true, still_states = true;
-    for (Index k = 0; k < range.size(); ++k) {
-        const double size = std::max(most_changed[k], std::fabs(run.carry->y[static_cast<std::size_t>(k)]));
-        const bool own = !chart_.measures(k) || range[k] <= 1e-11 * size;
-        still = still && own;
-        if (k >= 2 * n()) still_states = still_states && own;
-    }
-    const bool rides = n() == 1 && still_states && run.motion_at_stop == model::Motion::stuck && run.events.empty() &&
-                       !(runs_.natural_period() > 0) && runs_.system().joints.front().spring.none() &&
-                       !question().drive.loads.front().has_feedback();
-    if (stands || still || rides) note_rest(run, stands);
-    return stands || still || rides;
-}
-
-void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
-    facts_.period = 0;
-    facts_.stable = true;
-    facts_.status = SteadyStatus::rest;
-    tell_rest(run, stands);
-}
-
-/// The facts about a motion that closes; false when no run stays with it.
-bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
-    if (!(found.period > 0)) return false;  // a passage at once, of what has all but come to rest
-    const auto D = map.derivative(found.x, found.mode, found.returns, 4);
-    facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
-    std::vector<std::complex<double>> multipliers;
-    if (D) multipliers = multipliers_of(D->by_place);
-    if (!multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
-    const bool forced = question().repeats.period > 0;
-    facts_.periods = forced ? found.returns : 1;
-    facts_.period = forced ? found.returns * question().repeats.period : found.period;
-    facts_.differentiable = D.has_value();
-    facts_.stable = true;
-    facts_.residual = found.residual;
-    facts_.multipliers = std::move(multipliers);
-    const bool alone = forced && !chart_.any_goes_round();
-    constexpr double smooth = 0.01, differences = 1e-5;
-    if (alone && D && D->bend < smooth && contracts(question())) {
-        facts_.unique = miss_one(facts_.multipliers) > differences;
-    } else {
-        note_family(facts_);
-    }
-    const Moment moment = map.moment(found.x, found.mode);
-    const auto middle = tells(moment, map.start());
-    if (middle) {
-        note_symmetry(moment.y, *middle);
-    } else {
-        facts_.differentiable = false;
-        facts_.multipliers.clear();
-        facts_.unique.reset();
-    }
-    return middle.has_value();
-}
-
-/// Half a period later all angles and velocities are the opposite.
-void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) {
-    if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_goes_round()) return;
-    VectorXd units = VectorXd::Ones(2 * n());
-    units.tail(n()).fill(2 * std::numbers::pi / facts_.period);
-    const auto size = [&](const VectorXd& y) { return y.cwiseQuotient(units).cwiseAbs().maxCoeff(); };
-    const VectorXd before = begin.head(2 * n());
-    constexpr double alike = 1e-7;
-    facts_.symmetric = size(before + middle.head(2 * n())) <= alike * size(before);
-}
-
-void ReturnSearch::search() {
-    facts_.period = question().repeats.period;
-    question().settles >= 0 ? Settling(*this).search() : question().repeats.period > 0 ? forced() : cycle();
-    if (!runs_.contradiction()) return;
-    facts_.contradiction = runs_.contradiction();
-    facts_.outcome = model::Outcome::not_a_function;
-    facts_.status = SteadyStatus::none;
 }
 
 }  // namespace dinal::analysis

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis/steady.hpp"
@@ -141,6 +142,13 @@ private:
     std::optional<model::WantedEvent> passage_;
 };
 
+/// Ends a run that passes the section.
+model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named);
+
+/// M with relays that begin switched on or off as they are there.
+std::vector<bool> relays_of(const model::Excitation& excitation);
+model::Excitation with_relays(const model::Excitation& excitation, const std::vector<bool>& on);
+
 /// How far one stretch of a run gets, at so many looks: of each measured number.
 struct Reach {
     Eigen::VectorXd low, high;
@@ -158,53 +166,32 @@ Eigen::VectorXd vector_of(const std::vector<double>& values);
 /// Of its range, the place of a section: off the middle, where many motions have an end of something.
 inline constexpr double section_at = 0.42;
 
-/// Searches for the motion that a run from the start of the question leads to.
-class ReturnSearch {
-public:
-    ReturnSearch(const RigQuestion& question, Chart chart, const motion::Monitor& monitor)
-        : runs_(question, monitor), chart_(std::move(chart)) {}
-    ReturnSearch(const ReturnSearch&) = delete;
-    ReturnSearch& operator=(const ReturnSearch&) = delete;
-    virtual ~ReturnSearch() = default;
-
-protected:
-    void search();
-
-    /// A motion of facts_.period begins at this moment. Its state in the middle; none if it can not be run, and the
-    /// search goes on.
-    virtual std::optional<Eigen::VectorXd> tells(const Moment& moment, double start) = 0;
-    /// A run that has settled has gone on to here; facts_.period later it will be here again. The same.
-    virtual std::optional<Eigen::VectorXd> tell_settled(const Runs::Run& so_far) = 0;
-    /// The bodies come to rest or go round evenly; stands: friction holds all.
-    virtual void tell_rest(const Runs::Run& run, bool stands) = 0;
-
-    [[nodiscard]] const RigQuestion& question() const { return runs_.question(); }
-    [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
-    /// The period of M, or the slowest natural one.
-    [[nodiscard]] double pace() const;
-
-    Runs runs_;
-    Chart chart_;
-    SteadyMotion facts_;
-    double largest_ = 0;  // how far any angle or velocity went, where a run settles
-
-private:
-    std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
-    [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
-    void forced();
-    class Settling;
-    void cycle();
-    [[nodiscard]] Eigen::Index widest(const Reach& reach) const;
-    [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
-        return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
-    }
-    bool closes_from(const Moment& now, const Reach& reach, double length, int i);
-    bool rests(const Runs::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
-    void note_rest(const Runs::Run& run, bool stands);
-    struct Closed;
-    class ClosedSearch;
-    bool tells_closed(Returns& map, const Closed& found);
-    void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
+/// What drives a run, and what a user calls it.
+struct Acting {
+    const char* name;
+    const model::Excitation* what;
 };
+std::vector<Acting> acting_in(const RigQuestion& question);
+
+/// When all that drives the run repeats itself: period 0 where nothing depends on the time; none where no period is
+/// known. What is a function is looked at at some times: only its user knows its period.
+std::optional<Drive> drive_of(const RigQuestion& question);
+/// Asks all of it at times all over the period and one period later: the sentence that names the worst two that differ.
+std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive);
+/// `settles` of the question; none where its controllers and what else drives the bodies have no common period, or too
+/// long a one.
+std::optional<double> settles_after(const RigQuestion& question);
+/// One body as the smallest assembly.
+RigQuestion as_assembly(const SteadyQuestion& question);
+
+/// Where the motion from the start of the question leads.
+SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor = {});
+
+/// Motions from other starts that are not this one, each once; none where no motion was found.
+std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const SteadyMotion& known,
+                                              const motion::Monitor& monitor = {});
+
+/// The answer in sentences.
+std::string told(const RigQuestion& question, const SteadyMotion& motion, std::size_t others);
 
 }  // namespace dinal::analysis

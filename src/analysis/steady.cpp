@@ -366,4 +366,57 @@ std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const Ste
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
+std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const SteadyMotion& known,
+                                              const motion::Monitor& monitor) {
+    const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;
+    if (!known.is_found() || alone) return {};
+    const std::size_t n = question.system->bodies.size();
+    const auto farthest = [](const BodyMotion& body) { return std::max(std::fabs(body.high), std::fabs(body.low)); };
+    double size = 1e-300;
+    for (std::size_t i = 0; i < n; ++i) {
+        const BodyMotion& body = known.bodies[i];
+        const double speed = known.period == 0 ? std::fabs(body.turned) : 0;
+        size = std::max({size, body.high - body.low, farthest(body), speed});
+        if (!known.stands()) continue;
+        size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
+    }
+    const auto alike = [&](const SteadyMotion& a, const SteadyMotion& b) {
+        if (a.stands() && b.stands()) return true;
+        if (a.status != b.status) return false;
+        const auto moves_alike = [&](const BodyMotion& x, const BodyMotion& y) {
+            return std::fabs((x.high - x.low) - (y.high - y.low)) <= 1e-4 * size &&
+                   std::fabs(farthest(x) - farthest(y)) <= 1e-4 * size &&
+                   std::fabs(x.turned - y.turned) <= 1e-4 * std::fabs(x.turned);
+        };
+        return a.status != SteadyStatus::steady ||
+               std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), moves_alike);
+    };
+    const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
+    std::vector<RigQuestion> questions(other_starts, question);
+    for (int s = 0; s < other_starts; ++s) {
+        RigQuestion& other = questions[static_cast<std::size_t>(s)];
+        other.periods = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto spot = start_around(s, 2.5 * size, i);
+            double& theta = other.drive.theta0[i];
+            theta = spot.real();
+            if (const auto& walls = question.system->joints[i].walls) {
+                theta = std::clamp(theta, walls->lower, walls->upper);
+            }
+            other.drive.velocity0[i] = spot.imag() * 2 * std::numbers::pi / period;
+        }
+        const auto crosses = [&](const model::Joint& joint) {
+            if (!joint.walls || joint.second < 0) return false;
+            return joint.walls
+                ->crossed_by(other.drive.theta0[static_cast<std::size_t>(joint.first)] -
+                             other.drive.theta0[static_cast<std::size_t>(joint.second)])
+                .has_value();
+        };
+        if (std::any_of(question.system->joints.begin(), question.system->joints.end(), crosses)) {
+            other.drive.theta0 = question.drive.theta0;
+        }
+    }
+    return others_from(questions, known, alike, monitor);
+}
+
 }  // namespace dinal::analysis

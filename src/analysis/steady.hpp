@@ -67,9 +67,10 @@ struct SteadyMotion {
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
     std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
-    // Of several bodies:
+    // Of motions that return:
     std::vector<BodyMotion> bodies = {};
-    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< none at rest
+    std::shared_ptr<const PeriodOfBodies> of_bodies = {};     ///< none at rest
+    std::shared_ptr<const motion::engine::Drive> begun = {};  ///< of a run that is the motion from its start on
 
     /// Whether there is a motion or a rest, and so facts about it.
     [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }

@@ -59,8 +59,16 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
 /// The facts that one period as a run tells: its extremes and stops, and whether anything moves.
 void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
 
-/// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to;
-/// in returning.cpp.
+/// The question whose run begins so.
+std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const motion::engine::Drive& drive,
+                                               double start);
+
+/// The motion as seen from a body or link, whose own question is that of one body; `run` is the run of its period as
+/// seen from there, none at rest.
+SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, std::size_t joint,
+                       const SteadyQuestion& own, std::shared_ptr<const motion::Trajectory> run);
+
+/// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to.
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);
 
 /// Whether a motion that was found by theta and velocity alone goes on like this in one run of some periods.

@@ -5,7 +5,7 @@
 
 #include "analysis/friction_wave.hpp"
 #include "analysis/prose.hpp"
-#include "analysis/rig_steady.hpp"
+#include "analysis/returns.hpp"
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"

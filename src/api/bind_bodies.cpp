@@ -566,30 +566,6 @@ std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t jo
     return made ? std::optional(made.value()) : std::nullopt;
 }
 
-/// The run as seen from a body or link, with its columns.
-motion::Trajectory trajectory_of(const BodiesRun& run, std::size_t joint) {
-    const model::Assembly& system = *run.system;
-    motion::Trajectory part = engine::part_of(system, run.drive, run.run, joint, seen_alone(run, joint));
-    if (part.rough) part.rough->other_integrators = false;
-    if (system.is_link(joint)) {
-        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
-        part.computed = false;
-    }
-    const std::vector<std::string> all = engine::column_names_of(system, run.drive);
-    const std::vector<std::string>& names = part.names();
-    const std::size_t rows = run.run.table.size();
-    motion::Growing<double> table(rows, names.size());
-    for (std::size_t c = 0; c < names.size(); ++c) {
-        const bool own = c > 0 && c < motion::column_names().size() && system.named;
-        const auto place =
-            std::find(all.begin(), all.end(), own ? system.joints[joint].name + "." + names[c] : names[c]);
-        const auto from = run.run.table.column(static_cast<std::size_t>(place - all.begin()));
-        std::copy(from.begin(), from.end(), table.writable() + c * rows);
-    }
-    part.rows = motion::Rows(std::move(table));
-    return part;
-}
-
 /// The run of all bodies: all columns and events, but no motion between the rows, which is that of its parts.
 motion::Trajectory trajectory_of(const BodiesRun& run) {
     motion::Trajectory all = engine::part_of(*run.system, run.drive, run.run, 0, {});
@@ -603,7 +579,9 @@ motion::Trajectory trajectory_of(const BodiesRun& run) {
 /// As seen from this body or link, or from all of them.
 std::shared_ptr<Run> seen_from(const BodiesRunHandle& run, std::optional<std::size_t> joint) {
     auto seen = std::make_shared<Run>();
-    seen->trajectory = joint ? trajectory_of(*run, *joint) : trajectory_of(*run);
+    seen->trajectory =
+        joint ? engine::part_with_rows(*run->system, run->drive, run->run, *joint, seen_alone(*run, *joint))
+              : trajectory_of(*run);
     seen->whole = run, seen->joint = joint;
     seen->units = run->system->units;
     return seen;

@@ -32,37 +32,15 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
         const model::Excitation& load = rig->question.drive.loads[joint];
         if (!load.has_feedback() && !model::has_memory(load)) question.excitation = load;
     }
-    auto part = std::make_shared<Steady>(Steady{std::move(question), whole});
+    const RunHandle run = rig->run != nullptr ? part_of(rig->run, joint) : nullptr;
+    std::shared_ptr<const motion::Trajectory> seen;
+    if (run) seen = {run, &run->trajectory};
+    analysis::SteadyMotion facts = analysis::seen_from(rig->question, whole, joint, question, std::move(seen));
+    auto part = std::make_shared<Steady>(Steady{std::move(question), std::move(facts)});
     part->rig = rig;
     part->of_body = true;
     part->others.emplace();
-    analysis::SteadyMotion& facts = part->motion;
-    if (rig->run != nullptr) {
-        const RunHandle run = part_of(rig->run, joint);
-        tell_of_run(part->question, run->trajectory, facts);
-        facts.settled = std::shared_ptr<const motion::Trajectory>(run, &run->trajectory);
-        part->part = run;
-        double size = 0;
-        for (const analysis::BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
-        // The difference of two angles that are held together is their rounding.
-        if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
-            facts.status = analysis::SteadyStatus::adheres;
-            facts.amplitude = 0, facts.stuck = 1;
-        }
-        facts.rest = {facts.low, facts.low};
-    } else if (is_found(*part)) {
-        const model::Joint& own = system.joints[joint];
-        const double second = own.second < 0 ? 0 : whole.bodies[static_cast<std::size_t>(own.second)].begin;
-        facts.low = facts.high = whole.bodies[static_cast<std::size_t>(own.first)].begin - second;
-        facts.rest = {facts.low, facts.low};
-        facts.start = {facts.low, 0};
-    }
-    // Of a body that goes round the angle never comes back.
-    const auto turned = [&](int body) { return body < 0 ? 0 : whole.bodies[static_cast<std::size_t>(body)].turned; };
-    if (is_found(*part) && std::fabs(turned(system.joints[joint].first) - turned(system.joints[joint].second)) >
-                               1e-6 * std::fabs(turned(system.joints[joint].first))) {
-        facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
-    }
+    part->part = run;
     return part;
 }
 
@@ -96,18 +74,14 @@ int steady_of_rig(lua_State* L) {
     question.drive = asked_drive(L, options, *question.system);
     question.periods = asked.periods.value_or(0);
     question.repeats = drive_or_fail(L, options, question, asked_period(options));
-    const auto settles = [](const model::Excitation& load) {
-        return model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load);
-    };
-    if (std::any_of(question.drive.loads.begin(), question.drive.loads.end(), settles)) {
-        const auto common = analysis::common_period(question);
-        if (!common) {
-            options.fail("M",
-                         "the controllers of M and what else drives the bodies have no common period of at most 1000 "
-                         "instants or periods; run it for long and see run.load:cycle()");
-        }
-        question.settles = *common;
+    const auto settles = analysis::settles_after(question);
+    if (!settles) {
+        options.fail(
+            "M",
+            "the controllers of M and what else drives the bodies have no common period of at most 1000 instants "
+            "or periods; run it for long and see run.load:cycle()");
     }
+    question.settles = *settles;
     analysis::SteadyMotion found;
     asking_bodies(L, question,
                   [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });

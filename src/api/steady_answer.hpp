@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/rig_steady.hpp"
+#include "analysis/returns.hpp"
 #include "analysis/steady.hpp"
 #include "api/bodies.hpp"
 #include "api/extras_options.hpp"

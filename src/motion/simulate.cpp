@@ -349,14 +349,4 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
     return whole;
 }
 
-text::Expected<Trajectory> go_on(const model::Oscillator& system, const model::Excitation& excitation,
-                                 const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                 const Monitor& monitor, const Limits& limits, const model::Extras& extras) {
-    const Past past{so_far.motion_at_stop, 0, so_far.carried.get()};
-    auto result = run_from(past, system, excitation, so_far.state_at_stop, {so_far.t_stop, t_end}, rows, method,
-                           monitor, limits, extras);
-    if (result) settle(result.value(), system, excitation, extras);
-    return result;
-}
-
 }  // namespace dinal::motion

@@ -110,10 +110,4 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
                                   const Monitor& monitor = {}, const Limits& limits = {},
                                   const model::Extras& extras = {});
 
-/// The second part alone, with rows of its own: it has no more of the first than a run needs that goes on from it.
-text::Expected<Trajectory> go_on(const model::Oscillator& system, const model::Excitation& excitation,
-                                 const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                 const Monitor& monitor = {}, const Limits& limits = {},
-                                 const model::Extras& extras = {});
-
 }  // namespace dinal::motion

@@ -23,10 +23,6 @@ Drive drive_of(const model::Excitation& excitation, const model::Extras& extras,
             .velocity0 = {initial.velocity}};
 }
 
-std::shared_ptr<const Carried> carried_by(const std::shared_ptr<const Carry>& carry) {
-    return std::make_shared<Left>(carry);
-}
-
 Trajectory run(const Problem& problem, const Cut& cut) {
     const model::Assembly system = assembly_of(problem.system);
     const model::Extras& extras = *problem.extras;

@@ -15,8 +15,6 @@ struct Cut {
 /// The smallest assembly: this body on the ground.
 model::Assembly assembly_of(const model::Oscillator& system);
 Drive drive_of(const model::Excitation& excitation, const model::Extras& extras, const model::State& initial);
-/// What a run of this assembly leaves to a run of the body that goes on from there.
-std::shared_ptr<const Carried> carried_by(const std::shared_ptr<const Carry>& carry);
 
 /// Runs the problem. The columns of its states stand behind the others.
 Trajectory run(const Problem& problem, const Cut& cut);

@@ -117,4 +117,27 @@ Trajectory part_of(const model::Assembly& system, const Drive& drive, const Asse
     return part;
 }
 
+Trajectory part_with_rows(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+                          const std::optional<model::Oscillator>& seen) {
+    Trajectory part = part_of(system, drive, run, joint, seen);
+    if (part.rough) part.rough->other_integrators = false;
+    if (system.is_link(joint)) {
+        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
+        part.computed = false;
+    }
+    const std::vector<std::string> all = column_names_of(system, drive);
+    const std::vector<std::string>& names = part.names();
+    const std::size_t rows = run.table.size();
+    Growing<double> table(rows, names.size());
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        const bool own = c > 0 && c < column_names().size() && system.named;
+        const auto place =
+            std::find(all.begin(), all.end(), own ? system.joints[joint].name + "." + names[c] : names[c]);
+        const auto from = run.table.column(static_cast<std::size_t>(place - all.begin()));
+        std::copy(from.begin(), from.end(), table.writable() + c * rows);
+    }
+    part.rows = Rows(std::move(table));
+    return part;
+}
+
 }  // namespace dinal::motion::engine

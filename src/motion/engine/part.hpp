@@ -21,4 +21,8 @@ struct Left final : Carried {
 Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen);
 
+/// The same with its columns of a run that is not joined elsewhere.
+Trajectory part_with_rows(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+                          const std::optional<model::Oscillator>& seen);
+
 }  // namespace dinal::motion::engine

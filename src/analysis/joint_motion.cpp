@@ -1,0 +1,109 @@
+// A steady motion of one body or of several as seen from one of its joints.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/returns.hpp"
+#include "analysis/steady_facts.hpp"
+#include "motion/engine/one_body.hpp"
+#include "motion/spectral/spectral.hpp"
+#include "motion/stillness.hpp"
+
+namespace dinal::analysis {
+
+namespace engine = motion::engine;
+using motion::Trajectory;
+
+RigQuestion as_assembly(const SteadyQuestion& question) {
+    const model::Oscillator& system = question.system;
+    RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
+                      .drive = engine::drive_of(question.excitation, question.extras, question.initial),
+                      .repeats = question.drive,
+                      .periods = question.periods};
+    if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
+    asked.settles = settles_after(asked).value_or(question.drive.period);
+    return asked;
+}
+
+std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const engine::Drive& drive,
+                                               double start) {
+    SteadyQuestion asked = question;
+    asked.excitation = drive.loads.front();
+    asked.initial = {drive.theta0.front(), drive.velocity0.front()};
+    asked.extras.states = drive.states;
+    asked.drive.start = start;
+    return std::make_shared<const SteadyQuestion>(std::move(asked));
+}
+
+void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {
+    motion.start = run.initial;
+    motion.low = motion.high = run.initial.theta;
+    motion.t_high = run.t_start;
+    const auto see = [&motion](double t, double theta) {
+        if (theta > motion.high) motion.high = theta, motion.t_high = t;
+        motion.low = std::min(motion.low, theta);
+    };
+    for (const model::Event& event : run.events) {
+        see(event.t, event.theta);
+        if (event.kind != model::EventKind::user) continue;
+        if (const auto thrown = run.at(event.t)) see(event.t, thrown->theta);
+    }
+    if (run.on_belt) {
+        for (const model::Event& turn : motion::turns_on_belt(run)) see(turn.t, turn.theta);
+    }
+    see(run.t_stop, run.state_at_stop.theta);
+    const double length = run.t_stop - run.t_start;
+    double stuck = 0;
+    motion.stops = 0;
+    for (const Stretch& s : stretches(run)) {
+        if (!s.stuck) continue;
+        motion.stops += s.begun_by ? 1U : 0U;
+        stuck += s.lasts();
+    }
+    const bool moves = motion.high > motion.low;
+    motion.status = moves ? SteadyStatus::steady : SteadyStatus::adheres;
+    motion.amplitude = (motion.high - motion.low) / 2 + 0.0;
+    motion.stuck = moves ? std::min(1.0, stuck / length) : 1;
+    if (!moves) motion.rest = rest_of(question, motion.start.theta);
+}
+
+SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, std::size_t joint,
+                       const SteadyQuestion& own, std::shared_ptr<const motion::Trajectory> run) {
+    const model::Assembly& system = *question.system;
+    const model::Joint& seen = system.joints[joint];
+    const bool alone = !system.named && seen.friction.is_constant();
+    const auto of = [&](auto number) {
+        const double second = seen.second < 0 ? 0 : number(whole.bodies[static_cast<std::size_t>(seen.second)]);
+        return number(whole.bodies[static_cast<std::size_t>(seen.first)]) - second;
+    };
+    SteadyMotion facts = whole;
+    if (run) {
+        tell_of_run(own, *run, facts);
+        double size = 0;
+        for (const BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
+        // The difference of two angles that are held together is their rounding.
+        if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
+            facts.status = SteadyStatus::adheres;
+            facts.amplitude = 0, facts.stuck = 1;
+        }
+        if (!alone) facts.rest = {facts.low, facts.low};
+        if (alone && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);
+        facts.settled = std::move(run);
+    } else if (whole.is_found()) {
+        facts.low = facts.high = of([](const BodyMotion& body) { return body.begin; });
+        facts.start = {facts.low, of([](const BodyMotion& body) { return body.turned; })};
+        facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(own, facts.low)
+                                                                            : std::pair(facts.low, facts.low);
+        if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
+        if (alone && whole.begun) facts.asked = begun_at(own, *whole.begun, own.drive.start);
+    }
+    // Of a body that goes round the angle never comes back.
+    const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
+    if (!alone && facts.is_found() &&
+        std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[static_cast<std::size_t>(seen.first)].turned)) {
+        facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
+    }
+    return facts;
+}
+
+}  // namespace dinal::analysis

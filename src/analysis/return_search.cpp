@@ -1,0 +1,844 @@
+// Where a motion settles: searches for the motion that a run of one body or of several leads to, among the fixed points
+// of its returns. docs/theory.md, section 10.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "algebra/decompositions.hpp"
+#include "analysis/returns.hpp"
+#include "analysis/steady_facts.hpp"
+#include "model/controller.hpp"
+#include "motion/engine/one_body.hpp"
+#include "motion/engine/part.hpp"
+
+namespace dinal::analysis {
+
+namespace engine = motion::engine;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+bool has_acts(const engine::Drive& drive) {
+    return std::any_of(drive.events.begin(), drive.events.end(),
+                       [](const model::WantedEvent& event) { return event.act != nullptr; });
+}
+
+/// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
+bool is_linear(const model::Assembly& system, const engine::Drive& drive) {
+    const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
+    const auto bends = [](const model::Joint& joint) {
+        return !joint.spring.none() || joint.walls || !joint.friction.is_constant() ||
+               joint.friction.law.depends_on_speed();
+    };
+    return std::none_of(drive.loads.begin(), drive.loads.end(), loaded) &&
+           std::none_of(system.joints.begin(), system.joints.end(), bends);
+}
+
+double size_of_step(const VectorXd& step) {
+    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
+}
+
+/// The longest dead time of a controller.
+double longest_delay(const model::Excitation& excitation) {
+    double most = 0;
+    for (const model::Component& c : excitation.components()) {
+        if (const auto* delayed = model::controller_of<model::DelayedController>(c)) most = std::max(most, delayed->by);
+    }
+    return most;
+}
+
+double shortest_sampling(const model::Excitation& excitation) {
+    double least = model::never;
+    for (const model::Component& c : excitation.components()) {
+        if (const auto* sampled = model::controller_of<model::SampledController>(c))
+            least = std::min(least, sampled->every);
+    }
+    return least;
+}
+
+/// The sizes of the greatest angle or velocity.
+double greatest(const Reach& reach, Index count) {
+    return reach.range().head(count).cwiseAbs().maxCoeff();
+}
+
+/// A run from a start that is shifted is the same, shifted.
+bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
+    constexpr double by = 0.73;
+    const double start = runs.question().repeats.start;
+    Moment plain = runs.first(), shifted = plain;
+    shifted.y += by * shift;
+    const auto end = [&](const Moment& from) {
+        return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
+    };
+    const Eigen::VectorXd off = end(shifted) - by * shift - end(plain);
+    return off.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, plain.y.cwiseAbs().maxCoeff());
+}
+
+/// Bodies between which nothing depends on where they are go round together, and are measured from each other.
+Chart chart_of(Runs& runs) {
+    const double period = runs.question().repeats.period, natural = runs.natural_period();
+    const double length = period > 0 ? period : natural > 0 ? natural : 1;
+    const model::Assembly& system = runs.system();
+    const Eigen::Index n = runs.bodies();
+    std::vector<Eigen::Index> part(static_cast<std::size_t>(n));
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = static_cast<Eigen::Index>(i);
+    std::vector<bool> grounded(part.size(), false);
+    const auto root = [&](Eigen::Index i) {
+        while (part[static_cast<std::size_t>(i)] != i) i = part[static_cast<std::size_t>(i)];
+        return i;
+    };
+    for (const model::Joint& joint : system.joints) {
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        if (!asks || joint.second < 0) continue;
+        const Eigen::Index a = root(joint.first), b = root(joint.second);
+        part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    for (const model::Joint& joint : system.joints) {
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        if (asks && joint.second < 0) grounded[static_cast<std::size_t>(root(joint.first))] = true;
+    }
+    std::vector<Eigen::Index> from(part.size(), -1);
+    for (Eigen::Index of = 0; of < n; ++of) {
+        if (root(of) != of || grounded[static_cast<std::size_t>(of)]) continue;
+        Eigen::VectorXd shift = Eigen::VectorXd::Zero(runs.first().y.size());
+        for (Eigen::Index i = 0; i < n; ++i) shift[i] = root(i) == of ? 1 : 0;
+        if (!is_alike(runs, shift, length)) continue;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (root(i) == of) from[static_cast<std::size_t>(i)] = of;
+        }
+    }
+    return Chart(std::move(from));
+}
+
+/// Searches for the motion that a run from the start of the question leads to.
+class ReturnSearch {
+public:
+    ReturnSearch(const RigQuestion& question, const motion::Monitor& monitor)
+        : runs_(question, monitor), chart_(chart_of(runs_)) {}
+
+    SteadyMotion found();
+
+private:
+    /// A motion of facts_.period begins at this moment. Its state in the middle; none if it can not be run, and the
+    /// search goes on.
+    std::optional<VectorXd> tells(const Moment& moment, double start);
+    /// A run that has settled has gone on to here; facts_.period later it will be here again. The same.
+    std::optional<VectorXd> tell_settled(const Runs::Run& so_far);
+    std::optional<VectorXd> tell_period(const Moment& from, Runs::Run run, double period);
+    /// The bodies come to rest or go round evenly; stands: friction holds all.
+    void tell_rest(const Runs::Run& run, bool stands);
+
+    [[nodiscard]] const RigQuestion& question() const { return runs_.question(); }
+    [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
+    /// The period of M, or the slowest natural one.
+    [[nodiscard]] double pace() const;
+
+    std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
+    [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
+    void forced();
+    class Settling;
+    void cycle();
+    [[nodiscard]] Eigen::Index widest(const Reach& reach) const;
+    [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
+        return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
+    }
+    bool closes_from(const Moment& now, const Reach& reach, double length, int i);
+    bool rests(const Runs::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
+    void note_rest(const Runs::Run& run, bool stands);
+    struct Closed;
+    class ClosedSearch;
+    bool tells_closed(Returns& map, const Closed& found);
+    void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
+
+    Runs runs_;
+    Chart chart_;
+    SteadyMotion facts_;
+    double largest_ = 0;  // how far any angle or velocity went, where a run settles
+};
+
+/// A motion that comes back after some returns.
+struct ReturnSearch::Closed {
+    VectorXd x;
+    HeldMode mode;
+    int returns = 1;
+    double period = 0, residual = 0;
+};
+
+/// Finds it from the returns that it makes, by Newton's method where these lead near.
+class ReturnSearch::ClosedSearch {
+public:
+    using Return = Returns::Return;
+    ClosedSearch(Returns& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
+
+    /// What one return after the other leads to.
+    std::optional<Closed> follow(Return first, const std::vector<int>& counts) {
+        seen_ = {std::move(first)};
+        for (const int until : counts) {
+            while (static_cast<int>(seen_.size()) <= until) {
+                Return next = map_(seen_.back().to, seen_.back().mode);
+                ++maps_;
+                if (!next.finished) {
+                    failed_ = next.outcome;
+                    return {};
+                }
+                seen_.push_back(std::move(next));
+            }
+            for (const double near : {1e-5, 5e-2}) {
+                if (auto found = closes(near)) return found;
+            }
+        }
+        return {};
+    }
+
+    /// By Newton's method from here.
+    std::optional<Closed> at_once(const Return& from) { return newton(from, 1, 1e6); }
+    [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
+    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
+
+private:
+    static constexpr double to_rounding = 1e-11;
+
+    std::optional<Closed> closes(double near) {
+        const std::size_t last = seen_.size() - 1;
+        int tries = 0;  // chaos comes near to itself again and again
+        for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
+            if (seen_[last].mode != seen_[last - m].mode) continue;
+            const double off = size_of_step(seen_[last].to - seen_[last - m].to);
+            if (off > near) continue;
+            ++tries;
+            auto found = newton(seen_[last], static_cast<int>(m));
+            if (found && approaches(found->x, m)) return shortest(*found);
+            if (found || off > to_rounding) continue;
+            return itself(seen_[last], static_cast<int>(m));
+        }
+        return {};
+    }
+
+    /// It may have come back before: what dies out slowly is nearer to itself after more returns.
+    Closed shortest(Closed found) {
+        for (int m = 1; m < found.returns; ++m) {
+            if (found.returns % m != 0) continue;
+            const Return back = map_(found.x, found.mode, m);
+            maps_ += m;
+            constexpr double there = 1e-10;
+            const double off = back.finished ? size_of_step(back.to - found.x) : 1;
+            if (!back.finished || back.mode != found.mode || off > std::max(there, 10 * found.residual)) continue;
+            found.returns = m, found.period = back.time, found.residual = off;
+            break;
+        }
+        return found;
+    }
+
+    /// The run comes nearer to it all the time, and is there soon.
+    [[nodiscard]] bool approaches(const VectorXd& x, std::size_t m) const {
+        const std::size_t last = seen_.size() - 1;
+        const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
+        constexpr double there = 1e-7, close = 0.3;
+        return now <= there || (now <= close && now < 0.98 * before);
+    }
+
+    /// It has come back to rounding, and differences do not tell more.
+    std::optional<Closed> itself(const Return& from, int m) {
+        const Return back = map_(from.to, from.mode, m);
+        maps_ += m;
+        if (!back.finished) return {};
+        return Closed{from.to, *from.mode, m, back.time, size_of_step(back.to - from.to)};
+    }
+
+    std::optional<Closed> newton(const Return& from, int m, double farthest = 1) {
+        VectorXd x = from.to;
+        std::optional<Closed> best;
+        std::optional<Returns::Derivative> D;
+        constexpr int most = 14;
+        for (int i = 0; i < most; ++i) {
+            const Return there = map_(x, from.mode, m);
+            maps_ += m;
+            if (!there.finished || there.mode != from.mode) return good(best);
+            const VectorXd off = there.to - x;
+            const double residual = size_of_step(off);
+            const bool slower = best && residual > 0.1 * best->residual;
+            if (best && residual >= best->residual && best->residual <= to_rounding) return best;
+            if (!best || residual < best->residual) best = Closed{x, *from.mode, m, there.time, residual};
+            if (residual <= 4 * std::numeric_limits<double>::epsilon()) return best;
+            if (!D || slower) {
+                D = map_.derivative(x, *from.mode, m, 2);
+                maps_ += 2 * m * static_cast<int>(x.size());
+                if (!D) return good(best);
+            }
+            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - D->by_place;
+            const VectorXd step = algebra::solve_shortest(left, off);
+            if (!step.allFinite()) return good(best);
+            x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
+        }
+        return good(best);
+    }
+
+    static std::optional<Closed> good(const std::optional<Closed>& best) {
+        constexpr double enough = 1e-9;
+        return best && best->residual <= enough ? best : std::nullopt;
+    }
+
+    Returns& map_;
+    int& maps_;
+    int longest_;
+    std::vector<Return> seen_;
+    std::optional<model::Outcome> failed_;
+};
+
+double ReturnSearch::pace() const {
+    if (question().repeats.period > 0) return question().repeats.period;
+    const double natural = runs_.natural_period();
+    return natural > 0 ? natural : 1;
+}
+
+/// A stretch of the run; none when it failed, and the answer says how.
+std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
+    Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
+    facts_.outcome = run.outcome;
+    reach = reach_of(run, chart_);
+    constexpr double beyond = 1e100, no_number = 1e50;  // there M may have none
+    const double greatest = analysis::greatest(reach, 2 * n());
+    const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
+    if (whole && greatest < beyond) return run;
+    if (whole || (run.outcome == model::Outcome::excitation_not_finite && greatest > no_number)) {
+        facts_.outcome = model::Outcome::state_not_finite;
+    }
+    if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
+    return {};
+}
+
+/// Units of places: never zero.
+VectorXd ReturnSearch::units_of(const Reach& reach) const {
+    VectorXd units = reach.range();
+    const VectorXd most = reach.high.cwiseAbs().cwiseMax(reach.low.cwiseAbs());
+    const double angles = std::max(units.head(n()).maxCoeff(), 1e-300);
+    const double speeds = std::max(units.segment(n(), n()).maxCoeff(), 1e-300);
+    for (Index k = 0; k < units.size(); ++k) {
+        if (units[k] > 1e-9 * most[k]) continue;
+        units[k] = std::max(most[k], k < n() ? angles : k < 2 * n() ? speeds : 0.0);
+        if (!(units[k] > 0)) units[k] = 1;
+    }
+    return units;
+}
+
+// ---- with a period
+
+void ReturnSearch::forced() {
+    const double period = question().repeats.period;
+    // An act at the very beginning of a run would not happen: returns are looked at where nothing does.
+    constexpr double nowhere = 0.3819660112501051;
+    Moment now = runs_.first();
+    double start = question().repeats.start;
+    Reach reach;
+    if (has_acts(question().drive)) {
+        const auto run = stretch(now, start, nowhere * period, reach);
+        if (!run) return;
+        now = Runs::at_stop(*run);
+        start += nowhere * period;
+    }
+    const auto first = stretch(now, start, period, reach);
+    if (!first) return;
+    now = Runs::at_stop(*first);
+    if (question().periods <= 1 && is_linear(runs_.system(), question().drive)) {
+        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
+        ClosedSearch search(map, facts_.maps, 1);
+        const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
+        if (found && tells_closed(map, *found)) return;
+    }
+    std::vector<double> ranges{greatest(reach, n())};  // of single periods
+    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one,
+    std::size_t between = 1;    // whose ends are so many returns apart
+    const double natural = runs_.natural_period();
+    const int longest = question().periods > 0 ? question().periods : 32;
+    for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
+        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
+        ClosedSearch search(map, facts_.maps, longest);
+        const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
+        if (found && tells_closed(map, *found)) return;
+        if (search.failed()) {
+            facts_.outcome = *search.failed();
+            if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
+            return;
+        }
+        const auto& seen = search.seen();
+        const auto largest = [&](std::size_t from, std::size_t until) {
+            double size = 0;
+            for (std::size_t i = from; i < until; ++i) {
+                const VectorXd y = chart_.measured(map.moment(seen[i].to, seen[i].mode).y).cwiseAbs();
+                // Bodies that nothing pulls back may drift without an end.
+                if (natural > 0) size = std::max(size, y.head(n()).maxCoeff());
+                const double pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
+                size = std::max(size, y.segment(n(), n()).maxCoeff() * pace);
+            }
+            return size;
+        };
+        const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
+        sizes.push_back(largest(0, half));
+        if (half < seen.size()) sizes.push_back(largest(half, seen.size())), between = seen.size() - half;
+        now = map.moment(seen.back().to, seen.back().mode);
+        if (!stretch(now, start, period, reach)) return;
+        ranges.push_back(greatest(reach, n()));
+    }
+    // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
+    const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
+    if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
+        facts_.status = SteadyStatus::grows;
+        facts_.growth = (sizes[2] - sizes[1]) / static_cast<double>(between);
+    }
+}
+
+// ---- with controllers that sample or wait
+
+/// The run itself goes on until it repeats itself: from period to period of what drives it and samples, or behind a
+/// dead time, where nothing prescribes a period, from passage to passage.
+class ReturnSearch::Settling {
+public:
+    explicit Settling(ReturnSearch& search)
+        : s_(search),
+          length_(search.question().settles),
+          timeless_(search.question().repeats.period == 0),
+          t_(search.question().repeats.start) {
+        for (const model::Excitation& load : s_.question().drive.loads) {
+            delay_ = std::max(delay_, longest_delay(load));
+            if (length_ > 0) beside_ = std::min(beside_, shortest_sampling(load) / 2);
+        }
+        if (beside_ == model::never) beside_ = 0;
+        stretch_ = 2 * std::max(s_.pace(), delay_);
+    }
+
+    void search() {
+        const auto periods = static_cast<std::size_t>(s_.question().periods);
+        const auto reaches_back = static_cast<std::size_t>(std::min(4 * delay_ / s_.pace(), 1e6));
+        const std::size_t least = !timeless_ ? 4096 : length_ > 0 ? 20000 : 2048;
+        const std::size_t most = std::clamp(std::max(reaches_back, 8 * periods), least, 4 * least);
+        constexpr std::size_t least_returns = 16;
+        for (std::size_t until = least_returns; sizes_.size() < most; until += std::max(least_returns, until / 4)) {
+            until = std::min(until, most);
+            for (; sizes_.size() < until; ++s_.facts_.maps) {
+                if (!goes_on()) return;
+            }
+            const bool alone = timeless_ && s_.question().drive.states.empty();
+            if (alone && small_ >= least_returns && run_.motion_at_stop != model::Motion::stuck) {
+                s_.note_rest(run_, false);
+                return;
+            }
+            constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
+            std::size_t m = comes_back(settled);
+            if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
+            if (m == 0) continue;
+            tell(m);
+            return;
+        }
+        judge_growth();
+    }
+
+private:
+    static constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
+    static constexpr double finest = 1e-12;  // sizes: of rounding in runs
+
+    /// One return more; false when that is the end.
+    bool goes_on() {
+        const double start = t_;
+        t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
+                         : start + stretch_;
+        run_ = s_.runs_.go_on(run_.carry, start, t_, motion::Grid::none(), passage_);
+        SteadyMotion& facts = s_.facts_;
+        facts.outcome = run_.outcome;
+        const Reach reach = reach_of(run_, s_.chart_, timeless_ && length_ > 0 ? 4 : 64);
+        const double size = greatest(reach, 2 * s_.n());
+        constexpr double beyond = 1e50;
+        if (!(size < beyond)) facts.outcome = model::Outcome::state_not_finite;
+        if (!model::is_whole(facts.outcome) && !(passage_ && facts.outcome == model::Outcome::stopped)) {
+            if (facts.outcome != model::Outcome::state_not_finite) return false;
+            facts.status = SteadyStatus::grows;
+            const std::size_t last = sizes_.size();
+            if (!timeless_ && last > 1) facts.growth = sizes_[last - 1] - sizes_[last - 2];
+            return false;
+        }
+        s_.largest_ = std::max(s_.largest_, size);
+        sizes_.push_back(size);
+        constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
+        small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
+        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
+        t_ = run_.t_stop;
+        times_.push_back(t_);
+        seen_.push_back(seen(t_ - start));
+        const VectorXd units = s_.units_of(reach);
+        size_ = seen_.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
+        constexpr double nothing = 1e-12;  // of what it was: it dies out
+        size_.head(units.size()) = units.cwiseMax(nothing * s_.largest_);
+        // What a controller gives may be its rounding at each return; it is nothing beside what moves the bodies.
+        const auto others = size_.segment(units.size(), size_.size() - units.size() - 1);
+        size_.segment(units.size(), others.size()) = others.cwiseMax(torque_of(reach));
+        return true;
+    }
+
+    /// The torque that moves a body so.
+    [[nodiscard]] double torque_of(const Reach& reach) const {
+        double torque = 0;
+        const auto& bodies = s_.runs_.system().bodies;
+        for (Index i = 0; i < s_.n(); ++i) {
+            const double change = reach.high[s_.n() + i] - reach.low[s_.n() + i];
+            torque = std::max(torque, bodies[static_cast<std::size_t>(i)].inertia * change / s_.pace());
+        }
+        return torque;
+    }
+
+    /// No passage has come: the motion has moved away from the section, or stands. False when that is the end.
+    bool looks_elsewhere(const Reach& reach) {
+        constexpr int most_looks = 40, most_longer = 24;
+        const bool rests = small_ > 0 && s_.question().drive.states.empty();
+        if (rests) s_.note_rest(run_, false);
+        if (rests || ++looks_ > most_looks) return false;
+        const Index widest = s_.widest(reach);
+        if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
+        if (looks_ <= most_longer) stretch_ *= 1.3;
+        seen_.clear();
+        times_.clear();
+        return true;
+    }
+
+    /// Angles and velocities as they are measured, states, what the controllers give, and how long the return took.
+    /// What controllers remember besides is not seen, so a motion must return more than once.
+    [[nodiscard]] VectorXd seen(double time) const {
+        const VectorXd y = s_.chart_.measured(vector_of(run_.carry->y));
+        std::vector<double> all(y.begin(), y.end());
+        for (const auto& controllers : run_.carry->controllers) {
+            for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
+        }
+        all.push_back(length_ > 0 ? 1 : time);
+        return vector_of(all);
+    }
+
+    /// How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
+    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
+        std::size_t past = 1;  // returns that the dead time reaches back to
+        while (past < times_.size() && times_.back() - times_[times_.size() - 1 - past] < delay_) ++past;
+        const std::size_t span = std::max(m, past + 1) + 1;
+        if (seen_.size() < back + m + span) return model::never;
+        double worst = 0;
+        for (std::size_t i = seen_.size() - back - span; i < seen_.size() - back; ++i) {
+            worst = std::max(worst, (seen_[i] - seen_[i - m]).cwiseQuotient(size_).cwiseAbs().maxCoeff());
+            if (worst > alike) break;
+        }
+        return worst;
+    }
+
+    /// The fewest returns after which it comes back to this part of its size; 0: it does not.
+    [[nodiscard]] std::size_t comes_back(double within) const {
+        const auto periods = static_cast<std::size_t>(s_.question().periods);
+        const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
+                                                                               : length_ > 0 ? 2048
+                                                                                             : 16;
+        for (std::size_t m = first; m <= (periods > 0 ? first : longest); ++m) {
+            const double now = off(m, 0);
+            if (!(now <= alike)) continue;
+            // Differences that shrink by so much in a period of the motion add up to this.
+            const double kept = std::pow(now / off(m, 4 * m), 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
+            if (now > finest && left > within) continue;
+            // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
+            for (std::size_t fewer = first; fewer < m; ++fewer) {
+                if (off(fewer, 0) <= alike) return fewer;
+            }
+            return m;
+        }
+        return 0;
+    }
+
+    void tell(std::size_t m) {
+        SteadyMotion& facts = s_.facts_;
+        facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
+        facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
+        facts.residual = off(m, 0);
+        if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
+        if (const auto middle = s_.tell_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
+    }
+
+    /// A motion that beats is as large in the first half as in the second.
+    void judge_growth() {
+        const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+        const double before = *std::max_element(sizes_.begin(), half + 1);
+        const double last = *std::max_element(half, sizes_.end());
+        constexpr double clearly = 1.3;
+        if (last < clearly * before) return;
+        s_.facts_.status = SteadyStatus::grows;
+        s_.facts_.growth = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
+    }
+
+    ReturnSearch& s_;
+    double length_, delay_ = 0, stretch_;  // of a return, or 0; of the greatest dead time; of a run to a passage
+    /// How long after the instants at which all controllers sample it is looked at: by rounding some of them sample
+    /// before such an instant and some after it. None samples half of the shortest interval later.
+    double beside_ = model::never;
+    bool timeless_;
+    double t_;
+    std::optional<model::WantedEvent> passage_;
+    int looks_ = 0;               // for another section
+    Runs::Run run_;               // the last one
+    std::vector<double> sizes_;   // of all runs
+    std::size_t small_ = 0;       // the last runs in which hardly anything moved
+    std::vector<VectorXd> seen_;  // at each return,
+    std::vector<double> times_;   // and when that was
+    VectorXd size_;               // of what is seen
+};
+
+// ---- without
+
+void ReturnSearch::cycle() {
+    const double natural = runs_.natural_period(), base = pace(), start = question().repeats.start;
+    Moment now = runs_.first();
+    double length = base, time = 0;
+    std::size_t events = 0;
+    std::vector<std::pair<double, double>> ranges;  // time, range
+    VectorXd most_changed;
+    constexpr int most_stretches = 40;
+    for (int i = 0; i < most_stretches; ++i) {
+        Reach reach;
+        const auto run = stretch(now, start, length, reach);
+        if (!run) return;
+        time += length;
+        events += run->events.size();
+        const VectorXd range = reach.range();
+        most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
+        ranges.emplace_back(time, greatest(reach, n()));
+        largest_ = std::max(largest_, greatest(reach, 2 * n()));
+        now = Runs::at_stop(*run);
+        if (rests(*run, range, most_changed)) return;
+        if (closes_from(now, reach, length, i)) return;
+        constexpr std::size_t many_events = 6000, few_events = 200;
+        const bool cheap = !(natural > 0) && events < few_events;
+        if (events > many_events || (!cheap && time > 3000 * base)) break;
+        length *= 1.5;
+    }
+    const auto last = ranges.rbegin();
+    if (ranges.size() < 4 || !(last[0].second > 1.2 * last[1].second) || !(last[1].second > 1.2 * last[2].second)) {
+        return;
+    }
+    facts_.status = SteadyStatus::grows;
+    facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
+}
+
+/// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
+Index ReturnSearch::widest(const Reach& reach) const {
+    const VectorXd range = reach.range();
+    Index widest = -1;
+    for (const Index from : {Index{0}, n()}) {
+        for (Index k = from; k < from + n() && (widest < 0 || widest >= from); ++k) {
+            const double most = std::max(std::fabs(reach.low[k]), std::fabs(reach.high[k]));
+            if (!chart_.measures(k) || !(range[k] > 1e-9 * most)) continue;
+            if (widest < 0 || range[k] > range[widest]) widest = k;
+        }
+        if (widest >= 0) break;
+    }
+    return widest;
+}
+
+bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
+    const Index widest = this->widest(reach);
+    if (widest < 0) return false;
+    Returns map(runs_, chart_, question().repeats.start, 3 * length, section(reach, widest), units_of(reach), now.y);
+    const Returns::Return first = map.arrival(now);
+    if (!first.finished) return false;
+    ClosedSearch search(map, facts_.maps, 16);
+    const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
+    const auto found = search.follow(first, counts);
+    return found && tells_closed(map, *found);
+}
+
+/// Nothing depends on the time: what stands, or goes round evenly, and leaves everything as it is, does so for ever.
+bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const VectorXd& most_changed) {
+    const bool stands = run.outcome == model::Outcome::at_rest ||
+                        (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
+    bool still = true, still_states = true;
+    for (Index k = 0; k < range.size(); ++k) {
+        const double size = std::max(most_changed[k], std::fabs(run.carry->y[static_cast<std::size_t>(k)]));
+        const bool own = !chart_.measures(k) || range[k] <= 1e-11 * size;
+        still = still && own;
+        if (k >= 2 * n()) still_states = still_states && own;
+    }
+    const bool rides = n() == 1 && still_states && run.motion_at_stop == model::Motion::stuck && run.events.empty() &&
+                       !(runs_.natural_period() > 0) && runs_.system().joints.front().spring.none() &&
+                       !question().drive.loads.front().has_feedback();
+    if (stands || still || rides) note_rest(run, stands);
+    return stands || still || rides;
+}
+
+void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
+    facts_.period = 0;
+    facts_.stable = true;
+    facts_.status = SteadyStatus::rest;
+    tell_rest(run, stands);
+}
+
+/// The facts about a motion that closes; false when no run stays with it.
+bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
+    if (!(found.period > 0)) return false;  // a passage at once, of what has all but come to rest
+    const auto D = map.derivative(found.x, found.mode, found.returns, 4);
+    facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
+    std::vector<std::complex<double>> multipliers;
+    if (D) multipliers = multipliers_of(D->by_place);
+    if (!multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
+    const bool forced = question().repeats.period > 0;
+    facts_.periods = forced ? found.returns : 1;
+    facts_.period = forced ? found.returns * question().repeats.period : found.period;
+    facts_.differentiable = D.has_value();
+    facts_.stable = true;
+    facts_.residual = found.residual;
+    facts_.multipliers = std::move(multipliers);
+    const bool alone = forced && !chart_.any_goes_round();
+    constexpr double smooth = 0.01, differences = 1e-5;
+    if (alone && D && D->bend < smooth && contracts(question())) {
+        facts_.unique = miss_one(facts_.multipliers) > differences;
+    } else {
+        note_family(facts_);
+    }
+    const Moment moment = map.moment(found.x, found.mode);
+    const auto middle = tells(moment, map.start());
+    if (middle) {
+        note_symmetry(moment.y, *middle);
+    } else {
+        facts_.differentiable = false;
+        facts_.multipliers.clear();
+        facts_.unique.reset();
+    }
+    return middle.has_value();
+}
+
+/// Half a period later all angles and velocities are the opposite.
+void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) {
+    if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_goes_round()) return;
+    VectorXd units = VectorXd::Ones(2 * n());
+    units.tail(n()).fill(2 * std::numbers::pi / facts_.period);
+    const auto size = [&](const VectorXd& y) { return y.cwiseQuotient(units).cwiseAbs().maxCoeff(); };
+    const VectorXd before = begin.head(2 * n());
+    constexpr double alike = 1e-7;
+    facts_.symmetric = size(before + middle.head(2 * n())) <= alike * size(before);
+}
+
+SteadyMotion ReturnSearch::found() {
+    facts_.period = question().repeats.period;
+    question().settles >= 0 ? Settling(*this).search() : question().repeats.period > 0 ? forced() : cycle();
+    if (runs_.contradiction()) {
+        facts_.contradiction = runs_.contradiction();
+        facts_.outcome = model::Outcome::not_a_function;
+        facts_.status = SteadyStatus::none;
+    }
+    return std::move(facts_);
+}
+
+// ---- what is told of it
+
+std::optional<VectorXd> ReturnSearch::tells(const Moment& moment, double start) {
+    const double period = facts_.period;
+    constexpr double rows = 400;
+    Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
+    if (!model::is_whole(run.outcome)) return {};
+    facts_.begun = std::make_shared<const engine::Drive>(runs_.from(moment));
+    return tell_period(moment, std::move(run), period);
+}
+
+std::optional<VectorXd> ReturnSearch::tell_settled(const Runs::Run& so_far) {
+    const double period = facts_.period, t = so_far.t_stop;
+    constexpr double rows = 400;
+    Runs::Run run = runs_.go_on(so_far.carry, t, t + period, motion::Grid::every(period / rows));
+    if (!model::is_whole(run.outcome)) return {};
+    return tell_period(Runs::at_stop(so_far), std::move(run), period);
+}
+
+void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
+    const Moment now = Runs::at_stop(run);
+    const auto velocity = now.y.segment(n(), n());
+    const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
+    const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
+    if (moves && chart_.any_goes_round()) facts_.status = SteadyStatus::steady;
+    if (moves && stuck) facts_.status = SteadyStatus::adheres;  // to the belt, which takes it along
+    if (stands) facts_.unique = false;
+    facts_.stuck = stuck ? 1 : 0;
+    if (question().settles < 0) facts_.begun = std::make_shared<const engine::Drive>(runs_.from(now));
+    const VectorXd at = chart_.measured(now.y);
+    for (Index i = 0; i < n(); ++i) {
+        facts_.bodies.push_back({at[i], at[i], chart_.goes_round(i) ? velocity[i] : 0, now.y[i]});
+    }
+}
+
+/// From this moment on the run is the motion.
+std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run run, double period) {
+    const Reach reach = reach_of(run, chart_);
+    constexpr double nothing = 1e-11;
+    const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
+    const bool forced = question().repeats.period > 0;
+    if (!moves && !forced && question().settles < 0) return {};  // no cycle: a run will tell how it ends
+    facts_.outcome = run.outcome;
+    facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
+    facts_.period = moves || forced ? period : 0;
+    facts_.stable = true;
+    const std::vector<double>& after = run.carry->y;
+    for (Index i = 0; i < n(); ++i) {
+        const double fastest = std::max(std::fabs(reach.low[n() + i]), std::fabs(reach.high[n() + i]));
+        const double turned = chart_.goes_round(i) ? after[static_cast<std::size_t>(i)] - from.y[i] : 0;
+        const bool turns = std::fabs(turned) > 1e-6 * period * fastest;
+        facts_.bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, from.y[i]});
+    }
+    const std::vector<double> middle = run.history->at(run.t_start + period / 2);
+    auto whole = std::make_shared<PeriodOfBodies>();
+    whole->drive = runs_.from(from), whole->run = std::move(run);
+    facts_.of_bodies = std::move(whole);
+    return vector_of(middle);
+}
+
+}  // namespace
+
+std::optional<double> settles_after(const RigQuestion& question) {
+    bool waits = false;
+    double common = question.repeats.period;
+    for (const model::Excitation& load : question.drive.loads) {
+        for (const model::Component& component : load.components()) {
+            const auto* sampled = model::controller_of<model::SampledController>(component);
+            waits = waits || sampled != nullptr || model::controller_of<model::DelayedController>(component) != nullptr;
+            if (sampled == nullptr) continue;
+            if (common == 0) common = sampled->every;
+            const auto is_whole = [&](int times) {
+                const double instants = times * common / sampled->every;
+                return std::fabs(instants - std::round(instants)) <= 1e-9 * instants && instants > 0.5;
+            };
+            constexpr int most = 1000;
+            int times = 1;
+            while (times <= most && !is_whole(times)) ++times;
+            if (times > most) return question.repeats.period > 0 ? std::nullopt : std::optional<double>(0);
+            common *= times;
+        }
+    }
+    return waits ? common : -1;
+}
+
+SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor) {
+    return ReturnSearch(question, monitor).found();
+}
+
+SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    const RigQuestion assembly = as_assembly(question);
+    SteadyMotion whole = steady_motion(assembly, monitor);
+    std::shared_ptr<const motion::Trajectory> run;
+    if (const auto period = std::move(whole.of_bodies)) {
+        run = std::make_shared<const motion::Trajectory>(
+            engine::part_with_rows(*assembly.system, period->drive, period->run, 0, question.system));
+    }
+    return seen_from(assembly, whole, 0, question, std::move(run));
+}
+
+bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
+    if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
+    constexpr double periods = 4;
+    const PeriodMap map(question.system, question.excitation, question.drive.start, periods * motion.period, monitor);
+    const Place start = place_of(motion.start, map.omega());
+    const MapStep step = map(start);
+    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});
+    constexpr double alike = 1e-8;
+    return step.finished && length_of(step.to - start) <= alike * size &&
+           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
+}
+
+}  // namespace dinal::analysis
