@@ -15,6 +15,7 @@ namespace engine = motion::engine;
 using motion::Trajectory;
 
 RigQuestion as_assembly(const SteadyQuestion& question) {
+    if (question.whole) return *question.whole;
     const model::Oscillator& system = question.system;
     RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
                       .drive = engine::drive_of(question.excitation, question.extras, question.initial),
@@ -28,10 +29,17 @@ RigQuestion as_assembly(const SteadyQuestion& question) {
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const engine::Drive& drive,
                                                double start) {
     SteadyQuestion asked = question;
+    asked.drive.start = start;
+    if (question.whole) {
+        auto whole = std::make_shared<RigQuestion>(*question.whole);
+        whole->drive = drive;
+        whole->repeats.start = start;
+        asked.whole = std::move(whole);
+        return std::make_shared<const SteadyQuestion>(std::move(asked));
+    }
     asked.excitation = drive.loads.front();
     asked.initial = {drive.theta0.front(), drive.velocity0.front()};
     asked.extras.states = drive.states;
-    asked.drive.start = start;
     return std::make_shared<const SteadyQuestion>(std::move(asked));
 }
 
@@ -87,7 +95,7 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
             facts.amplitude = 0, facts.stuck = 1;
         }
         if (!alone) facts.rest = {facts.low, facts.low};
-        if (alone && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);
+        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);
         facts.settled = std::move(run);
     } else if (whole.is_found()) {
         facts.low = facts.high = of([](const BodyMotion& body) { return body.begin; });
@@ -95,7 +103,7 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
         facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(own, facts.low)
                                                                             : std::pair(facts.low, facts.low);
         if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
-        if (alone && whole.begun) facts.asked = begun_at(own, *whole.begun, own.drive.start);
+        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, own.drive.start);
     }
     // Of a body that goes round the angle never comes back.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;

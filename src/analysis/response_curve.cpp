@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "analysis/returns.hpp"
 #include "model/controller.hpp"
 
 namespace dinal::analysis {
@@ -38,24 +40,39 @@ private:
 
     [[nodiscard]] bool stopped() const { return stopped_; }
 
-    SteadyMotion motion_at(double p, const model::State& start, bool near) {
+    /// From where the motion before begins, or from the start that is asked for.
+    SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
         SteadyQuestion question = question_.family(p);
         // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
-        if (!question.is_timeless()) question.initial = start;
+        if (question.is_timeless()) return motion_of(question, near);
+        if (!before && !question.whole) question.initial = question_.start;
+        if (before) question = from_motion(std::move(question), *before, false);
         return motion_of(question, near);
     }
 
     /// Where what moves so at another value leads at this one.
     SteadyMotion motion_after(double p, const SteadyMotion& before, bool near) {
-        SteadyQuestion question = question_.family(p);
-        question.initial = before.start;
-        if (before.asked) {
-            question.initial.velocity = before.asked->initial.velocity;
+        return motion_of(from_motion(question_.family(p), before, true), near);
+    }
+
+    [[nodiscard]] static SteadyQuestion from_motion(SteadyQuestion question, const SteadyMotion& motion, bool states) {
+        if (question.whole && !motion.begun) return question;
+        if (question.whole) {
+            auto whole = std::make_shared<RigQuestion>(*question.whole);
+            whole->drive.theta0 = motion.begun->theta0;
+            whole->drive.velocity0 = motion.begun->velocity0;
+            if (states) whole->drive.states = motion.begun->states;
+            question.whole = std::move(whole);
+            return question;
+        }
+        question.initial = motion.start;
+        if (states && motion.asked) {
+            question.initial.velocity = motion.asked->initial.velocity;
             for (std::size_t i = 0; i < question.extras.states.size(); ++i) {
-                question.extras.states[i].start = before.asked->extras.states[i].start;
+                question.extras.states[i].start = motion.asked->extras.states[i].start;
             }
         }
-        return motion_of(question, near);
+        return question;
     }
 
     SteadyMotion motion_of(const SteadyQuestion& question, bool near) {
@@ -70,8 +87,10 @@ private:
     [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
         const bool slides = motion.status == SteadyStatus::rest && motion.asked && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
+        if (std::isnan(motion.amplitude)) return {};  // it goes round: its size tells nothing
         const SteadyQuestion question = question_.family(p);
-        const bool plain = !question.is_timeless() && !question.extras.any();
+        const bool plain = !question.whole && !question.is_timeless() && !question.extras.any();
+        if (question.whole && (question.whole->settles >= 0 || contracts(question))) return {};
         if (contracts(question) && question.extras.states.empty() && question.extras.events.empty()) return {};
         if (!plain) return circuit_of_returns(question_.family, p, motion, periods, monitor_);
         if (model::has_memory(question.excitation)) return {};
@@ -85,16 +104,16 @@ private:
 
     void sweep() {
         const std::vector<double>& values = question_.values;
-        model::State start = question_.start;
+        std::optional<SteadyMotion> last;
         std::vector<BranchPoint> row;
         bool near = false;
         for (std::size_t i = 0; i < values.size() && !stopped();) {
-            const SteadyMotion motion = motion_at(values[i], start, near);
+            const SteadyMotion motion = motion_at(values[i], last, near);
             const bool moves = motion.status == SteadyStatus::steady;
             const auto circuit = circuit_of(values[i], motion, motion.periods);
             if (!circuit) {
                 near = moves;
-                if (moves) start = motion.start;
+                if (moves) last = motion;
                 row.push_back({values[i], motion, true});
                 ++i;
                 continue;
@@ -115,7 +134,7 @@ private:
             for (const BranchPoint& point : branch) {
                 if ((point.parameter - farthest) * way_ > 0) farthest = point.parameter;
             }
-            start = branch.back().motion.start;
+            last = branch.back().motion;
             near = true;
             while (i < values.size() && (values[i] - farthest) * way_ <= 0) ++i;
         }
@@ -243,7 +262,7 @@ private:
         const double least = 0.05 * after.motion.amplitude;  // else it begins to move little by little
         while (std::fabs(after.parameter - before.parameter) > 1e-10 * range_ && !stopped()) {
             const double middle = before.parameter + (after.parameter - before.parameter) / 2;
-            BranchPoint point{middle, motion_at(middle, before.motion.start, true)};
+            BranchPoint point{middle, motion_at(middle, before.motion, true)};
             (point.motion.status == SteadyStatus::adheres ? before : after) = point;
         }
         if (after.motion.status != SteadyStatus::steady || after.motion.amplitude < least || stopped()) return;
@@ -283,7 +302,7 @@ private:
 
     void look_from_far_end() {
         const double p = question_.values.back();
-        add_unless_known(p, motion_at(p, question_.start, false));
+        add_unless_known(p, motion_at(p, {}, false));
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
     }
 

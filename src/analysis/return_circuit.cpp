@@ -1,5 +1,5 @@
-// The return map of one body as the map of a branch: of runs with states, events, a belt or a base, of an M with a
-// memory, and of limit cycles, whose period nothing prescribes.
+// The return map of one body or several as the map of a branch: of runs with states, events, a belt or a base, of an M
+// with a memory, and of limit cycles, whose period nothing prescribes.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,30 +15,36 @@ namespace dinal::analysis {
 namespace {
 
 using Eigen::VectorXd;
-using motion::Trajectory;
 
-/// The return map of a branch: its places are theta, velocity and the states from period to period, or all but theta
-/// from passage to passage.
+/// The return map of a branch: its places are angles, velocities and states from period to period, or all but one of
+/// them from passage to passage.
 class ReturnCircuit final : public Circuit {
 public:
     ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
-                  const motion::Monitor& monitor)
-        : family_(family), monitor_(monitor), periods_(periods), relays_(relays_of(motion.asked->excitation)) {
+                  const motion::Monitor& monitor, const std::optional<Returns::Section>& section = {})
+        : family_(family), monitor_(monitor), periods_(periods) {
+        const RigQuestion asked = as_assembly(*motion.asked);
+        for (const model::Excitation& load : asked.drive.loads) relays_.push_back(relays_of(load));
         Here& here = at(p);
+        chart_.emplace(chart_of(here.runs));
         timeless_ = here.question.is_timeless();
-        stands_ = timeless_ && motion.status == SteadyStatus::rest;
+        stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
         offset_ = motion.asked->drive.start - here.question.drive.start;
         period_ = motion.period;
-        const Moment begin = Here::begun_by(*motion.asked);
+        Moment begin = Runs(asked, monitor).first();
+        if (motion.of_bodies) begin.y = vector_of(motion.of_bodies->run.history->at(motion.of_bodies->run.t_start));
         there_ = begin.y;
         if (!cycles_) {
-            first_ = there_;
+            first_ = returns(here, section_).place(there_);
             return;
         }
-        section_ = section_of(motion);
+        const auto found = section ? section : section_of(motion);
+        if (!found) return;
+        section_ = *found;
         // A passage against the way of the belt slides.
-        const model::Excitation& belt = here.question.extras.belt;
+        const auto n = here.runs.bodies();
+        const model::Excitation& belt = here.assembly.drive.belts[static_cast<std::size_t>(section_.measured % n)];
         if (!belt.components().empty() && belt.value(here.question.drive.start) > 0) section_.way = -1;
         Returns map = returns(here, section_);
         Returns::Return arrival = map.arrival(begin);
@@ -53,7 +59,7 @@ public:
         passages_ = passages * periods;
     }
 
-    Lap lap(const Eigen::VectorXd& x, double p) override {
+    Lap lap(const VectorXd& x, double p) override {
         Here& here = at(p);
         const Returns::Return back = returns(here, section_)(x, {}, passages_);
         Lap lap{.to = back.to, .finished = back.finished};
@@ -62,62 +68,63 @@ public:
         return lap;
     }
 
-    SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
-                        const Eigen::MatrixXd& derivative) override {
+    SteadyMotion motion(const VectorXd& x, double p, const Lap& lap, const Eigen::MatrixXd& derivative) override {
         Here& here = at(p);
-        const Moment moment = returns(here, section_).moment(x, {});
+        const Moment begin = moment(x, p);
+        const model::Assembly& system = here.runs.system();
         SteadyMotion motion;
         motion.multipliers = multipliers_of(derivative);
         motion.differentiable = true;
         motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
+        motion.begun = std::make_shared<const motion::engine::Drive>(here.runs.from(begin));
         if (stands_) {
-            motion.status = SteadyStatus::rest;
-            motion.start = {moment.y[0], 0};
-            motion.low = motion.high = moment.y[0];
-            motion.rest = {moment.y[0], moment.y[0]};
-            motion.asked = begun_at(here.question, here.runs.from(moment), start(here));
+            const auto velocity = begin.y.segment(here.runs.bodies(), here.runs.bodies());
+            const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
+            motion.status = rotates ? SteadyStatus::steady : SteadyStatus::rest;
+            motion.bodies = bodies_at(begin.y, *chart_, here.runs.bodies());
+            motion = seen_from(here.assembly, motion, here.question.joint, here.question, {});
+            motion.asked = begun_at(here.question, *motion.begun, start(here));
             return motion;
         }
         motion.periods = periods_;
         motion.period = period_ = lap.time;
         note_family(motion);
-        constexpr double rows = 64;  // they tell how far it goes, and turns are looked for between them
-        const Runs::Run run = here.runs.run(moment, start(here), start(here) + motion.period,
-                                            motion::Grid::every(motion.period / rows), true);
+        constexpr int rows = 64;  // they tell how far it goes, and turns are looked for between them
+        auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.begun, {}});
+        period->run = here.runs.run(begin, start(here), start(here) + motion.period,
+                                    motion::Grid::every(motion.period / rows), true);
+        const Runs::Run& run = period->run;
         if (run.contradiction) motion.contradiction = run.contradiction;
-        if (!model::is_whole(run.outcome)) {
-            motion.status = SteadyStatus::none;
-            return motion;
-        }
+        if (!model::is_whole(run.outcome)) return motion;
         motion.outcome = run.outcome;
-        const motion::engine::Drive drive = here.runs.from(moment);
-        motion.asked = begun_at(here.question, drive, start(here));
-        motion.settled = std::make_shared<const Trajectory>(
-            motion::engine::part_with_rows(here.runs.system(), drive, run, 0, here.question.system));
-        tell_of_run(here.question, *motion.settled, motion);
-        return motion;
+        motion.bodies = bodies_of(run, *chart_, reach_of(run, *chart_, rows));
+        const auto seen = std::make_shared<const motion::Trajectory>(
+            motion::engine::part_with_rows(system, period->drive, run, here.question.joint, here.question.system));
+        motion.of_bodies = std::move(period);
+        return seen_from(here.assembly, motion, here.question.joint, here.question, seen);
     }
 
-    [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& /*lap*/,
-                                        const SteadyMotion& motion) const override {
-        Eigen::VectorXd units = Eigen::VectorXd::Zero(x.size());
-        if (motion.settled) {
-            const Trajectory& run = *motion.settled;
-            const Eigen::Index first = cycles_ ? 1 : 0;
-            for (Eigen::Index i = 0; i < x.size(); ++i) {
-                const Eigen::Index k = i + first;
-                const Eigen::Index column = k < 2 ? k + 1 : static_cast<Eigen::Index>(motion::column_count) + k - 2;
-                units[i] = run.rows.col(column).maxCoeff() - run.rows.col(column).minCoeff();
-            }
-        }
+    [[nodiscard]] VectorXd units(const VectorXd& x, const Lap& /*lap*/, const SteadyMotion& motion) const override {
+        VectorXd units = VectorXd::Zero(x.size());
+        const std::vector<Eigen::Index> own = returns(*here_, section_).own();
+        if (motion.of_bodies) units = reach_of(motion.of_bodies->run, *chart_, 64).range()(own);
+        const auto n = here_->runs.bodies();
         if (stands_) {
-            const model::Oscillator& system = here_->question.system;
-            const double omega = system.stiffness() > 0 ? system.natural_frequency() : 1;
-            const double belt = here_->question.extras.belt.value(start(*here_));
-            const model::State& asked = here_->question.initial;
-            units[0] = std::max({std::fabs(belt) / omega, std::fabs(x[0]), std::fabs(asked.theta - x[0]),
-                                 std::fabs(asked.velocity) / omega});
-            units[1] = units[0] * omega;
+            const double natural = here_->runs.natural_period(),
+                         omega = natural > 0 ? 2 * std::numbers::pi / natural : 1;
+            const motion::engine::Drive& drive = here_->assembly.drive;
+            double size = 0;
+            for (const model::Excitation& belt : drive.belts) {
+                size = std::max(size, std::fabs(belt.value(start(*here_))) / omega);
+            }
+            for (std::size_t i = 0; i < own.size() && own[i] < n; ++i) {
+                const double at = x[static_cast<Eigen::Index>(i)];
+                size = std::max({size, std::fabs(at), std::fabs(drive.theta0[static_cast<std::size_t>(own[i])] - at)});
+            }
+            for (const double velocity : drive.velocity0) size = std::max(size, std::fabs(velocity) / omega);
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                if (own[i] < 2 * n) units[static_cast<Eigen::Index>(i)] = own[i] < n ? size : size * omega;
+            }
         }
         for (Eigen::Index i = 0; i < x.size(); ++i) {
             if (!(units[i] > 1e-9 * std::fabs(x[i]))) units[i] = x[i] == 0 ? 1 : std::fabs(x[i]);
@@ -125,21 +132,30 @@ public:
         return units;
     }
 
-    std::optional<std::vector<Eigen::VectorXd>> recentred(
-        const SteadyMotion& motion, const std::vector<std::pair<Eigen::VectorXd, double>>& places) override {
-        const double at = (section_.place - motion.low) / (motion.high - motion.low);
-        if (!cycles_ || (at > 0.3 && at < 0.54)) return {};
-        Returns::Section next = section_of(motion);
-        next.way = section_.way;
-        std::vector<Eigen::VectorXd> moved;
+    std::optional<std::vector<VectorXd>> recentred(const SteadyMotion& motion,
+                                                   const std::vector<std::pair<VectorXd, double>>& places) override {
+        if (!cycles_) return {};
+        const auto [low, high] = range_of(motion, section_.measured);
+        const double at = (section_.place - low) / (high - low);
+        if (at > 0.3 && at < 0.54) return {};
+        auto next = section_of(motion);
+        if (!next || next->measured != section_.measured) return {};
+        next->way = section_.way;
+        std::vector<VectorXd> moved;
         for (const auto& [x, p] : places) {
-            Here& here = this->at(p);
-            const Returns::Return arrival = returns(here, next).arrival(returns(here, section_).moment(x, {}));
+            const Returns::Return arrival = returns(this->at(p), *next).arrival(moment(x, p));
             if (!arrival.finished) return {};
             moved.push_back(arrival.to);
         }
-        section_ = next;
+        section_ = *next;
         return moved;
+    }
+
+    /// Where the motion through this place is.
+    [[nodiscard]] Moment moment(const VectorXd& x, double p) { return returns(at(p), section_).moment(x, {}); }
+    [[nodiscard]] std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
+    [[nodiscard]] std::shared_ptr<const SteadyQuestion> question_from(const VectorXd& x, double p) {
+        return begun_at(at(p).question, at(p).runs.from(moment(x, p)), start(at(p)));
     }
 
 private:
@@ -148,27 +164,34 @@ private:
         SteadyQuestion question;
         RigQuestion assembly;
         Runs runs;
-        Here(double value, SteadyQuestion asked, const motion::Monitor& monitor)
-            : p(value), question(std::move(asked)), assembly(as_assembly(question)), runs(assembly, monitor) {}
-        [[nodiscard]] static Moment begun_by(const SteadyQuestion& asked) {
-            VectorXd y(2 + static_cast<Eigen::Index>(asked.extras.states.size()));
-            y.head(2) << asked.initial.theta, asked.initial.velocity;
-            for (Eigen::Index i = 2; i < y.size(); ++i)
-                y[i] = asked.extras.states[static_cast<std::size_t>(i) - 2].start;
-            return {y};
+        Here(double value, SteadyQuestion asked, const std::vector<std::vector<bool>>& relays,
+             const motion::Monitor& monitor)
+            : p(value), question(std::move(asked)), assembly(as_assembly(question)), runs(assembly, monitor) {
+            for (std::size_t i = 0; i < relays.size(); ++i) {
+                assembly.drive.loads[i] = with_relays(assembly.drive.loads[i], relays[i]);
+            }
         }
     };
 
-    [[nodiscard]] static Returns::Section section_of(const SteadyMotion& motion) {
-        return {.place = motion.low + section_at * (motion.high - motion.low)};
+    /// From where to where a measured number goes.
+    [[nodiscard]] std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
+        if (chart_->bodies() == 1 && measured == 0) return {motion.low, motion.high};
+        const Reach reach = reach_of(motion.of_bodies->run, *chart_, 64);
+        return {reach.low[measured], reach.high[measured]};
+    }
+    [[nodiscard]] std::optional<Returns::Section> section_of(const SteadyMotion& motion) const {
+        Eigen::Index measured = 0;
+        if (chart_->bodies() > 1 || !chart_->measures(0)) {
+            const auto n = static_cast<Eigen::Index>(chart_->bodies());
+            measured = motion.of_bodies ? widest_of(reach_of(motion.of_bodies->run, *chart_, 64), *chart_, n) : -1;
+        }
+        if (measured < 0) return {};
+        const auto [low, high] = range_of(motion, measured);
+        return Returns::Section{.measured = measured, .place = low + section_at * (high - low)};
     }
     /// The question at this parameter.
     Here& at(double p) {
-        if (!here_ || here_->p != p) {
-            SteadyQuestion question = family_(p);
-            question.excitation = with_relays(question.excitation, relays_);
-            here_ = std::make_unique<Here>(p, std::move(question), monitor_);
-        }
+        if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), relays_, monitor_);
         return *here_;
     }
     [[nodiscard]] double start(const Here& here) const { return here.question.drive.start + offset_; }
@@ -179,7 +202,7 @@ private:
                               : natural > 0 ? natural / 4
                                             : 1;
         return {here.runs,
-                ground_,
+                *chart_,
                 start(here),
                 length,
                 cycles_ ? std::optional(section) : std::nullopt,
@@ -192,9 +215,9 @@ private:
     int periods_, passages_ = 1;
     bool timeless_ = false;
     double offset_ = 0, period_ = 0;
-    Chart ground_{{-1}};
+    std::optional<Chart> chart_;
     Returns::Section section_;
-    std::vector<bool> relays_;
+    std::vector<std::vector<bool>> relays_;  // of each load
     VectorXd there_;
     std::unique_ptr<Here> here_;
 };
@@ -234,17 +257,24 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     if (!(turn > 1e-6)) return {};
     constexpr double small = 1e-3;  // of the units: the cycle differs from the linearised motion by its square
     const Eigen::VectorXcd mode = small * vectors.col(best).normalized().cwiseProduct(units);
-    const VectorXd begin = x + mode.real();
-    SteadyQuestion asked = *rest.asked;
-    asked.initial = {begin[0], begin[1]};
-    for (Eigen::Index i = 2; i < n; ++i) asked.extras.states[static_cast<std::size_t>(i) - 2].start = begin[i];
+    // Of the angles, or of the velocities where no angle is measured, the one that swings most.
+    const std::vector<Eigen::Index> own = still.own();
+    const auto bodies = static_cast<Eigen::Index>(rest.bodies.size());
+    const Eigen::Index until = !own.empty() && own.front() < bodies ? bodies : 2 * bodies;
+    Eigen::Index widest = 0;
+    for (Eigen::Index i = 1; i < n && own[static_cast<std::size_t>(i)] < until; ++i) {
+        if (std::abs(mode[i]) > std::abs(mode[widest])) widest = i;
+    }
+    const double swing = std::abs(mode[widest]), low = x[widest] - swing;
     SteadyMotion cycle;
     cycle.status = SteadyStatus::steady;
     cycle.period = 2 * std::numbers::pi * lap.time / turn;
-    cycle.low = x[0] - std::abs(mode[0]);
-    cycle.high = x[0] + std::abs(mode[0]);
-    cycle.asked = std::make_shared<const SteadyQuestion>(std::move(asked));
-    return circuit_of_returns(family, p, cycle, 1, monitor);
+    cycle.asked = still.question_from(x + mode.real(), p);
+    auto circuit = std::make_unique<ReturnCircuit>(
+        family, p, cycle, 1, monitor,
+        Returns::Section{.measured = own[static_cast<std::size_t>(widest)], .place = low + section_at * 2 * swing});
+    if (circuit->first().size() == 0) return {};
+    return circuit;
 }
 
 }  // namespace dinal::analysis

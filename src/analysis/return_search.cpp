@@ -37,10 +37,6 @@ bool is_linear(const model::Assembly& system, const engine::Drive& drive) {
            std::none_of(system.joints.begin(), system.joints.end(), bends);
 }
 
-double size_of_step(const VectorXd& step) {
-    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
-}
-
 /// The longest dead time of a controller.
 double longest_delay(const model::Excitation& excitation) {
     double most = 0;
@@ -62,55 +58,6 @@ double shortest_sampling(const model::Excitation& excitation) {
 /// The sizes of the greatest angle or velocity.
 double greatest(const Reach& reach, Index count) {
     return reach.range().head(count).cwiseAbs().maxCoeff();
-}
-
-/// A run from a start that is shifted is the same, shifted.
-bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
-    constexpr double by = 0.73;
-    const double start = runs.question().repeats.start;
-    Moment plain = runs.first(), shifted = plain;
-    shifted.y += by * shift;
-    const auto end = [&](const Moment& from) {
-        return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
-    };
-    const Eigen::VectorXd off = end(shifted) - by * shift - end(plain);
-    return off.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, plain.y.cwiseAbs().maxCoeff());
-}
-
-/// Bodies between which nothing depends on where they are go round together, and are measured from each other.
-Chart chart_of(Runs& runs) {
-    const double period = runs.question().repeats.period, natural = runs.natural_period();
-    const double length = period > 0 ? period : natural > 0 ? natural : 1;
-    const model::Assembly& system = runs.system();
-    const Eigen::Index n = runs.bodies();
-    std::vector<Eigen::Index> part(static_cast<std::size_t>(n));
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = static_cast<Eigen::Index>(i);
-    std::vector<bool> grounded(part.size(), false);
-    const auto root = [&](Eigen::Index i) {
-        while (part[static_cast<std::size_t>(i)] != i) i = part[static_cast<std::size_t>(i)];
-        return i;
-    };
-    for (const model::Joint& joint : system.joints) {
-        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
-        if (!asks || joint.second < 0) continue;
-        const Eigen::Index a = root(joint.first), b = root(joint.second);
-        part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-    for (const model::Joint& joint : system.joints) {
-        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
-        if (asks && joint.second < 0) grounded[static_cast<std::size_t>(root(joint.first))] = true;
-    }
-    std::vector<Eigen::Index> from(part.size(), -1);
-    for (Eigen::Index of = 0; of < n; ++of) {
-        if (root(of) != of || grounded[static_cast<std::size_t>(of)]) continue;
-        Eigen::VectorXd shift = Eigen::VectorXd::Zero(runs.first().y.size());
-        for (Eigen::Index i = 0; i < n; ++i) shift[i] = root(i) == of ? 1 : 0;
-        if (!is_alike(runs, shift, length)) continue;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            if (root(i) == of) from[static_cast<std::size_t>(i)] = of;
-        }
-    }
-    return Chart(std::move(from));
 }
 
 /// Searches for the motion that a run from the start of the question leads to.
@@ -141,7 +88,6 @@ private:
     void forced();
     class Settling;
     void cycle();
-    [[nodiscard]] Eigen::Index widest(const Reach& reach) const;
     [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
         return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
     }
@@ -493,7 +439,7 @@ private:
         const bool rests = small_ > 0 && s_.question().drive.states.empty();
         if (rests) s_.note_rest(run_, false);
         if (rests || ++looks_ > most_looks) return false;
-        const Index widest = s_.widest(reach);
+        const Index widest = widest_of(reach, s_.chart_, s_.n());
         if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
         if (looks_ <= most_longer) stretch_ *= 1.3;
         seen_.clear();
@@ -621,23 +567,8 @@ void ReturnSearch::cycle() {
     facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
 }
 
-/// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
-Index ReturnSearch::widest(const Reach& reach) const {
-    const VectorXd range = reach.range();
-    Index widest = -1;
-    for (const Index from : {Index{0}, n()}) {
-        for (Index k = from; k < from + n() && (widest < 0 || widest >= from); ++k) {
-            const double most = std::max(std::fabs(reach.low[k]), std::fabs(reach.high[k]));
-            if (!chart_.measures(k) || !(range[k] > 1e-9 * most)) continue;
-            if (widest < 0 || range[k] > range[widest]) widest = k;
-        }
-        if (widest >= 0) break;
-    }
-    return widest;
-}
-
 bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
-    const Index widest = this->widest(reach);
+    const Index widest = widest_of(reach, chart_, n());
     if (widest < 0) return false;
     Returns map(runs_, chart_, question().repeats.start, 3 * length, section(reach, widest), units_of(reach), now.y);
     const Returns::Return first = map.arrival(now);
@@ -756,12 +687,9 @@ void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
     if (moves && chart_.any_goes_round()) facts_.status = SteadyStatus::steady;
     if (moves && stuck) facts_.status = SteadyStatus::adheres;  // to the belt, which takes it along
     if (stands) facts_.unique = false;
-    facts_.stuck = stuck ? 1 : 0;
+    facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
     if (question().settles < 0) facts_.begun = std::make_shared<const engine::Drive>(runs_.from(now));
-    const VectorXd at = chart_.measured(now.y);
-    for (Index i = 0; i < n(); ++i) {
-        facts_.bodies.push_back({at[i], at[i], chart_.goes_round(i) ? velocity[i] : 0, now.y[i]});
-    }
+    facts_.bodies = bodies_at(now.y, chart_, n());
 }
 
 /// From this moment on the run is the motion.
@@ -775,13 +703,7 @@ std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run 
     facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
     facts_.period = moves || forced ? period : 0;
     facts_.stable = true;
-    const std::vector<double>& after = run.carry->y;
-    for (Index i = 0; i < n(); ++i) {
-        const double fastest = std::max(std::fabs(reach.low[n() + i]), std::fabs(reach.high[n() + i]));
-        const double turned = chart_.goes_round(i) ? after[static_cast<std::size_t>(i)] - from.y[i] : 0;
-        const bool turns = std::fabs(turned) > 1e-6 * period * fastest;
-        facts_.bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, from.y[i]});
-    }
+    facts_.bodies = bodies_of(run, chart_, reach);
     const std::vector<double> middle = run.history->at(run.t_start + period / 2);
     auto whole = std::make_shared<PeriodOfBodies>();
     whole->drive = runs_.from(from), whole->run = std::move(run);
@@ -820,13 +742,13 @@ SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& m
 
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const RigQuestion assembly = as_assembly(question);
-    SteadyMotion whole = steady_motion(assembly, monitor);
+    const SteadyMotion whole = steady_motion(assembly, monitor);
     std::shared_ptr<const motion::Trajectory> run;
-    if (const auto period = std::move(whole.of_bodies)) {
+    if (const auto& period = whole.of_bodies) {
         run = std::make_shared<const motion::Trajectory>(
-            engine::part_with_rows(*assembly.system, period->drive, period->run, 0, question.system));
+            engine::part_with_rows(*assembly.system, period->drive, period->run, question.joint, question.system));
     }
-    return seen_from(assembly, whole, 0, question, std::move(run));
+    return seen_from(assembly, whole, question.joint, question, std::move(run));
 }
 
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {

@@ -19,6 +19,10 @@ VectorXd vector_of(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
+double size_of_step(const VectorXd& step) {
+    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
+}
+
 namespace {
 
 /// Passes zero where a measured number passes a place.
@@ -38,7 +42,55 @@ private:
     bool named_;
 };
 
+/// A run from a start that is shifted is the same, shifted.
+bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
+    constexpr double by = 0.73;
+    const double start = runs.question().repeats.start;
+    Moment plain = runs.first(), shifted = plain;
+    shifted.y += by * shift;
+    const auto end = [&](const Moment& from) {
+        return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
+    };
+    const Eigen::VectorXd off = end(shifted) - by * shift - end(plain);
+    return off.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, plain.y.cwiseAbs().maxCoeff());
+}
+
 }  // namespace
+
+Chart chart_of(Runs& runs) {
+    const double period = runs.question().repeats.period, natural = runs.natural_period();
+    const double length = period > 0 ? period : natural > 0 ? natural : 1;
+    const model::Assembly& system = runs.system();
+    const Index n = runs.bodies();
+    std::vector<Index> part(static_cast<std::size_t>(n));
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = static_cast<Index>(i);
+    std::vector<bool> grounded(part.size(), false);
+    const auto root = [&](Index i) {
+        while (part[static_cast<std::size_t>(i)] != i) i = part[static_cast<std::size_t>(i)];
+        return i;
+    };
+    for (const model::Joint& joint : system.joints) {
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        if (!asks || joint.second < 0) continue;
+        const Index a = root(joint.first), b = root(joint.second);
+        part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    for (const model::Joint& joint : system.joints) {
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        if (asks && joint.second < 0) grounded[static_cast<std::size_t>(root(joint.first))] = true;
+    }
+    std::vector<Index> from(part.size(), -1);
+    for (Index of = 0; of < n; ++of) {
+        if (root(of) != of || grounded[static_cast<std::size_t>(of)]) continue;
+        VectorXd shift = VectorXd::Zero(runs.first().y.size());
+        for (Index i = 0; i < n; ++i) shift[i] = root(i) == of ? 1 : 0;
+        if (!is_alike(runs, shift, length)) continue;
+        for (Index i = 0; i < n; ++i) {
+            if (root(i) == of) from[static_cast<std::size_t>(i)] = of;
+        }
+    }
+    return Chart(std::move(from));
+}
 
 model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named) {
     return {.name = "",
@@ -312,6 +364,41 @@ Reach reach_of(const Runs::Run& run, const Chart& chart, int looks) {
         reach.high = i == 0 ? x : VectorXd(reach.high.cwiseMax(x));
     }
     return reach;
+}
+
+Index widest_of(const Reach& reach, const Chart& chart, Index bodies) {
+    const VectorXd range = reach.range();
+    Index widest = -1;
+    for (const Index from : {Index{0}, bodies}) {
+        for (Index k = from; k < from + bodies && (widest < 0 || widest >= from); ++k) {
+            const double most = std::max(std::fabs(reach.low[k]), std::fabs(reach.high[k]));
+            if (!chart.measures(k) || !(range[k] > 1e-9 * most)) continue;
+            if (widest < 0 || range[k] > range[widest]) widest = k;
+        }
+        if (widest >= 0) break;
+    }
+    return widest;
+}
+
+std::vector<BodyMotion> bodies_of(const Runs::Run& run, const Chart& chart, const Reach& reach) {
+    const std::vector<double> before = run.history->at(run.t_start);
+    const auto n = static_cast<Index>(chart.bodies());
+    std::vector<BodyMotion> bodies;
+    for (Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double fastest = std::max(std::fabs(reach.low[n + i]), std::fabs(reach.high[n + i]));
+        const double turned = chart.goes_round(i) ? run.carry->y[k] - before[k] : 0;
+        const bool turns = std::fabs(turned) > 1e-6 * (run.t_stop - run.t_start) * fastest;
+        bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, before[k]});
+    }
+    return bodies;
+}
+
+std::vector<BodyMotion> bodies_at(const VectorXd& y, const Chart& chart, Index n) {
+    const VectorXd at = chart.measured(y);
+    std::vector<BodyMotion> bodies;
+    for (Index i = 0; i < n; ++i) bodies.push_back({at[i], at[i], chart.goes_round(i) ? y[n + i] : 0, y[i]});
+    return bodies;
 }
 
 std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {

@@ -82,6 +82,7 @@ public:
         return k >= static_cast<Eigen::Index>(from_.size()) || from_[static_cast<std::size_t>(k)] != k;
     }
     [[nodiscard]] bool goes_round(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
+    [[nodiscard]] std::size_t bodies() const { return from_.size(); }
     [[nodiscard]] bool any_goes_round() const;
     /// Of all of y: angles from another body where they are measured so, and 0 where not at all.
     [[nodiscard]] Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
@@ -92,6 +93,9 @@ public:
 private:
     std::vector<Eigen::Index> from_;
 };
+
+/// Bodies between which nothing depends on where they are go round together, and are measured from each other.
+Chart chart_of(Runs& runs);
 
 /// From one return of the motion to the next: from period to period, or from passage to passage of a section. A place
 /// is the measured numbers but for that of the section, each in its unit.
@@ -129,6 +133,8 @@ public:
     [[nodiscard]] std::optional<Derivative> derivative(const Eigen::VectorXd& at, const HeldMode& mode, int returns,
                                                        int order);
     [[nodiscard]] double start() const { return start_; }
+    /// Which numbers of all of y a place has.
+    [[nodiscard]] const std::vector<Eigen::Index>& own() const { return own_; }
 
 private:
     void once(const Moment& from, Return& sum);
@@ -155,6 +161,11 @@ struct Reach {
     [[nodiscard]] Eigen::VectorXd range() const { return high - low; }
 };
 Reach reach_of(const Runs::Run& run, const Chart& chart, int looks = 512);
+/// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
+Eigen::Index widest_of(const Reach& reach, const Chart& chart, Eigen::Index bodies);
+/// How the bodies move in a run of one period, or stand and go round evenly.
+std::vector<BodyMotion> bodies_of(const Runs::Run& run, const Chart& chart, const Reach& reach);
+std::vector<BodyMotion> bodies_at(const Eigen::VectorXd& y, const Chart& chart, Eigen::Index bodies);
 
 inline constexpr double largest_stable = 1 + 1e-5;  ///< multiplier
 /// The greatest one first.
@@ -162,6 +173,8 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 /// A motion beside which others are neutral is not the only one.
 void note_family(SteadyMotion& motion);
 Eigen::VectorXd vector_of(const std::vector<double>& values);
+/// Its greatest number.
+double size_of_step(const Eigen::VectorXd& step);
 
 /// Of its range, the place of a section: off the middle, where many motions have an end of something.
 inline constexpr double section_at = 0.42;

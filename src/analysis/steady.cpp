@@ -298,7 +298,8 @@ private:
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const bool waits = model::has_memory<model::DelayedController>(question.excitation);
-    if (waits || question.is_timeless() || question.extras.any()) return returning_motion(question, monitor);
+    if (question.whole || waits || question.is_timeless() || question.extras.any())
+        return returning_motion(question, monitor);
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
     if (model::has_memory(question.excitation) && !goes_on(question, motion, monitor) &&
@@ -309,7 +310,7 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const bool plain = !question.is_timeless() && !question.extras.any();
+    const bool plain = !question.whole && !question.is_timeless() && !question.extras.any();
     if (!plain || model::has_memory(question.excitation)) return steady_motion(question, monitor);
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());

@@ -23,6 +23,8 @@ constexpr std::string_view name(SteadyStatus status) {
     return names[static_cast<std::size_t>(status)];
 }
 
+struct RigQuestion;
+
 struct SteadyQuestion {
     model::Oscillator system;
     model::Excitation excitation;
@@ -30,6 +32,10 @@ struct SteadyQuestion {
     int periods = 0;  ///< of M in one of the motion; 0: as many as it takes
     model::State initial = {};
     model::Extras extras = {};
+    /// Of one of several bodies or links: what is asked of all of them. The system is that of this one alone, and the
+    /// excitation is looked at for its harmonics only.
+    std::shared_ptr<const RigQuestion> whole = {};
+    std::size_t joint = 0;
 
     [[nodiscard]] bool is_timeless() const { return drive.period == 0; }
 };

@@ -86,6 +86,7 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
 }  // namespace
 
 bool contracts(const SteadyQuestion& question) {
+    if (question.whole) return contracts(*question.whole);
     const model::Oscillator& system = question.system;
     return is_monotone(system.friction(), system.spring(), system.walls()) && !question.excitation.has_feedback();
 }
