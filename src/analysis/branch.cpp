@@ -146,9 +146,9 @@ public:
     BranchPath walk_up(double parameter) {
         const auto first = begun(parameter);
         if (!first) return path_;
-        // The velocity at the section grows with the cycle.
-        const double away = first->x[0] < 0 ? -1 : 1;
-        return followed(*first, tangent(*first, away * Vector::Unit(units_.size() + 1, 0)));
+        Vector ahead = Vector::Zero(units_.size() + 1);
+        ahead.head(units_.size()) = circuit_.growth().cwiseQuotient(units_);
+        return followed(*first, tangent(*first, ahead));
     }
 
 private:
@@ -293,6 +293,7 @@ private:
                 path_.end = WalkEnd::range;
                 return path_;
             }
+            if (goes_back()) return path_;
             if (!recentred && path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
                 on.dot(first_ahead) > straight) {
                 path_.end = WalkEnd::closed;
@@ -307,6 +308,7 @@ private:
             ahead = on;
             if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
                 recentred = true;
+                seen_.clear();
                 passed.reset();
                 anchors_.clear();
                 now.x = places->front();
@@ -607,8 +609,23 @@ private:
         return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
     }
 
+    /// Behind a fold the walk is on its own way again: what it met there is taken back.
+    bool goes_back() {
+        if (!met_again_) return false;
+        while (path_.points.size() > 1 && path_.points.back().kind != BranchKind::fold) path_.points.pop_back();
+        return true;
+    }
+
     void add(const Spot& spot, BranchKind kind) {
         const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
+        if (asked) {
+            constexpr double there = 1e-6;
+            const auto is_here = [&](const auto& seen) {
+                return seen.first == spot.p && (seen.second - spot.x).cwiseQuotient(units_).norm() < there;
+            };
+            met_again_ = met_again_ || std::any_of(seen_.begin(), seen_.end(), is_here);
+            seen_.emplace_back(spot.p, spot.x);
+        }
         // The points between are for the eye: few do.
         std::vector<BranchPoint>& points = path_.points;
         const auto is_between = [](const BranchPoint& point) {
@@ -652,6 +669,8 @@ private:
     double orientation_ = 0;  // of the walk
     double reach_ = 1;        // of the present step: differences stay on its side of a corner
     std::vector<std::optional<Anchor>> anchors_;
+    std::vector<std::pair<double, Vector>> seen_;  // places at the values asked for
+    bool met_again_ = false;                       // one of them
     BranchPath path_;
 };
 

@@ -52,6 +52,9 @@ public:
         return {};
     }
 
+    /// Of a limit cycle that begins at a rest: how far its first place is from that.
+    [[nodiscard]] virtual Eigen::VectorXd growth() const { return {}; }
+
     [[nodiscard]] const Eigen::VectorXd& first() const { return first_; }
     /// The map is that of half a period, whose opposite the motion repeats.
     [[nodiscard]] bool is_half() const { return half_; }

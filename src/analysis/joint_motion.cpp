@@ -6,6 +6,7 @@
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
 #include "motion/engine/one_body.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/spectral/spectral.hpp"
 #include "motion/stillness.hpp"
 
@@ -112,6 +113,16 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
     }
     return facts;
+}
+
+SteadyMotion seen_again(const SteadyQuestion& question, const SteadyMotion& motion) {
+    const RigQuestion assembly = as_assembly(question);
+    std::shared_ptr<const Trajectory> run;
+    if (const auto& period = motion.of_bodies) {
+        run = std::make_shared<const Trajectory>(
+            engine::part_with_rows(*assembly.system, period->drive, period->run, question.joint, question.system));
+    }
+    return seen_from(assembly, motion, question.joint, question, std::move(run));
 }
 
 }  // namespace dinal::analysis

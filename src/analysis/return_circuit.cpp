@@ -34,7 +34,7 @@ public:
         period_ = motion.period;
         Moment begin = Runs(asked, monitor).first();
         if (motion.of_bodies) begin.y = vector_of(motion.of_bodies->run.history->at(motion.of_bodies->run.t_start));
-        there_ = begin.y;
+        begin.y = there_ = chart_->measured(begin.y);  // what goes round begins at 0, where angles are exact
         if (!cycles_) {
             first_ = returns(here, section_).place(there_);
             return;
@@ -55,7 +55,9 @@ public:
         for (double left = (1 - 1e-6) * period_; left > 0 && arrival.finished; ++passages) {
             arrival = map(arrival.to, {});
             left -= arrival.time;
+            if (arrival.time < 1e-6 * period_) arrival.finished = false;  // rounding passes the section at once
         }
+        if (!arrival.finished) first_.resize(0);
         passages_ = passages * periods;
     }
 
@@ -70,13 +72,15 @@ public:
 
     SteadyMotion motion(const VectorXd& x, double p, const Lap& lap, const Eigen::MatrixXd& derivative) override {
         Here& here = at(p);
-        const Moment begin = moment(x, p);
+        // What holds when it comes back, holds from the beginning.
+        const auto mode = stands_ ? std::nullopt : returns(here, section_)(x, {}, passages_).mode;
+        const Moment begin = returns(here, section_).moment(x, mode);
         const model::Assembly& system = here.runs.system();
         SteadyMotion motion;
         motion.multipliers = multipliers_of(derivative);
         motion.differentiable = true;
         motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
-        motion.begun = std::make_shared<const motion::engine::Drive>(here.runs.from(begin));
+        motion.begun = std::make_shared<const motion::engine::Drive>(here.runs.from(begin, start(here)));
         if (stands_) {
             const auto velocity = begin.y.segment(here.runs.bodies(), here.runs.bodies());
             const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
@@ -151,11 +155,14 @@ public:
         return moved;
     }
 
+    [[nodiscard]] VectorXd growth() const override { return growth_; }
+    /// The cycle began as a disturbance of this rest.
+    void begins_at(const VectorXd& rest) { growth_ = first_ - returns(*here_, section_).place(rest); }
     /// Where the motion through this place is.
     [[nodiscard]] Moment moment(const VectorXd& x, double p) { return returns(at(p), section_).moment(x, {}); }
     [[nodiscard]] std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
     [[nodiscard]] std::shared_ptr<const SteadyQuestion> question_from(const VectorXd& x, double p) {
-        return begun_at(at(p).question, at(p).runs.from(moment(x, p)), start(at(p)));
+        return begun_at(at(p).question, at(p).runs.from(moment(x, p), start(at(p))), start(at(p)));
     }
 
 private:
@@ -196,11 +203,12 @@ private:
     }
     [[nodiscard]] double start(const Here& here) const { return here.question.drive.start + offset_; }
     [[nodiscard]] Returns returns(Here& here, const Returns::Section& section) const {
-        const double natural = here.runs.natural_period();
-        const double length = cycles_       ? 3 * period_
-                              : !timeless_  ? periods_ * here.question.drive.period
-                              : natural > 0 ? natural / 4
-                                            : 1;
+        // Of a rest a quarter of the fastest natural period, in which no disturbance turns too far to see how fast.
+        const double natural = here.runs.system().shortest_natural_period();
+        const double length = cycles_                  ? 3 * period_
+                              : !timeless_             ? periods_ * here.question.drive.period
+                              : std::isfinite(natural) ? natural / 4
+                                                       : 1;
         return {here.runs,
                 *chart_,
                 start(here),
@@ -218,7 +226,7 @@ private:
     std::optional<Chart> chart_;
     Returns::Section section_;
     std::vector<std::vector<bool>> relays_;  // of each load
-    VectorXd there_;
+    VectorXd there_, growth_;
     std::unique_ptr<Here> here_;
 };
 
@@ -234,7 +242,8 @@ std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, cons
 
 std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
                                                  const motion::Monitor& monitor) {
-    if (!rest.asked) return {};
+    // NOTE: the least cycles of several bodies are not followed: their section moves away from them as the bodies turn.
+    if (!rest.asked || rest.asked->whole) return {};
     ReturnCircuit still(family, p, rest, 1, monitor);
     const VectorXd x = still.first();
     const Circuit::Lap lap = still.lap(x, p);
@@ -274,6 +283,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
         family, p, cycle, 1, monitor,
         Returns::Section{.measured = own[static_cast<std::size_t>(widest)], .place = low + section_at * 2 * swing});
     if (circuit->first().size() == 0) return {};
+    circuit->begins_at(still.moment(x, p).y);
     return circuit;
 }
 

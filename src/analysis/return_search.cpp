@@ -11,7 +11,6 @@
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "motion/engine/one_body.hpp"
-#include "motion/engine/part.hpp"
 
 namespace dinal::analysis {
 
@@ -667,7 +666,7 @@ std::optional<VectorXd> ReturnSearch::tells(const Moment& moment, double start) 
     constexpr double rows = 400;
     Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
-    facts_.begun = std::make_shared<const engine::Drive>(runs_.from(moment));
+    facts_.begun = std::make_shared<const engine::Drive>(runs_.from(moment, start));
     return tell_period(moment, std::move(run), period);
 }
 
@@ -688,7 +687,7 @@ void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
     if (moves && stuck) facts_.status = SteadyStatus::adheres;  // to the belt, which takes it along
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
-    if (question().settles < 0) facts_.begun = std::make_shared<const engine::Drive>(runs_.from(now));
+    if (question().settles < 0) facts_.begun = std::make_shared<const engine::Drive>(runs_.from(now, run.t_stop));
     facts_.bodies = bodies_at(now.y, chart_, n());
 }
 
@@ -706,7 +705,7 @@ std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run 
     facts_.bodies = bodies_of(run, chart_, reach);
     const std::vector<double> middle = run.history->at(run.t_start + period / 2);
     auto whole = std::make_shared<PeriodOfBodies>();
-    whole->drive = runs_.from(from), whole->run = std::move(run);
+    whole->drive = runs_.from(from, run.t_start), whole->run = std::move(run);
     facts_.of_bodies = std::move(whole);
     return vector_of(middle);
 }
@@ -742,13 +741,7 @@ SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& m
 
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const RigQuestion assembly = as_assembly(question);
-    const SteadyMotion whole = steady_motion(assembly, monitor);
-    std::shared_ptr<const motion::Trajectory> run;
-    if (const auto& period = whole.of_bodies) {
-        run = std::make_shared<const motion::Trajectory>(
-            engine::part_with_rows(*assembly.system, period->drive, period->run, question.joint, question.system));
-    }
-    return seen_from(assembly, whole, question.joint, question, std::move(run));
+    return seen_again(question, steady_motion(assembly, monitor));
 }
 
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {

@@ -144,7 +144,7 @@ model::Excitation with_relays(const model::Excitation& excitation, const std::ve
     });
 }
 
-engine::Drive Runs::from(const Moment& moment) const {
+engine::Drive Runs::from(const Moment& moment, double start) const {
     engine::Drive drive = question_.drive;
     const Index n = bodies();
     for (Index i = 0; i < n; ++i) {
@@ -155,6 +155,13 @@ engine::Drive Runs::from(const Moment& moment) const {
         drive.states[k].start = moment.y[2 * n + static_cast<Index>(k)];
     }
     if (!moment.mode) return drive;
+    // A body that is held has the velocity of what holds it to the last bit, else it would slip first.
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
+        const int leans = moment.mode->mode.leans[j];
+        if (!moment.mode->mode.holds(j)) continue;
+        if (leans != 0) drive.theta0[j] = leans > 0 ? system().joints[j].walls->upper : system().joints[j].walls->lower;
+        drive.velocity0[j] = leans != 0 ? 0 : motion::belt_from(drive.belts[j], start);
+    }
     for (std::size_t i = 0; i < drive.loads.size(); ++i) {
         std::vector<bool> on;
         const auto components = drive.loads[i].components();
@@ -169,7 +176,7 @@ engine::Drive Runs::from(const Moment& moment) const {
 
 Runs::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
                     const std::optional<model::WantedEvent>& section) {
-    engine::Drive drive = this->from(from);
+    engine::Drive drive = this->from(from, start);
     if (section) drive.events.push_back(*section);
     std::shared_ptr<engine::Carry> before;
     if (from.mode) {

@@ -50,8 +50,8 @@ public:
     [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
     [[nodiscard]] Moment first() const;
-    /// The drive of a run that begins at this moment.
-    [[nodiscard]] motion::engine::Drive from(const Moment& moment) const;
+    /// The drive of a run that begins at this moment and time.
+    [[nodiscard]] motion::engine::Drive from(const Moment& moment, double start) const;
     [[nodiscard]] Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
                           const std::optional<model::WantedEvent>& section = {});
     /// From where another run ended, with all that its controllers and delays remember; none: from the start.

@@ -14,6 +14,7 @@
 #include "api/data.hpp"
 #include "api/extras_options.hpp"
 #include "api/picture.hpp"
+#include "api/response.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
@@ -854,9 +855,10 @@ constexpr lua::Member rig_members[] = {
       {&rig_steady_call}}},
     {lua::a_method<response_of_rig>,
      {"rig:response{ OPTIONS } -> data",
-      "The steady motion over a list of values, each searched from the one before. Folds are not followed: if several "
-      "motions exist, give the values upwards and downwards. Columns: the varied parameters; amplitude, peak, lag, stops "
-      "and stuck of each body and link, as in \"load.amplitude\"; stable and status.",
+      "The steady motion over a list of values, as sys:response has it for one body: branches are followed round their "
+      "folds, and c.points and c.jumps tell of the body or link `of`. Columns: the varied parameters; amplitude, lag, "
+      "peak, stops and stuck of each body and link, as in \"load.amplitude\"; stable, branch and status. Under controllers "
+      "that sample or wait, and where `of` goes round, each value is searched from the one before.",
       "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
       "} } }\n"
       "c = rig:response{ over = { omega = { 0.5, 2 } }, at = function(p)\n"

@@ -30,7 +30,7 @@ bool is_moving(const Steady& s) {
 const Steady& of_one(lua_State* L, const Steady& s) {
     if (s.rig == nullptr || s.of_body) return s;
     lua::raise(L, fmt::format("this motion has several bodies; choose one of them, such as s.{}.amplitude",
-                              s.rig->question.system->bodies.front().name));
+                              s.rig->question->system->bodies.front().name));
 }
 
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
@@ -152,7 +152,7 @@ std::string steady_summary(const Steady& s) {
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";
         return m.period == 0 ? "steady: all bodies rotate at constant speed"
                              : fmt::format("steady: period {}, {}", number(m.period, in.t),
-                                           text::counted(s.rig->question.system->bodies.size(), "body"));
+                                           text::counted(s.rig->question->system->bodies.size(), "body"));
     }
     switch (m.status) {
         case SteadyStatus::steady:

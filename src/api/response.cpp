@@ -13,6 +13,7 @@
 #include "analysis/response_curve.hpp"
 #include "analysis/steady_facts.hpp"
 #include "api/bind_excitation.hpp"
+#include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
 #include "model/lowered.hpp"
@@ -217,18 +218,25 @@ inline constexpr text::Option system_at_option[] = {
 inline constexpr auto at_options =
     text::joined(drive_options, period_options, start_options, extras_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
+inline constexpr auto rig_at_options = text::joined(bodies_drive_rows, period_options, system_at_option);
+inline constexpr text::Call rig_at_call{"rig:response: at", "at = function(p) return { belt = { load = p.speed } } end",
+                                        rig_at_options};
 
 /// What a call of sys:response asks.
 class ResponseCall {
 public:
-    ResponseCall(lua_State* L, const model::Oscillator& system, const lua::Options& options)
-        : L_(L), system_(system), options_(options) {
+    ResponseCall(lua_State* L, const model::Oscillator& system, const lua::Options& options,
+                 AssemblyHandle several = {})
+        : L_(L), system_(system), several_(std::move(several)), options_(options) {
         options.fill(asked_);
+        if (several_ && !asked_.of.empty()) {
+            joint_ = joint_named(L, asked_.of, *several_, "rig:response: of: this system", rig_class);
+        }
         choose();
         function_ = options.has("at");
         if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
-        extras_ = question(values_.front()).extras;
+        if (!several_) extras_ = question(values_.front()).extras;
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 
@@ -281,6 +289,7 @@ public:
     }
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
+        if (several_) return question_of_bodies(x);
         analysis::SteadyQuestion question{.system = system_, .excitation = {}, .drive = {}, .initial = start()};
         if (!function_) {
             const double frequency = frequency_at(x);
@@ -289,16 +298,7 @@ public:
             question.drive = {0, 1 / frequency};
             return question;
         }
-        lua_pushvalue(L_, place_);
-        lua_newtable(L_);
-        if (is_plane()) lua::set_number(L_, parameters_.front().name.c_str(), beside_);
-        lua::set_number(L_, varied_.c_str(), x);
-        lua_call(L_, 1, 1);
-        if (!lua_istable(L_, -1)) {
-            options_.fail("at", fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of "
-                                            "sys:steady, such as {{ belt = p.speed }}",
-                                            lua::describe(L_, -1), varied_, x));
-        }
+        push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
         SteadyOptions asked{.theta0 = asked_.theta0, .velocity0 = asked_.velocity0};
         own.fill(asked);
@@ -311,23 +311,65 @@ public:
         question.periods = asked.periods.value_or(0);
         question.extras = read_extras(L_, own);
         check_relays(own, question.excitation, seen_by_relays(question.extras));
-        const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
-        // Between the values M is taken for what it is at them.
-        const auto known = is_value ? std::nullopt : drive_between(question);
-        if (known) {
-            question.drive = {known->start, period.value_or(known->period)};
-        } else {
-            question.drive = drive_or_fail(L_, own, as_assembly(question), period);
-        }
+        question.drive = drive_at(x, own, as_assembly(question), period);
         lua_pop(L_, 1);
         return question;
     }
 
+    /// Of several bodies, seen from the one whose branches are followed.
+    [[nodiscard]] const AssemblyHandle& several() const { return several_; }
+
 private:
-    [[nodiscard]] std::optional<analysis::Drive> drive_between(const analysis::SteadyQuestion& question) const {
-        std::optional<analysis::Drive> drive;
-        asking(L_, question.extras, [&](const motion::Monitor&) { drive = analysis::drive_of(as_assembly(question)); });
-        return drive;
+    /// Pushes the table that `at` returns.
+    void push_point(double x) const {
+        lua_pushvalue(L_, place_);
+        lua_newtable(L_);
+        if (is_plane()) lua::set_number(L_, parameters_.front().name.c_str(), beside_);
+        lua::set_number(L_, varied_.c_str(), x);
+        lua_call(L_, 1, 1);
+        if (lua_istable(L_, -1)) return;
+        options_.fail("at",
+                      fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of {}:steady, "
+                                  "such as {{ belt = {} }}",
+                                  lua::describe(L_, -1), varied_, x, several_ ? "rig" : "sys",
+                                  several_ ? "{ load = p.speed }" : "p.speed"));
+    }
+
+    [[nodiscard]] analysis::SteadyQuestion question_of_bodies(double x) const {
+        push_point(x);
+        const lua::Options own(L_, lua_gettop(L_), rig_at_call);
+        own.push("system");
+        const auto* system = lua::test<AssemblyHandle>(L_, -1);
+        if (system == nullptr && !lua_isnil(L_, -1)) {
+            options_.fail("at", fmt::format("at must return a system of several bodies as system, got {}",
+                                            lua::describe(L_, -1)));
+        }
+        analysis::RigQuestion whole{.system = system != nullptr ? *system : several_, .drive = {}};
+        lua_pop(L_, 1);
+        const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
+        if (!std::equal(several_->joints.begin(), several_->joints.end(), whole.system->joints.begin(),
+                        whole.system->joints.end(), names_alike)) {
+            options_.fail("at", "at must return systems with the same bodies and links");
+        }
+        SteadyOptions asked;
+        own.fill(asked);
+        whole.drive = asked_drive(L_, own, *whole.system);
+        whole.periods = asked.periods.value_or(0);
+        whole.repeats = drive_at(x, own, whole, asked_period(own));
+        whole.settles = settles_or_fail(own, whole);
+        lua_pop(L_, 1);
+        return question_of_joint(std::make_shared<const analysis::RigQuestion>(std::move(whole)), joint_);
+    }
+
+    [[nodiscard]] analysis::Drive drive_at(double x, const lua::Options& own, const analysis::RigQuestion& question,
+                                           const std::optional<double>& period) const {
+        const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
+        // Between the values M is taken for what it is at them.
+        std::optional<analysis::Drive> known;
+        if (!is_value)
+            asking_bodies(L_, question, [&](const motion::Monitor&) { known = analysis::drive_of(question); });
+        if (known) return {known->start, period.value_or(known->period)};
+        return drive_or_fail(L_, own, question, period);
     }
 
     /// Adds the resonance where the motion grows: a curve past it would show a finite peak.
@@ -395,6 +437,8 @@ private:
 
     lua_State* L_;
     const model::Oscillator& system_;
+    AssemblyHandle several_;
+    std::size_t joint_ = 0;
     const lua::Options& options_;
     ResponseOptions asked_;
     std::vector<DataColumn> parameters_;  // one or two
@@ -406,35 +450,76 @@ private:
     int place_ = 0;
 };
 
+/// What the response tells of one body or link at a point.
+struct RowOfJoint {
+    analysis::SteadyMotion motion;
+    std::optional<double> lag;
+};
+
 struct ResponseRow {
     double beside, varied;
     std::size_t branch;
-    analysis::SteadyMotion motion;
-    std::optional<double> lag;
     bool asked;
+    analysis::SteadyStatus status;  ///< of all
+    std::vector<RowOfJoint> joints;
+
+    [[nodiscard]] const analysis::SteadyMotion& motion() const { return joints.front().motion; }
 };
 
-Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over) {
+/// The motion of each body and link at this point, without the run that told it.
+ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_t branch,
+                   const analysis::SteadyQuestion& question, const motion::Monitor& monitor) {
+    ResponseRow row{beside, point.parameter, branch, point.asked, point.motion.status, {}};
+    if (!question.whole) {
+        row.joints.push_back({point.motion, analysis::shape_of(question, point.motion, monitor).lag});
+    } else {
+        for (std::size_t j = 0; j < question.whole->system->joints.size(); ++j) {
+            const analysis::SteadyQuestion own = question_of_joint(question.whole, j);
+            const analysis::SteadyMotion motion = analysis::seen_again(own, point.motion);
+            row.joints.push_back({motion, analysis::shape_of(own, motion, monitor).lag});
+        }
+    }
+    const auto moves = [](const RowOfJoint& joint) { return joint.motion.status == analysis::SteadyStatus::steady; };
+    if (std::any_of(row.joints.begin(), row.joints.end(), moves)) row.status = analysis::SteadyStatus::steady;
+    for (RowOfJoint& joint : row.joints) joint.motion.settled = {}, joint.motion.of_bodies = {};
+    return row;
+}
+
+Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over,
+                   const model::Assembly* several) {
     using analysis::SteadyStatus;
     const VariedColumn& of = over.back();
-    const auto found = [&](const ResponseRow& row, double value, bool may_grow = false) {
-        const bool grows = may_grow && row.motion.status == SteadyStatus::grows;
-        return row.motion.is_found() ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
+    const auto found = [&](const analysis::SteadyMotion& motion, double value, bool may_grow = false) {
+        const bool grows = may_grow && motion.status == SteadyStatus::grows;
+        return motion.is_found() ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
     };
-    Data data = table_of(
-        rows, ListColumn{of.name, &ResponseRow::varied, of.unit},
-        ListColumn{"amplitude", [&](const auto& row) { return found(row, row.motion.amplitude, true); }, of.theta},
-        ListColumn{"lag", [](const auto& row) { return row.lag.value_or(no_number); }, "rad"},
-        ListColumn{"peak", [&](const auto& row) { return found(row, greatest_angle(row.motion), true); }, of.theta},
-        ListColumn{"stops",
-                   [](const auto& row) {
-                       return row.motion.status == SteadyStatus::steady ? static_cast<double>(row.motion.stops)
-                                                                        : no_number;
-                   }},
-        ListColumn{"stuck", [&](const auto& row) { return found(row, row.motion.stuck); }},
-        ListColumn{"stable", [&](const auto& row) { return row.motion.is_found() && row.motion.stable; }},
+    Data data = table_of(rows, ListColumn{of.name, &ResponseRow::varied, of.unit});
+    for (std::size_t j = 0; j < (several != nullptr ? several->joints.size() : 1); ++j) {
+        const std::string name = several != nullptr && several->named ? several->joints[j].name + "." : "";
+        const auto motion = [j](const ResponseRow& row) -> const analysis::SteadyMotion& {
+            return row.joints[j].motion;
+        };
+        Data own = table_of(
+            rows,
+            ListColumn{name + "amplitude",
+                       [&](const auto& row) { return found(motion(row), motion(row).amplitude, true); }, of.theta},
+            ListColumn{name + "lag", [j](const auto& row) { return row.joints[j].lag.value_or(no_number); }, "rad"},
+            ListColumn{name + "peak",
+                       [&](const auto& row) { return found(motion(row), greatest_angle(motion(row)), true); },
+                       of.theta},
+            ListColumn{name + "stops",
+                       [&](const auto& row) {
+                           return motion(row).status == SteadyStatus::steady ? static_cast<double>(motion(row).stops)
+                                                                             : no_number;
+                       }},
+            ListColumn{name + "stuck", [&](const auto& row) { return found(motion(row), motion(row).stuck); }});
+        std::move(own.columns.begin(), own.columns.end(), std::back_inserter(data.columns));
+    }
+    Data rest = table_of(
+        rows, ListColumn{"stable", [&](const auto& row) { return row.motion().is_found() && row.motion().stable; }},
         ListColumn{"branch", &ResponseRow::branch},
-        ListColumn{"status", [](const auto& row) { return analysis::name(row.motion.status); }});
+        ListColumn{"status", [](const auto& row) { return analysis::name(row.status); }});
+    std::move(rest.columns.begin(), rest.columns.end(), std::back_inserter(data.columns));
     if (over.size() > 1) {
         const ListColumn beside{over.front().name, &ResponseRow::beside, over.front().unit};
         data.columns.insert(data.columns.begin(), beside.of(rows));
@@ -447,10 +532,12 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
 
 }  // namespace
 
-int response_of_system(lua_State* L) {
-    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
-    const lua::Options options(L, 2, response_call);
-    ResponseCall call(L, system, options);
+namespace {
+
+int response_of(lua_State* L, const lua::Options& options, const ResponseCall& asked_call,
+                const model::Oscillator& system) {
+    ResponseCall call = asked_call;
+    const AssemblyHandle several = call.several();
     const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },
                                            .values = call.values(),
                                            .start = call.start(),
@@ -458,7 +545,7 @@ int response_of_system(lua_State* L) {
     std::vector<ResponsePart> parts;
     std::vector<ResponseRow> rows;
     std::size_t pieces = 0, jumps = 0;
-    asking(L, call.extras(), [&](const motion::Monitor& monitor) {
+    const auto work = [&](const motion::Monitor& monitor) {
         for (const double beside : call.beside_values()) {
             call.set_beside(beside);
             parts.push_back({beside, pieces, analysis::response_curve(question, monitor)});
@@ -468,24 +555,28 @@ int response_of_system(lua_State* L) {
             for (const auto& branch : curve.branches) {
                 ++pieces;
                 for (const analysis::BranchPoint& point : branch) {
-                    const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
-                    rows.push_back({beside, point.parameter, pieces, point.motion, shape.lag, point.asked});
+                    rows.push_back(row_of(point, beside, pieces, call.question(point.parameter), monitor));
                 }
             }
         }
-    });
+    };
+    if (several) {
+        asking_bodies(L, *call.question(call.values().front()).whole, work);
+    } else {
+        asking(L, call.extras(), work);
+    }
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();
-    Data data = response_data(rows, over);
+    Data data = response_data(rows, over, several.get());
     if (call.is_list()) {
         const auto between = std::make_shared<const Data>(std::move(data));
         std::erase_if(rows, [](const ResponseRow& row) { return !row.asked; });
-        data = response_data(rows, over);
+        data = response_data(rows, over, several.get());
         data.between = between;
     }
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
-    if (call.harmonic() && !call.is_plane()) {
+    if (!several && call.harmonic() && !call.is_plane()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{
             .system = system,
@@ -502,6 +593,21 @@ int response_of_system(lua_State* L) {
                         pieces == 1 ? "1 branch" : fmt::format("{} branches", pieces), text::counted(jumps, "jump"));
     }
     return push_data(L, std::move(data));
+}
+
+}  // namespace
+
+int response_of_system(lua_State* L) {
+    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
+    const lua::Options options(L, 2, response_call);
+    return response_of(L, options, ResponseCall(L, system, options), system);
+}
+
+int response_of_rig(lua_State* L) {
+    const AssemblyHandle rig = lua::self<AssemblyHandle>(L, 1, rig_response_call.example);
+    const lua::Options options(L, 2, rig_response_call);
+    const auto first = model::Oscillator::make(parameters_of(*rig, 0)).value();  // for the units
+    return response_of(L, options, ResponseCall(L, first, options, rig), first);
 }
 
 }  // namespace dinal::api

@@ -15,6 +15,7 @@ struct ResponseOptions {
     std::optional<double> frequency = {}, omega = {}, period = {};
     double theta0 = 0, velocity0 = 0;
     bool between = false, doubled = false;
+    std::string of = {};
 };
 inline constexpr text::Option response_options[] = {
     {.name = "over",
@@ -70,6 +71,29 @@ inline constexpr text::Call response_call{"sys:response",
                                           response_options, false, &with_call};
 
 int response_of_system(lua_State* L);
+
+/// rig:response{ ... }.
+inline constexpr text::Option rig_response_options[] = {
+    response_options[0],
+    {.name = "at",
+     .otherwise = text::needed,
+     .meaning =
+         "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, and "
+         "system = ... if the system changes",
+     .wanted = "a function of a point that returns options of rig:steady"},
+    response_options[6],
+    response_options[7],
+    {.name = "of",
+     .otherwise = "the first body",
+     .meaning = "the body or link whose amplitude tells where branches fold, as in c.points and c.jumps; one that goes "
+                "round has none, and then each value is searched from the one before",
+     .filled = text::fills<&ResponseOptions::of>},
+};
+inline constexpr text::Call rig_response_call{
+    "rig:response",
+    "rig:response{ over = { speed = { 0.1, 0.2 } }, at = function(p) return { belt = { load = p.speed } } end }",
+    rig_response_options};
+int response_of_rig(lua_State* L);
 
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",

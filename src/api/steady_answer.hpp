@@ -91,25 +91,6 @@ inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 
 inline constexpr auto rig_steady_options = text::joined(bodies_drive_rows, period_options);
 inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { load = 0.2 } }", rig_steady_options};
 
-/// rig:response{ ... }.
-inline constexpr text::Option rig_response_options[] = {
-    {.name = "over",
-     .otherwise = text::needed,
-     .meaning = "the varied parameter and its values: { NAME = values }, or two of them, which give a map",
-     .wanted = "a name and its values, such as { speed = vector.linspace(0.05, 3, 200) }"},
-    {.name = "at",
-     .otherwise = text::needed,
-     .meaning =
-         "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, and "
-         "system = ... if the system changes",
-     .wanted = "a function of a point that returns options of rig:steady"},
-};
-inline constexpr text::Call rig_response_call{
-    "rig:response",
-    "rig:response{ over = { speed = { 0.1, 0.2 } }, at = function(p) return { belt = { load = p.speed } } end }",
-    rig_response_options};
-int response_of_rig(lua_State* L);
-
 struct RigSteady;
 
 struct Steady {
@@ -125,7 +106,7 @@ struct Steady {
 using SteadyHandle = std::shared_ptr<Steady>;
 
 struct RigSteady {
-    analysis::RigQuestion question;
+    std::shared_ptr<const analysis::RigQuestion> question;
     analysis::SteadyMotion motion;
     BodiesRunHandle run = {};                              ///< one period; none at rest
     std::optional<std::vector<SteadyHandle>> others = {};  ///< from other starts, once they were looked for
@@ -179,6 +160,11 @@ int steady_of_run(lua_State* L);
 lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s);
 
 // Of several bodies.
+/// The question as that of one of the bodies or links.
+analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis::RigQuestion>& whole,
+                                           std::size_t joint);
+/// When its controllers repeat; raises when they never do.
+double settles_or_fail(const lua::Options& options, const analysis::RigQuestion& question);
 int steady_of_rig(lua_State* L);
 void run_of_rig(lua_State* L, const Steady& s);
 const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig);

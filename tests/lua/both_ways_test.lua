@@ -386,18 +386,13 @@ local different = {
     ["steady: line explain, steady"] = writers,
     ["steady: rest, not endless"] = "of several bodies the field rest raises, where nil would say that there is none",
     ["identify: refused"] = "identify takes one body",
-    ["response: branch, constant laws"] = "branches are followed for one body only",
-    ["response: refused, laws of several"] =
-        "response refuses one body with these laws, and takes it as one of several",
-    ["response with folds: amplitude branch jumps lag omega peak points stable status stops stuck"] =
-        "folds are followed for one body only",
+    ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
     ["cycle: since stuck, walls of restitution 0"] =
         "defect: a body that leans at a wall counts as stuck as system{...}, and not as the only one",
     ["cycle: amplitude change drift middle period since steady stops stuck, walls of restitution 0.7"] =
         "defect: the cycle of the only body counts less as stuck, and from some starts is not found",
     ["bifurcation: refused, event that bounces endlessly"] = blamed,
     ["fields of the body: outcome, event that bounces endlessly"] = blamed,
-    ["response: refused, event that bounces endlessly"] = "one body answers that there is none, several raise",
 }
 
 -- What has no answer either way, as the sentence of both is the same.

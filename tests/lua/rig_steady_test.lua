@@ -252,6 +252,42 @@ test("controllers that sample or wait: the motion on their grid, as a long run h
     equal(hold.status, "rest")
 end)
 
+test("branches of two bodies fold where those of the one body do that they are together", function()
+    local function M(p) return excitation.harmonic { amplitude = 0.4, omega = p.omega } end
+    local over = { omega = vector.linspace(0.8, 2, 13) }
+    local one = system { I = 1, k = 1, C = 0.2, spring = spring.polynomial { [3] = 1 } }:response { over = over, at = function(p) return { M = M(p) } end }
+    -- Two halves of it, which move alike, so that the link between them carries nothing.
+    local half = { I = 0.5, k = 0.5, C = 0.1, spring = spring.polynomial { [3] = 0.5 } }
+    local rig = system { bodies = { a = half, b = half }, links = { rod = { "a", "b", k = 3, C = 0.5 } } }
+    local two = rig:response { of = "b", over = over, at = function(p) return { M = { a = 0.5 * M(p), b = 0.5 * M(p) } } end }
+    equal(#two, #one)
+    equal(#two.points, 2)
+    equal(#two.jumps, 2)
+    for i = 1, 2 do
+        equal(two.points.kind[i], "fold")
+        near(two.points.omega[i], one.points.omega[i], 1e-7)
+        near(two.points.amplitude[i], one.points.amplitude[i], 1e-5)
+        near(two.jumps.to[i], one.jumps.to[i], 1e-5)
+    end
+    for i = 1, #one do near(two["b.amplitude"][i], one.amplitude[i], 1e-5) end
+end)
+
+test("a steady rotation is followed to where it begins to stick and slip", function()
+    local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, C = 0.05, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
+        links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
+    local function at(p) return { M = { top = function(t, theta, velocity) return 20 * (p.speed - velocity.top) end } } end
+    local c = rig:response { of = "pipe", over = { speed = { 3, 2, 1 } }, at = at }
+    local points = c.points:filter(function(p) return p.kind == "hopf" end)
+    equal(#points, 1)
+    local v = points.speed[1]
+    for _, side in ipairs { -1, 1 } do -- beside it a small disturbance grows, or dies out
+        local p = { speed = v + side * 0.02 }
+        local o = at(p)
+        local s = rig:steady { M = o.M, velocity0 = { top = p.speed, bit = p.speed * 1.02 }, theta0 = { top = 0.55 } }
+        equal(s.pipe.amplitude > 0.1, side < 0)
+    end
+end)
+
 test("the response of a chain has the columns of its bodies, and follows at", function()
     local c = chain(0.3):response { over = { omega = vector { 0.5, 1, 1.5 } }, -- at may make another system
         at = function(p) return { system = chain(), M = { a = sine(p.omega) } } end }
