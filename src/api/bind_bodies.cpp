@@ -573,7 +573,10 @@ motion::Trajectory trajectory_of(const BodiesRun& run) {
     if (all.rough) all.rough->other_integrators = false;
     all.own_names = engine::column_names_of(*run.system, run.drive);
     all.rows = motion::Rows(run.run.table);
-    all.events = motion::Growing<model::Event>(run.run.events);
+    std::vector<model::Event> events;
+    std::copy_if(run.run.events.begin(), run.run.events.end(), std::back_inserter(events),
+                 [](const model::Event& e) { return e.user < 0 || e.where == 0; });  // those of the user once
+    all.events = motion::Growing<model::Event>(std::move(events));
     return all;
 }
 

@@ -841,7 +841,7 @@ int run_at(lua_State* L) {
     const std::vector<double> states = trajectory.course->states_at(t);
     lua_createtable(L, 0, static_cast<int>(states.size()));
     for (std::size_t i = 0; i < states.size(); ++i) {
-        lua::set_value(L, trajectory.names()[motion::column_count + i].c_str(), states[i]);
+        lua::set_value(L, trajectory.names()[trajectory.first_state() + i].c_str(), states[i]);
     }
     return 3;
 }
@@ -882,14 +882,13 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
 }
 
 lua::Pushed run_states(lua_State* L, const RunHandle& run) {
-    // In a file, too, what stands after the columns that every run has are states.
+    // In a file the columns after those that every run has are taken for states.
     const std::vector<std::string>& names = run->trajectory.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
-    const bool of_all = run->whole && !run->joint;
-    const std::size_t first = of_all    ? names.size() - run->whole->drive.states.size()
-                              : has_all ? always.size()
-                                        : names.size();
+    const std::size_t first = run->origin || run->whole ? run->trajectory.first_state()
+                              : has_all                 ? always.size()
+                                                        : names.size();
     lua_createtable(L, 0, static_cast<int>(names.size() - first));
     for (std::size_t i = first; i < names.size(); ++i) {
         lua::set_value(L, names[i].c_str(), view_of(run, run->trajectory.rows.col(static_cast<Eigen::Index>(i))));

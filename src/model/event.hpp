@@ -49,7 +49,7 @@ struct Event {
     double theta = 0;
     double M = 0;   ///< the excitation at t, from the right: with k theta it explains the decision
     int user = -1;  ///< of a user's event: which one
-    int where = 0;  ///< the joint whose theta and velocity these are; a relay's body; -1 of a user's event
+    int where = 0;  ///< the joint whose theta and velocity these are; a relay's body
     double velocity = 0;
 };
 

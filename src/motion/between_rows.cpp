@@ -48,7 +48,7 @@ BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : ru
     const std::vector<std::string>& names = run.names();
     for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(names.size()); ++c) {
         const std::string& name = names[static_cast<std::size_t>(c)];
-        const bool is_state = run.state_count() > 0 && c >= column_count;
+        const bool is_state = c >= static_cast<Eigen::Index>(run.first_state());
         const bool is_motion = name == "theta" || name == "velocity" || name == "damping";
         if (is_state || is_motion || (name == "M" && M != nullptr && agrees_with_rows(c))) columns_.push_back(c);
     }
@@ -73,7 +73,12 @@ void BetweenRows::append_values(double t, std::vector<double>& values) const {
     const auto state = run_.course->at(t);
     const model::State y = state ? *state : model::State{unknown, unknown};
     const std::vector<double> states = run_.state_count() > 0 ? run_.course->states_at(t) : std::vector<double>();
+    const auto first_state = static_cast<Eigen::Index>(run_.first_state());
     for (const Eigen::Index c : columns_) {
+        if (c >= first_state) {
+            values.push_back(states[static_cast<std::size_t>(c - first_state)]);
+            continue;
+        }
         switch (c) {
             case static_cast<Eigen::Index>(Column::theta):
                 values.push_back(y.theta);
@@ -84,11 +89,8 @@ void BetweenRows::append_values(double t, std::vector<double>& values) const {
             case static_cast<Eigen::Index>(Column::M):
                 values.push_back(M_->value(t, y));
                 break;
-            case static_cast<Eigen::Index>(Column::damping):
-                values.push_back(0.0 - run_.course->system().damping() * y.velocity);
-                break;
             default:
-                values.push_back(states[static_cast<std::size_t>(c - column_count)]);
+                values.push_back(0.0 - run_.course->system().damping() * y.velocity);
         }
     }
 }

@@ -109,8 +109,9 @@ struct Trajectory {
     /// theta and velocity at t: from the integrator when it can, else by cubic interpolation of the rows.
     /// Fails when t is outside the run or there are no such columns.
     [[nodiscard]] text::Expected<model::State> at(double t) const;
-    /// How many columns behind the six are states of the run.
+    /// How many columns are states of the run: the last ones.
     [[nodiscard]] std::size_t state_count() const { return carried ? carried->states.size() : 0; }
+    [[nodiscard]] std::size_t first_state() const { return names().size() - state_count(); }
 };
 
 /// theta and velocity at t by cubic interpolation of the rows, for want of anything better.

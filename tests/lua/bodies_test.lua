@@ -416,4 +416,33 @@ test("several bodies take spectral and rk4, and say of exact that it is for one 
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } } end, "lost in the rounding of times")
 end)
 
+test("each body and link has the states, and the events of the user with its own angle and velocity", function()
+    local rig = system { bodies = { a = { I = 1, k = 4 }, b = { I = 1, Rd = 0.1 } }, links = { rod = { "a", "b", k = 2 } } }
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 3, dt = 0.5,
+        states = { z = { start = 1, rate = function(t, theta, velocity, z) return -z.z end } },
+        events = { { when = function(t, theta) return theta.a - 0.5 end, name = "half" } } }
+    local users = {}
+    for _, e in ipairs(run.events) do
+        if e.kind == "user" then users[#users + 1] = e end
+    end
+    assert(#users > 0 and users[1].where == "")
+    for _, part in ipairs { "a", "b", "rod" } do
+        local seen = 0
+        for _, e in ipairs(run[part].events) do
+            if e.kind == "user" then
+                seen = seen + 1
+                local theta, velocity, z = run[part]:at(e.t)
+                equal(e.name, "half")
+                near(e.theta, theta, 1e-12)
+                near(e.velocity, velocity, 1e-12)
+                near(z.z, math.exp(-e.t), 1e-10)
+            end
+        end
+        equal(seen, #users)
+        equal(run[part].states.z, run.states.z)
+        equal(reloaded(run[part]).z, run.states.z)
+    end
+    equal(table.concat(run.rod.names, " "), "t theta velocity torque friction z")
+end)
+
 finish()

@@ -313,8 +313,7 @@ local function asked(question) return only[question] or kinds end
 -- One body with one of these laws runs as a system of several today.
 local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal of t and theta" }
 local endless = "event that bounces endlessly"
-local groups = { ["laws of several"] = varying, acting = { "event", "event that acts", "event that stops" },
-    states = { "state idle", "state acting" }, springs = { "spring.polynomial", "a spring in Lua" },
+local groups = { ["laws of several"] = varying, springs = { "spring.polynomial", "a spring in Lua" },
     walls = { "walls of restitution 0", "walls of restitution 0.7" },
     ["exact by default"] = { "Coulomb with Re = Rd", "Coulomb with Re above Rd", "no dry friction", "normal constant", "uneven" },
     ["smooth laws"] = { "M that is not read", "M that is read", "Stribeck", "a law in Lua", "friction.table", "feedback" },
@@ -331,40 +330,22 @@ end
 
 local exact_of_one = "exact is the default of one body"
 local read_gap = "defect: a body with a name has a gap, though all its functions are read as formulas and no pulse is missed"
-local blamed = "defect: several bodies blame friction for bounces that an act makes"
 local uncut = "events of the user are left out of those of a body, so its acts do not begin half cycles"
 local cut_elsewhere = "defect: turns of a body with a name are looked for in the motion, also where it leans at a wall"
-local left_out = "events of the user are left out of those of a body"
-local stateless = "the rows of a body do not have the states"
 local writers = "one body and several have writers of their own"
 local integrator_named = "the lines that repeat the run name the integrator of one body"
 -- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
 local different = {
-    ["at: quarter0 quarter1 quarter2 quarter3 quarter4, states"] = "at(t) of a body does not return the states",
-    ["rows: states, states"] = "the rows of a body do not have the states, which are columns of the run of all",
-    ["fields of the body: names, states"] = stateless,
-    ["save of the body: z, states"] = stateless,
-    ["continue: states, states"] = stateless,
-    ["steady: run, states"] = stateless,
-    ["repeated: states, states"] = stateless,
     ["fields of the body: integrator, exact by default"] = exact_of_one,
     ["fields of the run: integrator, exact by default"] = exact_of_one,
     ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
     ["fields of the run: system, springs, walls"] = "springs and walls are written in another order",
     ["fields of the run: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
     ["fields of the body: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
-    ["events of the body: M kind name t theta velocity, acting, event that bounces endlessly"] =
-        "events of the user belong to the run of all bodies and are left out of those of a body",
-    ["continue: events line, acting, event that bounces endlessly"] = left_out,
-    ["sweep: events, acting, event that bounces endlessly"] = left_out,
-    ["words of the body: line, acting, event that bounces endlessly"] = left_out,
     ["words of the run: energy, event that bounces endlessly"] = uncut,
     ["words of the body: energy, event that bounces endlessly"] = uncut,
-    ["cycle: amplitude change middle period, event"] =
-        "defect: an event of the user that only looks changes the cycle of system{...}",
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
-    ["integrators: spectral rk4, states"] = stateless,
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["steady of the run: refused, constant laws, event that bounces endlessly"] =
@@ -391,13 +372,12 @@ local different = {
         "defect: a body that leans at a wall counts as stuck as system{...}, and not as the only one",
     ["cycle: amplitude change drift middle period since steady stops stuck, walls of restitution 0.7"] =
         "defect: the cycle of the only body counts less as stuck, and from some starts is not found",
-    ["bifurcation: refused, event that bounces endlessly"] = blamed,
-    ["fields of the body: outcome, event that bounces endlessly"] = blamed,
 }
 
 -- What has no answer either way, as the sentence of both is the same.
 local unanswered = {
     ["bifurcation: answer, event that stops"] = "the run ends before its samples",
+    ["bifurcation: answer, event that bounces endlessly"] = "the run ends before its samples",
     ["steady: answer, event that bounces endlessly"] = "the motion cannot be followed",
     ["steady of the run: answer, laws of several"] = "a run of several bodies has no steady()",
 }

@@ -83,16 +83,18 @@ Trajectory part_of(const model::Assembly& system, const Drive& drive, const Asse
                    const std::optional<model::Oscillator>& seen) {
     const Place place(system, joint);
     Trajectory part;
-    if (!system.named) {
-        if (!drive.states.empty()) part.own_names = column_names();
-        for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
-        const auto left = std::make_shared<Left>(run.carry);
-        left->states.resize(drive.states.size());  // behind them are those of bristles
-        part.carried = left;
+    if (system.is_link(joint)) {
+        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
+    } else if (!drive.states.empty()) {
+        part.own_names = column_names();
     }
+    for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
+    const auto left = std::make_shared<Left>(run.carry, place.bodies);
+    left->states.resize(drive.states.size());  // behind them are those of bristles
+    part.carried = left;
     std::vector<model::Event> events;
     for (const model::Event& e : run.events) {
-        if (e.where < 0 ? !system.named : e.where == static_cast<int>(joint)) events.push_back(e);
+        if (e.where == static_cast<int>(joint)) events.push_back(e);
     }
     part.events = Growing<model::Event>(std::move(events));
     for (const model::WantedEvent& wanted : drive.events) part.event_names.push_back(wanted.name);
@@ -121,16 +123,13 @@ Trajectory part_with_rows(const model::Assembly& system, const Drive& drive, con
                           const std::optional<model::Oscillator>& seen) {
     Trajectory part = part_of(system, drive, run, joint, seen);
     if (part.rough) part.rough->other_integrators = false;
-    if (system.is_link(joint)) {
-        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
-        part.computed = false;
-    }
+    part.computed = !system.is_link(joint);
     const std::vector<std::string> all = column_names_of(system, drive);
     const std::vector<std::string>& names = part.names();
     const std::size_t rows = run.table.size();
     Growing<double> table(rows, names.size());
     for (std::size_t c = 0; c < names.size(); ++c) {
-        const bool own = c > 0 && c < column_names().size() && system.named;
+        const bool own = c > 0 && c < part.first_state() && system.named;
         const auto place =
             std::find(all.begin(), all.end(), own ? system.joints[joint].name + "." + names[c] : names[c]);
         const auto from = run.table.column(static_cast<std::size_t>(place - all.begin()));

@@ -7,17 +7,17 @@
 
 namespace dinal::motion::engine {
 
-/// What a run of one body leaves to the run that goes on from there.
+/// What a run leaves to the run that goes on from there.
 struct Left final : Carried {
-    explicit Left(std::shared_ptr<const Carry> from) : carry(std::move(from)) {
-        states.assign(carry->y.begin() + 2, carry->y.end());
+    explicit Left(std::shared_ptr<const Carry> from, std::size_t bodies = 1) : carry(std::move(from)) {
+        states.assign(carry->y.begin() + static_cast<std::ptrdiff_t>(2 * bodies), carry->y.end());
     }
     std::shared_ptr<const Carry> carry;
 };
 
 /// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
 /// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
-/// the one body of a system without names.
+/// each joint.
 Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen);
 

@@ -191,6 +191,7 @@ private:
     void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
     void come_again(std::size_t event);
     void tell(EventKind kind, int where, int user = -1);
+    void tell_user(std::size_t event);
     [[nodiscard]] Event event_at(EventKind kind, int where, int user) const;
     bool too_often(int most = most_at_once);
     void echo(double t, int generation);
@@ -1637,10 +1638,16 @@ void Engine::tell(EventKind kind, int where, int user) {
     result_.events.push_back(event_at(kind, where, user));
 }
 
+/// An event of the user concerns every joint: each gets one, with its own angle and velocity.
+void Engine::tell_user(std::size_t event) {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        tell(EventKind::user, static_cast<int>(j), static_cast<int>(event));
+    }
+}
+
 Event Engine::event_at(EventKind kind, int where, int user) const {
-    const std::size_t joint = where < 0 ? 0 : index(where);
-    const std::size_t body =
-        kind == EventKind::switched || where < 0 ? joint : index(problem_.system.joints[joint].first);
+    const std::size_t joint = index(where);
+    const std::size_t body = kind == EventKind::switched ? joint : index(problem_.system.joints[joint].first);
     Event event{.t = now_.hi, .kind = kind, .M = mechanics_.load(body, here()), .user = user, .where = where};
     event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
     event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
@@ -2159,7 +2166,7 @@ void Engine::watch_users(Ending& ending) {
 /// from: it would be thrown back again at once, and again.
 void Engine::come_again(std::size_t event) {
     const bool told = !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == now_.hi;
-    if (!told) tell(EventKind::user, -1, static_cast<int>(event));
+    if (!told) tell_user(event);
     fail(Outcome::chattering);
 }
 
@@ -2359,7 +2366,7 @@ bool Engine::act_all(const std::vector<std::size_t>& told) {
 
 bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
     const model::WantedEvent& wanted = problem_.drive.events[event];
-    tell(EventKind::user, -1, static_cast<int>(event));
+    tell_user(event);
     if (wanted.act != nullptr) {
         const std::vector<double> before = y_;
         std::vector<double> values;
