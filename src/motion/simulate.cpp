@@ -251,8 +251,6 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
         std::isfinite(excitation.most())) {
         trajectory.outcome = model::Outcome::state_not_finite;
     }
-    trajectory.on_belt = !extras.belt.components().empty();
-    if (system.walls()) trajectory.restitution = system.walls()->restitution;
     if (oath) {
         const bool whole = model::is_whole(trajectory.outcome) || trajectory.outcome == model::Outcome::stopped;
         trajectory.contradiction = oath->verdict(whole);

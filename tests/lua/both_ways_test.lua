@@ -330,8 +330,6 @@ end
 
 local exact_of_one = "exact is the default of one body"
 local read_gap = "defect: a body with a name has a gap, though all its functions are read as formulas and no pulse is missed"
-local uncut = "events of the user are left out of those of a body, so its acts do not begin half cycles"
-local cut_elsewhere = "defect: turns of a body with a name are looked for in the motion, also where it leans at a wall"
 local writers = "one body and several have writers of their own"
 local integrator_named = "the lines that repeat the run name the integrator of one body"
 -- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
@@ -342,8 +340,6 @@ local different = {
     ["fields of the run: system, springs, walls"] = "springs and walls are written in another order",
     ["fields of the run: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
     ["fields of the body: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
-    ["words of the run: energy, event that bounces endlessly"] = uncut,
-    ["words of the body: energy, event that bounces endlessly"] = uncut,
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
@@ -360,18 +356,10 @@ local different = {
     ["save: acceleration"] = "only the file of several bodies has the column acceleration",
     ["save: header, constant laws, event that bounces endlessly"] = integrator_named,
     ["save of the body: header, constant laws, event that bounces endlessly"] = integrator_named,
-    ["energy of the run: half_cycles total.flow, event that bounces endlessly"] = uncut,
-    ["energy of the body: half_cycles total.flow, event that bounces endlessly"] = uncut,
-    ["energy of the run: half_cycles, walls, base, normal constant"] = cut_elsewhere,
-    ["energy of the body: half_cycles, walls, base, normal constant"] = cut_elsewhere,
     ["steady: line explain, steady"] = writers,
     ["steady: rest, not endless"] = "of several bodies the field rest raises, where nil would say that there is none",
     ["identify: refused"] = "identify takes one body",
     ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
-    ["cycle: since stuck, walls of restitution 0"] =
-        "defect: a body that leans at a wall counts as stuck as system{...}, and not as the only one",
-    ["cycle: amplitude change drift middle period since steady stops stuck, walls of restitution 0.7"] =
-        "defect: the cycle of the only body counts less as stuck, and from some starts is not found",
 }
 
 -- What has no answer either way, as the sentence of both is the same.

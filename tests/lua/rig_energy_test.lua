@@ -185,4 +185,18 @@ test("what a run of several bodies can do besides: save, load, status, plot, go 
     has(picture, "a theta", "b theta", "link theta")
 end)
 
+test("half cycles of a body among several begin and end at its own events, also where it stands", function()
+    local a = { I = 1, k = 4, Rd = 0.3, Re = 0.4, walls = { lower = -0.4, upper = 0.5, restitution = 0 } }
+    local options = { M = excitation.harmonic { amplitude = 2, omega = 1.3 }, theta0 = 0.4, t_end = 12 }
+    local alone = system(a):simulate(options):energy().half_cycles
+    local rig = system { bodies = { a = a, b = { I = 1, k = 1 } } }
+    local beside = rig:simulate { M = { a = options.M }, theta0 = { a = 0.4, b = 1 }, t_end = 12 }.a:energy().half_cycles
+    equal(#beside, #alone)
+    for i, half in ipairs(alone) do
+        near(beside[i].t_start, half.t_start, 1e-9)
+        near(beside[i].t_end, half.t_end, 1e-9)
+        near(beside[i].dry, half.dry, 1e-9)
+    end
+end)
+
 finish()

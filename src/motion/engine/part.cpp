@@ -77,6 +77,21 @@ model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
     return mode.rubs[joint] != 0 ? mode.friction[joint].way : model::Motion::forward;
 }
 
+/// Whether every turn of the joint's angle is an event. None of a belt is, nor of a joint without dry friction whose
+/// bodies rub elsewhere; an impact at another joint may turn this one round.
+bool tells_turns(const model::Assembly& system, const Drive& drive, std::size_t joint) {
+    const auto rubs = [](const model::Joint& j) { return !j.friction.none() && j.friction.bristle() == nullptr; };
+    if (!drive.belts[joint].components().empty()) return false;
+    const model::Joint& own = system.joints[joint];
+    bool others_rub = false, others_have_walls = false;
+    for (const model::Joint& other : system.joints) {
+        if (&other == &own) continue;
+        others_rub = others_rub || (rubs(other) && (other.first == own.first || other.second == own.first));
+        others_have_walls = others_have_walls || other.walls.has_value();
+    }
+    return !others_have_walls && (rubs(own) || (!system.is_link(joint) && !others_rub));
+}
+
 }  // namespace
 
 Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
@@ -113,7 +128,7 @@ Trajectory part_of(const model::Assembly& system, const Drive& drive, const Asse
     part.began_stuck = joint == 0                ? run.began_stuck
                        : part.events.size() == 0 ? part.motion_at_stop == model::Motion::stuck
                                                  : part.events[0].kind == model::EventKind::slip;
-    part.on_belt = system.named || !drive.belts[joint].components().empty();
+    part.on_belt = !tells_turns(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
     return part;
