@@ -34,7 +34,7 @@ public:
           own_rule_(method.own_rule()),
           stretches_(stretches(trajectory)),
           swings_(analysis::half_cycles(trajectory)),
-          events_(trajectory.events.begin(), trajectory.events.end()),
+          events_(events_of_motion(trajectory, extras.events)),
           extras_(extras),
           on_base_(!extras.base.components().empty()),
           on_belt_(!extras.belt.components().empty()),

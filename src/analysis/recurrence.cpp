@@ -83,6 +83,15 @@ private:
 
 }  // namespace
 
+std::vector<model::Event> events_of_motion(const motion::Trajectory& run,
+                                           const std::vector<model::WantedEvent>& wanted) {
+    std::vector<model::Event> events(run.events.begin(), run.events.end());
+    std::erase_if(events, [&wanted](const model::Event& e) {
+        return e.user >= 0 && wanted[static_cast<std::size_t>(e.user)].act == nullptr;
+    });
+    return events;
+}
+
 std::optional<Recurrence> recurrence(std::span<const model::Event> events) {
     const std::size_t most = std::min(events.size() / 3, most_events);
     for (const double allowed : {near_enough, settling}) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/stretches.hpp"
+#include "model/extras.hpp"
 
 namespace dinal::analysis {
 
@@ -21,6 +22,10 @@ struct Recurrence {
     std::size_t stops = 0;        ///< in a period
     double stuck = 0;             ///< part of a period
 };
+
+/// The events of a run without those of the user that have no act, as these change nothing of the motion.
+std::vector<model::Event> events_of_motion(const motion::Trajectory& run,
+                                           const std::vector<model::WantedEvent>& wanted);
 
 std::optional<Recurrence> recurrence(std::span<const model::Event> events);
 

@@ -517,7 +517,10 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ":cycle");
     const motion::Trajectory& trajectory = run->trajectory;
     lua::CallState call(L);
-    std::vector<model::Event> events(trajectory.events.begin(), trajectory.events.end());
+    std::vector<model::WantedEvent> wanted;
+    if (run->origin) wanted = run->origin->extras.events;
+    if (run->whole) wanted = run->whole->drive.events;
+    std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
     if (trajectory.on_belt) {  // no event tells the extremes of theta there
         const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
         const auto told = static_cast<std::ptrdiff_t>(events.size());

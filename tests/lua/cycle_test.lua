@@ -169,4 +169,15 @@ test("a function of the time needs a period, and one that does not depend on it 
         "the relay looks at 'x'")
 end)
 
+test("an event that only looks changes nothing of the cycle, nor of its story", function()
+    local sys = system { I = 1, k = 4, Rd = 0.3, Re = 0.6 }
+    local options = { belt = 0.1, t_end = 60 }
+    local watched = merged(options, { events = { { when = function(t, theta) return theta - 0.1 end } } })
+    local plain, seen = sys:simulate(options), sys:simulate(watched)
+    for name, value in pairs(plain:cycle()) do
+        if type(value) == "number" then near(seen:cycle()[name], value, 1e-7) else equal(seen:cycle()[name], value) end
+    end
+    equal(seen:explain(), plain:explain())
+end)
+
 finish()
