@@ -694,6 +694,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
                             .step = cut.step,
                             .keeps_torques = true});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
+    if (sees_all(*run->system, run->drive, run->run.located)) run->run.gap = 0;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);
     note(run.get());

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "api/bind_excitation.hpp"
+#include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/extras_options.hpp"
 #include "api/run.hpp"
@@ -17,6 +18,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
+#include "motion/engine/one_body.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
 
@@ -136,21 +138,10 @@ private:
     bool wanted_, goes_on_;
 };
 
-/// All changes of the function were seen: it was read, and conditions of the motion were located, if there are some.
-bool sees_all(const lua::LuaFunction* function, bool locates) {
-    const model::Formula* read = function == nullptr ? nullptr : function->formula();
-    return read != nullptr && !read->gave_up() && (locates || !read->has_conditions_of_motion());
-}
-
-/// Tells of the functions of M, belt and base how they were evaluated. Where the times of all changes are known, no
-/// pulse can have been missed.
+/// Tells of the functions of M, belt and base how they were evaluated.
 void note_readings(Run& run) {
     const model::Extras& extras = run.origin->extras;
     const bool locates = run.trajectory.located;
-    bool all_seen = extras.events.empty();  // of which only values are known to the integrator
-    for (const model::OwnState& state : extras.states) {
-        all_seen = all_seen && sees_all(dynamic_cast<const lua::LuaFunction*>(state.rate.get()), locates);
-    }
     const std::pair<const char*, const model::Excitation&> excitations[] = {
         {"M", run.origin->excitation}, {"The belt", extras.belt}, {"The base", extras.base}};
     for (const auto& [name, excitation] : excitations) {
@@ -158,7 +149,6 @@ void note_readings(Run& run) {
             const auto* script = std::get_if<model::Scripted>(&component.term);
             if (script == nullptr) continue;
             const auto* function = dynamic_cast<const lua::LuaFunction*>(script->function.get());
-            all_seen = all_seen && sees_all(function, locates);
             if (function == nullptr) continue;
             const model::Formula* read = function->formula();
             std::string told;
@@ -179,10 +169,31 @@ void note_readings(Run& run) {
             if (run.readings.find(told) == std::string::npos) run.readings += (run.readings.empty() ? "" : " ") + told;
         }
     }
-    if (all_seen) run.trajectory.gap = 0;
 }
 
 }  // namespace
+
+bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located) {
+    bool all = drive.events.empty();  // of which only values are known to the integrator
+    const auto see = [&](const model::UserFunction& function) {
+        const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+        const model::Formula* read = own == nullptr ? nullptr : own->formula();
+        all = all && read != nullptr && !read->gave_up() && (located || !read->has_conditions_of_motion());
+    };
+    for (const auto* acting : {&drive.loads, &drive.belts}) {
+        for (const model::Excitation& one : *acting) one.each_function(see);
+    }
+    drive.base.each_function(see);
+    for (const model::OwnState& state : drive.states) see(*state.rate);
+    for (const model::Joint& joint : system.joints) {
+        const model::ContactFriction& friction = joint.friction;
+        for (const auto* varying : {&friction.normal, &friction.sliding[0], &friction.sliding[1], &friction.holding[0],
+                                    &friction.holding[1]}) {
+            if (*varying) (*varying)->each_function(see);
+        }
+    }
+    return all;
+}
 
 motion::Limits limits_of_run(bool dense) {
     motion::Limits limits{.dense = dense};
@@ -225,6 +236,10 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
     note_readings(*run);
+    const bool all_seen =
+        sees_all(motion::engine::assembly_of(asked.system),
+                 motion::engine::drive_of(asked.excitation, asked.extras, asked.initial), run->trajectory.located);
+    if (all_seen) run->trajectory.gap = 0;
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());

@@ -91,6 +91,10 @@ void push_bodies_run(lua_State* L, BodiesRunHandle run);
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of);
 
+/// Whether no pulse of a function that acts can have been missed: all were read as formulas, whose changes were
+/// `located` if they depend on the motion.
+[[nodiscard]] bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located);
+
 /// Pushes the body or link as a system of its own.
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t joint);
 /// Pushes the system of one body of these options, or that of the options `bodies` and `links`.

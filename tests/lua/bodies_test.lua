@@ -445,4 +445,12 @@ test("each body and link has the states, and the events of the user with its own
     equal(table.concat(run.rod.names, " "), "t theta velocity torque friction z")
 end)
 
+test("several bodies have no gap if their functions are read", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, normal = function(t) return 1 + 0.1 * math.sin(t) end, Rd = 0.1 },
+        b = { I = 1 } } }
+    local function gap(M) return rig:simulate { M = { b = M }, t_end = 5 }.gap end
+    equal(gap(function(t, theta, velocity) return math.sin(t) - theta.b end), nil)
+    assert(gap(unread(function(t) return math.sin(t) end)) > 0)
+end)
+
 finish()

@@ -329,7 +329,6 @@ for kind in pairs(kinds) do
 end
 
 local exact_of_one = "exact is the default of one body"
-local read_gap = "defect: a body with a name has a gap, though all its functions are read as formulas and no pulse is missed"
 local writers = "one body and several have writers of their own"
 local integrator_named = "the lines that repeat the run name the integrator of one body"
 -- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
@@ -338,8 +337,6 @@ local different = {
     ["fields of the run: integrator, exact by default"] = exact_of_one,
     ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
     ["fields of the run: system, springs, walls"] = "springs and walls are written in another order",
-    ["fields of the run: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
-    ["fields of the body: gap, M that is read, belt of t, feedback, state acting"] = read_gap,
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
