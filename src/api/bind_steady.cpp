@@ -93,11 +93,11 @@ std::optional<double> steady_growth(const Steady& s) {
 }
 
 lua::Pushed steady_rest(lua_State* L, const SteadyHandle& s) {
-    const analysis::SteadyMotion& motion = of_one(L, *s).motion;
-    if (motion.status != SteadyStatus::adheres && motion.status != SteadyStatus::rest) {
+    if (s->motion.status != SteadyStatus::adheres && s->motion.status != SteadyStatus::rest) {
         lua_pushnil(L);
         return {};
     }
+    const analysis::SteadyMotion& motion = of_one(L, *s).motion;
     lua::push_value(L, std::array{motion.rest.first, motion.rest.second});
     lua::set_value(L, "lower", motion.rest.first);
     lua::set_value(L, "upper", motion.rest.second);

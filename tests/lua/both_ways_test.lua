@@ -354,7 +354,6 @@ local different = {
     ["save: header, constant laws, event that bounces endlessly"] = integrator_named,
     ["save of the body: header, constant laws, event that bounces endlessly"] = integrator_named,
     ["steady: line explain, steady"] = writers,
-    ["steady: rest, not endless"] = "of several bodies the field rest raises, where nil would say that there is none",
     ["identify: refused"] = "identify takes one body",
     ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
 }

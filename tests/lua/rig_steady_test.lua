@@ -343,4 +343,9 @@ test("the growth of bodies is that in one period", function()
     near(s.growth, system(own):steady { M = M }.growth, 1e-3)
 end)
 
+test("a steady motion of several bodies that moves has no rest", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1, C = 0.1 } } }
+    equal(rig:steady { M = { a = excitation.harmonic { omega = 1 } } }.rest, nil)
+end)
+
 finish()
