@@ -474,14 +474,12 @@ std::vector<std::string> repeat_lines(lua_State* L, const Run& run) {
     if (run.origin) return source::repeat_lines(*run.origin);
     if (!run.whole) return run.comments;
     const BodiesRun& whole = *run.whole;
-    std::vector<std::string> lines =
-        whole.set_up.empty() ? source::set_up_lines(L, *whole.system, whole.drive) : whole.set_up;
     const auto times = whole.run.table.column(0);
     const motion::Grid rows =
         whole.spaced ? motion::Grid::every(whole.dt) : motion::Grid::at({times.begin(), times.end()});
-    lines.push_back(
-        source::repeat_line(*whole.system, whole.drive, {whole.run.t_start, whole.t_end}, rows, whole.integrator));
-    return lines;
+    return source::repeat_lines(
+        whole.set_up.empty() ? source::set_up_lines(L, *whole.system, whole.drive) : whole.set_up, *whole.system,
+        whole.drive, {whole.run.t_start, whole.t_end}, rows, whole.integrator);
 }
 
 void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,

@@ -10,6 +10,7 @@
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
+#include "motion/engine/one_body.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
@@ -37,30 +38,6 @@ std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole
     return text.empty() ? "spring.polynomial{}" : text;
 }
 
-std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
-    std::string text = fmt::format("system{{ I = {}, k = {}", system.inertia(), system.stiffness());
-    if (system.damping() != 0) {
-        text += fmt::format(", C = {}", system.damping());
-    }
-    if (!system.spring().none()) {
-        text += ", spring = " + lua_text(L, system.spring(), whole);
-    }
-    if (system.walls()) {
-        text += ", walls = " + system.walls()->lua_text();
-    }
-    const model::Friction& law = system.friction();
-    if (!law.under(1).none()) {
-        const auto* coulomb = law.as<model::laws::Coulomb>();
-        text += coulomb != nullptr ? fmt::format(", Rd = {}, Re = {}", coulomb->kinetic, coulomb->breakaway)
-                                   : ", friction = " + lua_text(L, law, whole);
-    }
-    if (law.normal() != 1) text += fmt::format(", normal = {}", law.normal());
-    if (!system.units().usual()) {
-        text += ", units = " + system.units().lua_text();
-    }
-    return text + " }";
-}
-
 namespace {
 
 /// "{ I = 1, k = 4, Rd = 0.3 }", or of a link "{ \"motor\", \"load\", k = 90 }".
@@ -76,8 +53,14 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
     } else {
         number("I", system.bodies[j].inertia);
     }
-    number("k", joint.stiffness);
+    if (system.named) {
+        number("k", joint.stiffness);
+    } else {
+        parts.push_back("k = " + text::number_literal(joint.stiffness));
+    }
     number("C", joint.damping);
+    if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
+    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
     const model::ContactFriction& friction = joint.friction;
     const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
         if (value) parts.push_back(fmt::format("{} = {}", name, describe(L, *value, whole)));
@@ -85,21 +68,23 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
     if (friction.function != nullptr) parts.push_back("friction = " + function_text(L, *friction.function, whole));
     varying("Rd", friction.sliding[1]);
     varying("Re", friction.holding[1]);
-    if (const auto* law = friction.law.as<model::laws::Coulomb>()) {
-        number("Rd", law->kinetic);
-        number("Re", law->breakaway);
-    } else if (!friction.law.none()) {
+    const bool none = friction.law.under(1).none();
+    if (const auto* law = friction.law.as<model::laws::Coulomb>(); law != nullptr && !none) {
+        parts.push_back(fmt::format("Rd = {}, Re = {}", law->kinetic, law->breakaway));
+    } else if (!none) {
         parts.push_back("friction = " + lua_text(L, friction.law, whole));
     }
     if (friction.law.normal() != 1) parts.push_back(fmt::format("normal = {}", friction.law.normal()));
     varying("normal", friction.normal);
-    if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
-    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
     if (!system.named && !system.units.usual()) parts.push_back("units = " + system.units.lua_text());
     return fmt::format("{{ {} }}", fmt::join(parts, ", "));
 }
 
 }  // namespace
+
+std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
+    return lua_text(L, motion::engine::assembly_of(system), whole);
+}
 
 std::string lua_text(lua_State* L, const model::Assembly& system, ValueText* whole) {
     if (!system.named) return "system" + joint_text(L, system, 0, whole);

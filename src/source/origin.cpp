@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lua/user_function.hpp"
+#include "motion/engine/one_body.hpp"
 #include "motion/witness.hpp"
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
@@ -15,6 +16,8 @@
 namespace dinal::source {
 
 namespace {
+
+namespace engine = motion::engine;
 
 void append_lines(std::vector<std::string>& lines, std::string_view text) {
     for (;;) {
@@ -49,20 +52,19 @@ std::string rows_text(const motion::Grid& rows) {
     return text + " }";
 }
 
-/// "local states = { ... }" and so on, for what the run has.
-std::vector<std::string> extras_lines(lua_State* L, const model::Extras& extras, ValueText& writer) {
-    std::vector<std::string> lines;
-    if (!extras.states.empty()) {
+/// Appends "local states = { ... }" and "local events = { ... }" if the run has some.
+void append_extras(std::vector<std::string>& lines, lua_State* L, const engine::Drive& drive, ValueText& writer) {
+    if (!drive.states.empty()) {
         std::string text;
-        for (const model::OwnState& state : extras.states) {
+        for (const model::OwnState& state : drive.states) {
             text += fmt::format("{} {} = {{ start = {}, rate = {} }}", text.empty() ? "" : ",", state.name, state.start,
                                 function_text(L, *state.rate, &writer));
         }
         lines.push_back("local states = {" + text + " }");
     }
-    if (!extras.events.empty()) {
+    if (!drive.events.empty()) {
         std::string text;
-        for (const model::WantedEvent& wanted : extras.events) {
+        for (const model::WantedEvent& wanted : drive.events) {
             text += fmt::format("{} {{ when = {}", text.empty() ? "" : ",", function_text(L, *wanted.when, &writer));
             if (wanted.direction != model::Crossing::both) {
                 text += fmt::format(", direction = \"{}\"", wanted.direction == model::Crossing::up ? "up" : "down");
@@ -78,49 +80,6 @@ std::vector<std::string> extras_lines(lua_State* L, const model::Extras& extras,
         }
         lines.push_back("local events = {" + text + " }");
     }
-    for (const auto& [name, motion] : {std::pair{"belt", &extras.belt}, std::pair{"base", &extras.base}}) {
-        if (!motion->components().empty()) {
-            lines.push_back(fmt::format("local {} = {}", name, excitation_text(L, *motion, writer)));
-        }
-    }
-    return lines;
-}
-
-/// "states = states, ": what the run had besides M.
-std::string extras_text(const model::Extras& extras) {
-    std::string text;
-    text += extras.states.empty() ? "" : "states = states, ";
-    text += extras.events.empty() ? "" : "events = events, ";
-    text += extras.belt.components().empty() ? "" : "belt = belt, ";
-    text += extras.base.components().empty() ? "" : "base = base, ";
-    return text;
-}
-
-/// The head of the lines and, behind all that the functions among them use, the declarations that `made` gives.
-template <class Made>
-std::vector<std::string> set_up_lines(lua_State* L, const model::Units& units, Made made) {
-    std::vector<std::string> lines;
-    lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
-    if (!units.usual()) lines.push_back(units.in_file());
-    ValueText writer(L);
-    const std::vector<std::string> declarations = made(writer);
-    for (const auto* texts : {&writer.remarks(), &writer.globals(), &declarations}) {
-        for (const std::string& text : *texts) append_lines(lines, text);
-    }
-    return lines;
-}
-
-/// Without functions of a user Lua is not asked, and may be null.
-std::vector<std::string> set_up_lines(lua_State* L, const Task& task) {
-    return set_up_lines(L, task.system.units(), [&](ValueText& writer) {
-        std::vector<std::string> lines;
-        if (!task.excitation.components().empty()) {
-            lines.push_back("local M = " + excitation_text(L, task.excitation, writer));
-        }
-        for (std::string& line : extras_lines(L, task.extras, writer)) lines.push_back(std::move(line));
-        lines.push_back("local sys = " + lua_text(L, task.system, &writer));
-        return lines;
-    });
 }
 
 /// "{ a = 1, b = 2 }", or of one body without a name its number.
@@ -154,43 +113,54 @@ bool acts(const std::vector<model::Excitation>& acting) {
 
 Origin origin_of(lua_State* L, Task task) {
     std::vector<std::string> set_up;
-    if (motion::has_functions(task.system, task.excitation, task.extras)) set_up = set_up_lines(L, task);
+    if (motion::has_functions(task.system, task.excitation, task.extras)) {
+        set_up = set_up_lines(L, engine::assembly_of(task.system),
+                              engine::drive_of(task.excitation, task.extras, task.initial));
+    }
     return {std::move(task), std::move(set_up)};
 }
 
-std::vector<std::string> repeat_lines(const Origin& origin) {
-    std::vector<std::string> lines = origin.set_up.empty() ? set_up_lines(nullptr, origin) : origin.set_up;
-    append_lines(lines,
-                 fmt::format("run = sys:simulate{{ {}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
-                             "integrator = {} }}",
-                             origin.excitation.components().empty() ? "" : "M = M, ", extras_text(origin.extras),
-                             origin.initial.theta, origin.initial.velocity, origin.window.start, origin.window.end,
-                             rows_text(origin.rows), lua_text(origin.integrator)));
+std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const engine::Drive& drive) {
+    std::vector<std::string> lines;
+    lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
+    if (!system.units.usual()) lines.push_back(system.units.in_file());
+    ValueText writer(L);
+    std::vector<std::string> declarations;
+    append_acting(declarations, L, "M", system, drive.loads, writer);
+    append_extras(declarations, L, drive, writer);
+    append_acting(declarations, L, "belt", system, drive.belts, writer);
+    if (!drive.base.components().empty()) {
+        declarations.push_back("local base = " + excitation_text(L, drive.base, writer));
+    }
+    declarations.push_back("local sys = " + lua_text(L, system, &writer));
+    for (const auto* texts : {&writer.remarks(), &writer.globals(), &std::as_const(declarations)}) {
+        for (const std::string& text : *texts) append_lines(lines, text);
+    }
     return lines;
 }
 
-std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const motion::engine::Drive& drive) {
-    return set_up_lines(L, system.units, [&](ValueText& writer) {
-        std::vector<std::string> lines;
-        append_acting(lines, L, "M", system, drive.loads, writer);
-        append_acting(lines, L, "belt", system, drive.belts, writer);
-        for (std::string& line : extras_lines(L, {drive.states, drive.events, {}, drive.base}, writer)) {
-            lines.push_back(std::move(line));
-        }
-        lines.push_back("local sys = " + lua_text(L, system, &writer));
-        return lines;
-    });
+std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const model::Assembly& system,
+                                      const engine::Drive& drive, const motion::Window& window,
+                                      const motion::Grid& rows, const motion::Integrator& integrator) {
+    std::string options;
+    for (const auto& [name, given] : {std::pair("M", acts(drive.loads)), std::pair("states", !drive.states.empty()),
+                                      std::pair("events", !drive.events.empty()), std::pair("belt", acts(drive.belts)),
+                                      std::pair("base", !drive.base.components().empty())}) {
+        if (given) options += fmt::format("{0} = {0}, ", name);
+    }
+    append_lines(set_up,
+                 fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
+                             "integrator = {} }}",
+                             options, by_body(system, drive.theta0), by_body(system, drive.velocity0), window.start,
+                             window.end, rows_text(rows), lua_text(integrator)));
+    return set_up;
 }
 
-std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
-                        const motion::Grid& rows, const motion::Integrator& integrator) {
-    const std::string by = lua_text(integrator);
-    const bool usual = by == lua_text(motion::Integrator(motion::Spectral{}));
-    return fmt::format("run = sys:simulate{{ {}{}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}{} }}",
-                       acts(drive.loads) ? "M = M, " : "", acts(drive.belts) ? "belt = belt, " : "",
-                       extras_text({drive.states, drive.events, {}, drive.base}), by_body(system, drive.theta0),
-                       by_body(system, drive.velocity0), window.start, window.end, rows_text(rows),
-                       usual ? "" : ", integrator = " + by);
+std::vector<std::string> repeat_lines(const Origin& origin) {
+    const model::Assembly system = engine::assembly_of(origin.system);
+    const engine::Drive drive = engine::drive_of(origin.excitation, origin.extras, origin.initial);
+    return repeat_lines(origin.set_up.empty() ? set_up_lines(nullptr, system, drive) : origin.set_up, system, drive,
+                        origin.window, origin.rows, origin.integrator);
 }
 
 }  // namespace dinal::source

@@ -34,9 +34,11 @@ Origin origin_of(lua_State* L, Task task);
 /// Lua text that makes the same run again, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);
 
-/// The same of a run of several bodies: the lines that make them and all that drives them, and the line that runs them.
+/// The lines that make a system and all that drives it. Without functions of a user Lua is not asked, and may be null.
 std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const motion::engine::Drive& drive);
-std::string repeat_line(const model::Assembly& system, const motion::engine::Drive& drive, const motion::Window& window,
-                        const motion::Grid& rows, const motion::Integrator& integrator);
+/// These lines, and the one that runs it.
+std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const model::Assembly& system,
+                                      const motion::engine::Drive& drive, const motion::Window& window,
+                                      const motion::Grid& rows, const motion::Integrator& integrator);
 
 }  // namespace dinal::source

@@ -453,4 +453,15 @@ test("several bodies have no gap if their functions are read", function()
     assert(gap(unread(function(t) return math.sin(t) end)) > 0)
 end)
 
+test("the lines that repeat a run of several bodies name its integrator, and list its times", function()
+    local rig = system { bodies = { a = { I = 1, k = 4 }, b = { I = 1 } } }
+    local times = {}
+    for i = 1, 25 do times[i] = i / 10 end
+    local run = rig:simulate { theta0 = { a = 1 }, times = times }
+    local back, file = reloaded(run)
+    assert(read(file):find("integrator = integrator.spectral", 1, true))
+    equal(back["a.theta"], run:column "a.theta")
+    equal(repeated(run).t, run.t)
+end)
+
 finish()

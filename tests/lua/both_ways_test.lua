@@ -329,14 +329,13 @@ for kind in pairs(kinds) do
 end
 
 local exact_of_one = "exact is the default of one body"
+local written_by_body = "an act returns the angle and velocity of one body, and assigns to those of several"
 local writers = "one body and several have writers of their own"
-local integrator_named = "the lines that repeat the run name the integrator of one body"
 -- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
 local different = {
     ["fields of the body: integrator, exact by default"] = exact_of_one,
     ["fields of the run: integrator, exact by default"] = exact_of_one,
     ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
-    ["fields of the run: system, springs, walls"] = "springs and walls are written in another order",
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
@@ -351,8 +350,10 @@ local different = {
     ["words of the run: line story"] = writers,
     ["words of the body: story"] = "the run of a body tells no story but its line",
     ["save: acceleration"] = "only the file of several bodies has the column acceleration",
-    ["save: header, constant laws, event that bounces endlessly"] = integrator_named,
-    ["save of the body: header, constant laws, event that bounces endlessly"] = integrator_named,
+    ["save: header, exact by default"] = exact_of_one,
+    ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
+    ["save of the body: header, exact by default"] = exact_of_one,
+    ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["steady: line explain, steady"] = writers,
     ["identify: refused"] = "identify takes one body",
     ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",

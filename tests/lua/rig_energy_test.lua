@@ -162,7 +162,7 @@ test("a file of several bodies has their units, and the lines that repeat the ru
     equal(back["rod.torque"], run.rod.torque)
     has(back, "a.theta, m", "a.velocity, m/s")
     has(back:select("rod.torque"), "rod.torque, N")
-    has(read(file), "# run = sys:simulate{ M = M, belt = belt, ", "theta in m, t in s, M in N")
+    has(read(file), "# run = sys:simulate{ M = M, states = states, ", "theta in m, t in s, M in N")
     equal(repeated(rig:simulate { t_end = 5, times = { 1, 2.5 } }).t[2], 2.5)
     equal(repeated(run.a):data()["a.theta"], run.a.theta)
     local one = system { I = 1, k = 1, Rd = function() return 0.1 end, units = units }:simulate { belt = 0.2, theta0 = 1, t_end = 3, dt = 0.5 }
