@@ -521,10 +521,9 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
     if (trajectory.on_belt) {  // no event tells the extremes of theta there
         const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
-        const auto told = static_cast<std::ptrdiff_t>(events.size());
         events.insert(events.end(), turns.begin(), turns.end());
-        std::inplace_merge(events.begin(), events.begin() + told, events.end(),
-                           [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
+        std::stable_sort(events.begin(), events.end(),
+                         [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
     }
     call.check();
     const auto found = analysis::recurrence(events);

@@ -180,16 +180,16 @@ bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive,
         const model::Formula* read = own == nullptr ? nullptr : own->formula();
         all = all && read != nullptr && !read->gave_up() && (located || !read->has_conditions_of_motion());
     };
-    for (const auto* acting : {&drive.loads, &drive.belts}) {
-        for (const model::Excitation& one : *acting) one.each_function(see);
-    }
-    drive.base.each_function(see);
+    const auto see_in = [&](const std::optional<model::Excitation>& acting) {
+        if (acting) acting->each_function(see);
+    };
+    for (const auto* acting : {&drive.loads, &drive.belts}) std::for_each(acting->begin(), acting->end(), see_in);
+    see_in(drive.base);
     for (const model::OwnState& state : drive.states) see(*state.rate);
     for (const model::Joint& joint : system.joints) {
-        const model::ContactFriction& friction = joint.friction;
-        for (const auto* varying : {&friction.normal, &friction.sliding[0], &friction.sliding[1], &friction.holding[0],
-                                    &friction.holding[1]}) {
-            if (*varying) (*varying)->each_function(see);
+        see_in(joint.friction.normal);
+        for (const auto* varying : {&joint.friction.sliding, &joint.friction.holding}) {
+            std::for_each(varying->begin(), varying->end(), see_in);
         }
     }
     return all;

@@ -83,13 +83,11 @@ bool tells_turns(const model::Assembly& system, const Drive& drive, std::size_t 
     const auto rubs = [](const model::Joint& j) { return !j.friction.none() && j.friction.bristle() == nullptr; };
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
-    bool others_rub = false, others_have_walls = false;
-    for (const model::Joint& other : system.joints) {
-        if (&other == &own) continue;
-        others_rub = others_rub || (rubs(other) && (other.first == own.first || other.second == own.first));
-        others_have_walls = others_have_walls || other.walls.has_value();
-    }
-    return !others_have_walls && (rubs(own) || (!system.is_link(joint) && !others_rub));
+    return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
+        if (&other == &own) return rubs(own) || !system.is_link(joint);
+        const bool touches = other.first == own.first || other.second == own.first;
+        return !other.walls && (rubs(own) || !(touches && rubs(other)));
+    });
 }
 
 }  // namespace
