@@ -59,11 +59,10 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     constexpr double like_noise = 1.5;  // correlation length
     std::optional<LeastSquares> best = fit_from(question, question.start);
     for (Eigen::Index i = 0; i < question.start.size(); ++i) {
-        if (!question.may_be_doubled[static_cast<std::size_t>(i)]) continue;
-        for (const double factor : {0.5, 2.0}) {
+        for (const double begin : question.other_starts[static_cast<std::size_t>(i)]) {
             if (best && correlation_length(question, best->residual) < like_noise) break;
             Eigen::VectorXd other = question.start;
-            other[i] *= factor;
+            other[i] = begin;
             auto found = fit_from(question, other);
             if (found && (!best || found->sum < best->sum)) best = std::move(found);
         }

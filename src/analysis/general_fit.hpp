@@ -18,7 +18,7 @@ struct GeneralQuestion {
     std::vector<Eigen::Index> stages;  ///< beginnings of the record that are fitted first
     Eigen::VectorXd start;
     FitScale scale;
-    std::vector<bool> may_be_doubled;  ///< parameters from whose half and double a search may begin, too
+    std::vector<std::vector<double>> other_starts;  ///< of each parameter: where a search may begin, too
 };
 
 struct GeneralFit {

@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "analysis/general_fit.hpp"
 #include "analysis/identification.hpp"
 #include "analysis/turning_points.hpp"
 #include "api/bind_excitation.hpp"
+#include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/extras_options.hpp"
@@ -31,6 +34,7 @@
 #include "model/laws/bristle.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
+#include "motion/engine/one_body.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
 #include "text/suggest.hpp"
@@ -41,10 +45,11 @@ namespace dinal::api {
 
 struct IdentifyOptions {
     std::optional<std::string> t = {}, theta = {};
-    std::optional<double> I = {}, k = {}, C = {}, Rd = {}, Re = {}, theta0 = {}, velocity0 = {}, offset = {};
+    std::optional<double> I = {}, k = {}, C = {}, Rd = {}, Re = {};
 };
 
 inline constexpr const char* not_fitted = "known, and so not fitted";
+inline constexpr const char* not_fitted_by_body = "known, and so not fitted; of several bodies by name: { load = 0 }";
 inline constexpr text::Range positive_k{
     "be positive: identify needs a spring; without one give a k so small that the record is far shorter than a swing",
     text::positive.holds};
@@ -64,39 +69,39 @@ inline constexpr text::Option own_identify_options[] = {
      .unit = "torque",
      .otherwise = "none: a free decay",
      .meaning =
-         "the excitation, in the time of the record: a Lua function, or an excitation such as excitation.samples",
+         "the excitation, in the time of the record: a Lua function, or an excitation such as excitation.samples; of "
+         "several bodies by name, as in rig:simulate",
      .object = "excitation"},
     {.name = "free",
      .otherwise = "all that are not given",
      .meaning =
          "the values to fit, from I, k, C, Rd, Re and offset; the others are 0, and Re is Rd, unless they are given. "
          "With system: any number of it, such as friction.speed, spring.3 or walls.restitution, or of a table that a "
-         "function of the run uses, such as p.Kp. The start is always fitted unless it is given",
+         "function of the run uses, such as p.Kp; of several bodies and links with their names, such as load.Rd. The start is "
+         "always fitted unless it is given",
      .wanted = "a list such as { \"k\", \"Rd\" }"},
     {.name = "system",
-     .meaning = "a first guess, a system of one body",
+     .meaning = "a first guess, of one body or several",
      .object = "system",
      .wanted = "a system such as system{ I = 1, k = 4, Rd = 0.3 }"},
     {.name = "measured",
      .otherwise = "\"theta\"",
      .meaning =
          "with system: \"theta\", \"velocity\" or \"acceleration\", a list of them, or a table with the names of "
-         "their columns, { velocity = \"v\" }; gaps (nan) are left out",
+         "their columns, { velocity = \"v\" }; gaps (nan) are left out. Needed for several bodies and links, with their "
+         "names: { \"load.theta\", [\"motor.velocity\"] = \"w\" }",
      .wanted = "\"theta\", \"velocity\" or \"acceleration\", a list of these, or { velocity = \"v\" }"},
     {.name = "I", .range = text::positive, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::I>},
     {.name = "k", .range = positive_k, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::k>},
     {.name = "C", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::C>},
     {.name = "Rd", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::Rd>},
     {.name = "Re", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::Re>},
-    {.name = "theta0", .unit = "rad", .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::theta0>},
-    {.name = "velocity0",
-     .unit = "rad per time unit",
-     .meaning = not_fitted,
-     .filled = text::fills<&IdentifyOptions::velocity0>},
+    {.name = "theta0", .unit = "rad", .meaning = not_fitted_by_body, .wanted = by_body_wanted},
+    {.name = "velocity0", .unit = "rad per time unit", .meaning = not_fitted_by_body, .wanted = by_body_wanted},
     {.name = "offset",
      .unit = "rad",
-     .meaning = "the reading where the spring is relaxed, if known",
-     .filled = text::fills<&IdentifyOptions::offset>},
+     .meaning = "the reading where the spring is relaxed, if known; of several bodies by name",
+     .wanted = by_body_wanted},
 };
 inline constexpr text::Option extras_of_record[] = {extras_options[0], extras_options[2], extras_options[3]};
 inline constexpr auto identify_options = text::joined(own_identify_options, extras_of_record);
@@ -111,8 +116,7 @@ struct FitAnswer {
     analysis::Identified found;
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
-    std::optional<model::Oscillator> system;
-    model::AssemblyHandle rig = {};
+    std::optional<model::Assembly> system;
     std::string remark = {};
     bool from_guess = false;  ///< a system was given
     model::Units units;       ///< of the record; without one for M where only ratios to I are found
@@ -129,7 +133,7 @@ Data record_of(lua_State* L, const lua::Options& options) {
     if (const auto* data = lua::test<DataHandle>(L, place)) {
         record.columns = (*data)->columns;
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
-        check_one(L, **run, ":data");
+        if (!options.has("system")) check_one(L, **run, ":data");
         record = rows_of(*run);
     } else if (lua_istable(L, place)) {
         for (const std::string& name : lua::text_keys(L, place)) {
@@ -206,7 +210,11 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     if (asked.Re && asked.Rd && *asked.Re < *asked.Rd) {
         options.fail({fmt::format("Re = {:.6g} must be at least Rd = {:.6g}", *asked.Re, *asked.Rd)});
     }
-    question.given = {asked.I, asked.k, asked.C, asked.Rd, asked.Re, asked.theta0, asked.velocity0, asked.offset};
+    const auto number = [&](const char* name) {
+        return options.has(name) ? std::optional(options.number(name)) : std::nullopt;
+    };
+    question.given = {asked.I,         asked.k, asked.C, asked.Rd, asked.Re, number("theta0"), number("velocity0"),
+                      number("offset")};
     if (!options.has("free")) return;
     std::vector<bool> held(analysis::unknown_count, true);
     for (const std::string& name : free_names(L, options)) {
@@ -236,115 +244,127 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
 // identify{ system = ..., free = { ... } }: parameters of any system, and of tables that a user's functions read,
 // fitted from a guess to measured angles, velocities or accelerations.
 
-/// A number of a system: where it stands in a copy, and its range.
-struct NumberPlace {
-    double* value = nullptr;
-    bool positive = false, may_be_negative = false;
-};
+enum class Sign { any, not_negative, positive };
+/// Is given a number by its name. Returns whether it has set the number.
+using Change = std::function<bool(const std::string& name, double& number, Sign sign)>;
 
-/// The number of that name in a law; none when it has none.
+/// Re is at least Rd, and goes with Rd where the two are one number of which nobody sets Re alone.
+void change_torques(model::laws::Coulomb& law, const std::string& before, const Change& change) {
+    const bool one_number = law.kinetic == law.breakaway;
+    change(before + "Rd", law.kinetic, Sign::not_negative);
+    const bool own = change(before + "Re", law.breakaway, Sign::not_negative);
+    law.breakaway = one_number && !own ? law.kinetic : std::max(law.kinetic, law.breakaway);
+}
+
 template <class Law>
-bool with_number(model::Friction& friction, std::span<const text::Option> rows, std::string_view name,
-                 const std::function<void(NumberPlace)>& change) {
-    const Law* law = friction.as<Law>();
-    if (law == nullptr) return false;
+void change_rows(Law& law, std::span<const text::Option> rows, const Change& change) {
+    double Rd = 0;  // the first of the rows
     for (const text::Option& row : rows) {
-        if (row.name != name) continue;
-        Law changed = *law;
-        const text::OptionValue now = row.filled.get(&changed);
-        if (!std::holds_alternative<double>(now)) return false;
-        double number = std::get<double>(now);
-        change({&number, row.range.must == text::positive.must, false});
-        row.filled.set(&changed, number);
-        friction = changed;
-        return true;
+        text::OptionValue now = row.filled.get(&law);
+        auto* number = std::get_if<double>(&now);
+        if (number == nullptr) continue;
+        const std::string_view name = row.name;
+        change(fmt::format("friction.{}", name), *number,
+               row.range.must == text::positive.must ? Sign::positive : Sign::not_negative);
+        if (name == "Rd") Rd = *number;
+        if (name == "Re") *number = std::max(*number, Rd);
+        row.filled.set(&law, now);
     }
-    return false;
 }
 
-bool with_number_of_law(model::Friction& friction, std::string_view name,
-                        const std::function<void(NumberPlace)>& change) {
+model::Friction changed_law(const model::Friction& friction, const Change& change) {
     using namespace model::laws;
-    if (const auto* law = friction.as<AsymmetricCoulomb>()) {
-        AsymmetricCoulomb changed = *law;
-        for (const auto& [way, own] :
-             {std::pair{"forward.", &changed.forward}, std::pair{"backward.", &changed.backward}}) {
-            if (name == std::string(way) + "Rd") return change({&own->kinetic}), friction = changed, true;
-            if (name == std::string(way) + "Re") return change({&own->breakaway}), friction = changed, true;
-        }
-        return false;
+    if (const auto* own = friction.as<AsymmetricCoulomb>()) {
+        AsymmetricCoulomb law = *own;
+        change_torques(law.forward, "friction.forward.", change);
+        change_torques(law.backward, "friction.backward.", change);
+        return law;
     }
-    const auto* bristle = friction.as<Bristle>();
-    return with_number<Stribeck>(friction, stribeck_options, name, change) ||
-           with_number<Bristle>(
-               friction,
-               bristle != nullptr && bristle->dahl ? std::span<const text::Option>(dahl_options) : lugre_options, name,
-               change);
+    if (const auto* own = friction.as<Stribeck>()) {
+        Stribeck law = *own;
+        change_rows(law, stribeck_options, change);
+        return law;
+    }
+    if (const auto* own = friction.as<Bristle>()) {
+        Bristle law = *own;
+        change_rows(law, law.dahl ? std::span<const text::Option>(dahl_options) : lugre_options, change);
+        return law;
+    }
+    const auto* own = friction.as<Coulomb>();
+    if (own == nullptr && !friction.under(1).none()) return friction;
+    Coulomb law = own != nullptr ? *own : Coulomb{};
+    change_torques(law, "", change);
+    return law.breakaway > 0 ? model::Friction(law) : model::Friction();
 }
 
-/// The system whose numbers are changed.
-struct Guess {
-    model::OscillatorParameters own = {};
-    std::optional<model::Assembly> rig = {};  ///< one body, whose friction has more to it than its law
+/// What stands before the names of this body or link: "load."
+std::string before_names(const model::Assembly& system, std::size_t joint) {
+    return system.named ? system.joints[joint].name + "." : "";
+}
 
-    /// Calls with the number of that name; false when there is none.
-    bool with(std::string_view name, const std::function<void(NumberPlace)>& change) {
-        constexpr std::string_view of_law = "friction.", of_spring = "spring.";
-        if (name == "I") return change({&own.inertia, true}), true;
-        if (name == "k") return change({&own.stiffness}), true;
-        if (name == "C") return change({&own.damping}), true;
-        if (name.starts_with(of_law)) {
-            return own.friction && with_number_of_law(*own.friction, name.substr(of_law.size()), change);
-        }
-        if (const auto* spring = own.spring.as<model::springs::PolynomialSpring>(); spring != nullptr) {
-            model::springs::PolynomialSpring changed = *spring;
-            for (auto& [power, coefficient] : changed.terms) {
-                if (fmt::format("{}{}", of_spring, power) != name) continue;
-                change({&coefficient, false, true});
-                own.spring = changed;
-                return true;
-            }
-        }
-        if (own.walls) {
-            if (name == "walls.lower") return change({&own.walls->lower, false, true}), true;
-            if (name == "walls.upper") return change({&own.walls->upper, false, true}), true;
-            if (name == "walls.restitution") return change({&own.walls->restitution}), true;
-        }
-        if (own.friction) return false;
-        if (name == "Rd") return change({&own.kinetic_friction}), true;
-        if (name != "Re") return false;
-        double Re = own.breakaway.value_or(own.kinetic_friction);
-        change({&Re});
-        own.breakaway = Re;
-        return true;
+/// Of each number of the body or link that can be fitted, by its name in identify: "load.Rd", or "Rd" of one body.
+void change_numbers(model::Assembly& system, std::size_t j, const Change& change_named) {
+    const std::string before = before_names(system, j);
+    const Change change = [&](const std::string& own, double& number, Sign sign) {
+        return change_named(before + own, number, sign);
+    };
+    model::Joint& joint = system.joints[j];
+    if (!system.is_link(j)) change("I", system.bodies[j].inertia, Sign::positive);
+    change("k", joint.stiffness, Sign::not_negative);
+    change("C", joint.damping, Sign::not_negative);
+    model::ContactFriction& contact = joint.friction;
+    if (!contact.function && !contact.sliding[0] && !contact.holding[0]) {
+        contact.law = changed_law(contact.law, change).under(contact.law.normal());
     }
+    if (const auto* own = joint.spring.as<model::springs::PolynomialSpring>()) {
+        model::springs::PolynomialSpring spring = *own;
+        for (auto& [power, coefficient] : spring.terms) {
+            change(fmt::format("spring.{}", power), coefficient, Sign::any);
+        }
+        joint.spring = spring;
+    }
+    if (joint.walls) {
+        change("walls.lower", joint.walls->lower, Sign::any);
+        change("walls.upper", joint.walls->upper, Sign::any);
+        change("walls.restitution", joint.walls->restitution, Sign::not_negative);
+    }
+}
 
-    /// With the numbers of now.
-    [[nodiscard]] model::AssemblyHandle assembly() const {
-        model::Assembly made = *rig;
-        made.bodies[0].inertia = own.inertia;
-        model::Joint& joint = made.joints[0];
-        joint.stiffness = own.stiffness, joint.damping = own.damping;
-        joint.spring = own.spring, joint.walls = own.walls, joint.friction.law = *own.friction;
-        return std::make_shared<const model::Assembly>(std::move(made));
-    }
-};
+/// Pushes the system, or raises what is wrong with its numbers.
+int push_with_numbers(lua_State* L, const model::Assembly& system) {
+    if (!system.named) return push_alone(L, "identify", system, 0);
+    for (std::size_t j = 0; j < system.joints.size(); ++j) push_alone(L, "identify", system, j), lua_pop(L, 1);
+    lua::push<model::AssemblyHandle>(L, std::make_shared<const model::Assembly>(system));
+    return 1;
+}
+
+/// Called with a system and the options of its run.
+int run_with_numbers(lua_State* L) {
+    push_with_numbers(L, *static_cast<const model::Assembly*>(lua_touserdata(L, 1)));
+    lua_getfield(L, -1, "simulate");
+    lua_insert(L, -2);
+    lua_pushvalue(L, 2);
+    lua_call(L, 2, 1);
+    return 1;
+}
 
 /// What is fitted.
 struct Fitted {
-    enum class Of { system, table, theta0, velocity0, offset };
     std::string name;
-    Of of = Of::system;
-    int table = 0;         ///< its place on the stack
-    std::string key = {};  ///< in it
     double start = 0, typical = 0, least = -1e300;
+    std::vector<double> other_starts = {};
+    int table = 0;         ///< its place on the stack; 0: in none
+    std::string key = {};  ///< in it
 };
 
 enum class Measure { theta, velocity, acceleration };
 constexpr const char* measure_names[] = {"theta", "velocity", "acceleration"};
 struct MeasuredColumn {
     Measure quantity;
-    std::vector<double> numbers;
+    std::size_t joint;
+    std::string name;  ///< of the column of a run
+    std::vector<double> numbers = {};
+    double range = 0;
     double size = 1;  ///< in whose units it is fitted: its noise, or a small part of its range
 };
 
@@ -370,8 +390,7 @@ public:
             question.scale.typical[i] = one.typical;
             question.scale.least[i] = one.least;
             question.scale.whole[i] = std::max(10 * one.typical, std::fabs(one.start));
-            const bool number = one.of == Fitted::Of::system || one.of == Fitted::Of::table;
-            question.may_be_doubled.push_back(number && one.start != 0);
+            question.other_starts.push_back(one.other_starts);
         }
         std::vector<double> all;
         for (std::size_t row = 0; row < t_.size(); ++row) {
@@ -407,13 +426,9 @@ private:
     void take_system() {
         options_.push("system");
         if (const auto* plain = lua::test<model::Oscillator>(L_, -1)) {
-            guess_.own = plain->parameters();
-        } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, -1); rig != nullptr && !(*rig)->named) {
-            const model::Joint& joint = (*rig)->joints[0];
-            guess_.rig = **rig;
-            guess_.own.inertia = (*rig)->bodies[0].inertia;
-            guess_.own.stiffness = joint.stiffness, guess_.own.damping = joint.damping;
-            guess_.own.spring = joint.spring, guess_.own.walls = joint.walls, guess_.own.friction = joint.friction.law;
+            system_ = motion::engine::assembly_of(*plain);
+        } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, -1)) {
+            system_ = **rig;
         } else {
             options_.wrong("system");
         }
@@ -424,42 +439,59 @@ private:
         }
     }
 
-    /// The quantities and the names of their columns: "velocity", { "theta", "velocity" } or { theta = "x" }.
-    std::vector<std::pair<Measure, std::string>> asked_columns() {
-        std::vector<std::pair<Measure, std::string>> asked;
-        const auto add = [&](const std::string& quantity, const std::string& column) {
-            const auto* known = std::find(std::begin(measure_names), std::end(measure_names), quantity);
-            if (known == std::end(measure_names)) options_.wrong("measured");
-            asked.emplace_back(static_cast<Measure>(known - std::begin(measure_names)), column);
+    /// What is measured, and the names of its columns: "velocity", { "theta", "velocity" } or { theta = "x" }.
+    std::vector<std::pair<MeasuredColumn, std::string>> asked_columns() {
+        std::vector<std::pair<MeasuredColumn, std::string>> asked;
+        const std::string_view wanted = system_.named
+                                            ? "a table such as { \"load.theta\", [\"motor.velocity\"] = \"w\" }"
+                                            : options_.row("measured").wanted;
+        const auto add = [&](const std::string& name, const std::string& column) {
+            std::vector<std::string> known;
+            for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+                for (const char* quantity : measure_names) known.push_back(before_names(system_, j) + quantity);
+            }
+            const auto found = std::find(known.begin(), known.end(), name);
+            if (found == known.end()) {
+                options_.fail({.sentence = fmt::format("measured must be {}, got \"{}\"", wanted, name),
+                               .option = "measured",
+                               .culprit = name,
+                               .cure = text::did_you_mean(name, known)});
+            }
+            const auto place = static_cast<std::size_t>(found - known.begin());
+            constexpr std::size_t count = std::size(measure_names);
+            asked.push_back({{static_cast<Measure>(place % count), place / count, name}, column});
         };
         options_.push("measured");
-        if (lua_isnil(L_, -1)) {
+        if (lua_isnil(L_, -1) && !system_.named) {
             add("theta", asked_.theta.value_or("theta"));
         } else if (lua_type(L_, -1) == LUA_TSTRING) {
             add(lua_tostring(L_, -1), lua_tostring(L_, -1));
         } else if (lua_istable(L_, -1)) {
             for (lua_pushnil(L_); lua_next(L_, -2) != 0; lua_pop(L_, 1)) {
-                if (lua_type(L_, -1) != LUA_TSTRING) options_.wrong("measured");
+                if (lua_type(L_, -1) != LUA_TSTRING) options_.wrong("measured", wanted);
                 add(lua_type(L_, -2) == LUA_TSTRING ? lua_tostring(L_, -2) : lua_tostring(L_, -1),
                     lua_tostring(L_, -1));
             }
-        } else {
-            options_.wrong("measured");
         }
+        if (asked.empty()) options_.wrong("measured", wanted);
         lua_pop(L_, 1);
-        std::sort(asked.begin(), asked.end());
+        std::sort(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
+            return std::tie(a.first.quantity, a.first.joint, a.second) <
+                   std::tie(b.first.quantity, b.first.joint, b.second);
+        });
         return asked;
     }
 
     void take_columns() {
         const auto t = record_numbers(L_, options_, record_, asked_.t.value_or("t"), {}, 0);
-        for (auto& [quantity, name] : asked_columns()) {
+        for (auto& [column, name] : asked_columns()) {
             const auto numbers = record_numbers(L_, options_, record_, name, {}, 0);
             if (numbers.size() != t.size()) {
                 options_.fail({fmt::format("the record has {} times, but {} numbers in the column '{}'", t.size(),
                                            numbers.size(), name)});
             }
-            columns_.push_back({quantity, {numbers.begin(), numbers.end()}});
+            column.numbers.assign(numbers.begin(), numbers.end());
+            columns_.push_back(std::move(column));
         }
         std::vector<std::size_t> rows;
         for (std::size_t i = 0; i < t.size(); ++i) {
@@ -479,8 +511,8 @@ private:
             if (known.size() < 8) options_.fail({"a measured column needs at least 8 numbers"});
             const auto [low, high] = std::minmax_element(known.begin(), known.end());
             if (!(*high > *low)) options_.fail({"a measured column is constant: there is no motion in it"});
-            column.size = std::max(analysis::noise_of(known), 1e-6 * (*high - *low));
-            range_[static_cast<std::size_t>(column.quantity)] = *high - *low;
+            column.range = *high - *low;
+            column.size = std::max(analysis::noise_of(known), 1e-6 * column.range);
         }
         for (std::size_t i = 0; i + 1 < t_.size(); ++i) {
             if (!(t_[i] < t_[i + 1])) {
@@ -490,71 +522,134 @@ private:
         }
     }
 
-    double number_of(std::string_view name) {
-        double number = 0;
-        guess_.with(name, [&](NumberPlace place) { number = *place.value; });
-        return number;
-    }
-
     /// How far things are from each other in this record, for parameters that begin at 0.
     void take_scales() {
-        const double I = number_of("I"), k = number_of("k");
         constexpr double swings = 10;
-        const double span = t_.back() - t_.front();
-        swing_ = k > 0 ? 2 * std::numbers::pi * std::sqrt(I / k) : span / swings;
-        const double time = swing_ / (2 * std::numbers::pi);
-        angle_ = range_[0] > 0 ? range_[0] : range_[1] > 0 ? range_[1] * time : range_[2] * time * time;
-        speed_ = range_[1] > 0 ? range_[1] : angle_ / time;
-        torque_ = I * speed_ / time;
+        const double period = system_.shortest_natural_period(), span = t_.back() - t_.front();
+        swing_ = std::isfinite(period) ? period : span / swings;
+        time_ = swing_ / (2 * std::numbers::pi);
+        std::array<double, 3> range{};
+        for (const MeasuredColumn& column : columns_) {
+            double& widest = range.at(static_cast<std::size_t>(column.quantity));
+            widest = std::max(widest, column.range);
+        }
+        angle_ = range[0] > 0 ? range[0] : range[1] > 0 ? range[1] * time_ : range[2] * time_ * time_;
+        speed_ = range[1] > 0 ? range[1] : angle_ / time_;
     }
 
     void take_free() {
         take_scales();
+        theta0_ = given("theta0"), velocity0_ = given("velocity0"), offset_ = given("offset");
         for (const std::string& name : free_names(L_, options_)) add_free(name);
-        const MeasuredColumn& first = columns_.front();
-        const double begins = std::isnan(first.numbers[0]) ? 0 : first.numbers[0];
-        const bool rolls = number_of("k") == 0;
-        initial_ = {asked_.theta0.value_or(0), asked_.velocity0.value_or(0)};
-        // Without a spring no velocity depends on where it began.
-        const bool place_counts = first.quantity == Measure::theta || !rolls;
-        if (!asked_.theta0 && place_counts) {
-            free_.push_back(
-                {"theta0", Fitted::Of::theta0, 0, "", first.quantity == Measure::theta ? begins : 0, 0.1 * angle_});
-        }
-        if (!asked_.velocity0) {
-            free_.push_back({"velocity0", Fitted::Of::velocity0, 0, "", first_velocity(), 0.1 * speed_});
+        for (std::size_t body = 0; body < system_.bodies.size(); ++body) {
+            const std::string before = before_names(system_, body);
+            if (!theta0_[body] && place_counts(body)) {
+                const MeasuredColumn* theta = measured(body, Measure::theta);
+                const double begins = theta == nullptr || std::isnan(theta->numbers[0]) ? 0 : theta->numbers[0];
+                free_.push_back({.name = before + "theta0", .start = begins, .typical = 0.1 * angle_});
+            }
+            if (velocity0_[body]) continue;
+            Fitted one{.name = before + "velocity0", .start = first_velocity(body), .typical = 0.1 * speed_};
+            // Friction may hold a body at rest, and then no slope leads away from there.
+            const bool is_measured = measured(body, Measure::theta) != nullptr || one.start != 0;
+            if (!is_measured) one.other_starts = {speed_, -speed_};
+            free_.push_back(std::move(one));
         }
     }
 
-    double first_velocity() const {
-        for (const MeasuredColumn& column : columns_) {
-            if (column.quantity == Measure::velocity && !std::isnan(column.numbers[0])) return column.numbers[0];
+    /// The numbers under this option, by body or link; of one body without a name its number.
+    std::vector<std::optional<double>> given(const char* option) {
+        std::vector<std::optional<double>> numbers(system_.joints.size());
+        if (!options_.has(option)) return numbers;
+        if (!system_.named) return numbers[0] = options_.number(option), numbers;
+        options_.push(option);
+        if (!lua_istable(L_, -1)) options_.wrong(option);
+        for (lua_pushnil(L_); lua_next(L_, -2) != 0; lua_pop(L_, 1)) {
+            const bool number = lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(lua_tonumber(L_, -1));
+            if (!number || lua_type(L_, -2) != LUA_TSTRING) options_.wrong(option);
+            const std::string what = fmt::format("identify: {}: the system", option);
+            const std::size_t joint = joint_named(L_, lua_tostring(L_, -2), system_, what.c_str(), rig_class);
+            if (system_.is_link(joint) && std::string_view(option) != "offset") options_.wrong(option);
+            numbers[joint] = lua_tonumber(L_, -1);
         }
-        const MeasuredColumn& column = columns_.front();
+        lua_pop(L_, 1);
+        return numbers;
+    }
+
+    /// The first column that measures this, if there is one.
+    [[nodiscard]] const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
+        const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const MeasuredColumn& column) {
+            return column.joint == joint && column.quantity == quantity;
+        });
+        return found == columns_.end() ? nullptr : &*found;
+    }
+
+    /// Without a spring no velocity depends on where a body began.
+    [[nodiscard]] bool place_counts(std::size_t body) const {
+        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+            const model::Joint& joint = system_.joints[j];
+            const int own = static_cast<int>(body);
+            if (joint.first != own && joint.second != own) continue;
+            if (joint.stiffness != 0 || measured(j, Measure::theta) != nullptr) return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] double first_velocity(std::size_t body) const {
+        const MeasuredColumn* velocity = measured(body, Measure::velocity);
+        if (velocity != nullptr && !std::isnan(velocity->numbers[0])) return velocity->numbers[0];
+        const MeasuredColumn* theta = measured(body, Measure::theta);
+        if (theta == nullptr) return 0;
         const std::size_t last = std::min<std::size_t>(4, t_.size() - 1);
-        const double rise = column.numbers[last] - column.numbers[0];
-        return column.quantity == Measure::theta && std::isfinite(rise) ? rise / (t_[last] - t_[0]) : 0;
+        const double rise = theta->numbers[last] - theta->numbers[0];
+        return std::isfinite(rise) ? rise / (t_[last] - t_[0]) : 0;
     }
 
     void add_free(const std::string& name) {
         Fitted one{.name = name};
-        if (name == "offset") {
-            one.of = Fitted::Of::offset, one.typical = 0.1 * angle_;
-        } else if (name == "theta0" || name == "velocity0") {
-            return;  // fitted unless given
-        } else if (!guess_.with(name, [&](NumberPlace place) {
-                       one.start = *place.value;
-                       one.least = place.may_be_negative ? -1e300 : place.positive ? 1e-6 * one.start : 0;
-                       one.typical = name == "C" ? 0.01 * torque_ / speed_ : 0.01 * torque_;
-                   })) {
-            find_table(name, one);
+        std::vector<std::string> known;
+        bool found = false;
+        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+            const std::string before = before_names(system_, j);
+            const bool of_start = name == before + "theta0" || name == before + "velocity0";
+            if (of_start && !system_.is_link(j)) return;  // fitted unless given
+            if (name == before + "offset") one.typical = 0.1 * angle_, found = true;
+            change_numbers(system_, j, [&](const std::string& own, double& number, Sign sign) {
+                known.push_back(own);
+                if (own != name || !std::isfinite(number)) return false;
+                const auto body = static_cast<std::size_t>(system_.joints[j].first);
+                const double torque = system_.bodies[body].inertia * speed_ / time_;
+                found = true, one.start = number;
+                one.least = sign == Sign::any ? -1e300 : sign == Sign::positive ? 1e-6 * one.start : 0;
+                one.typical = name == before + "C" ? 0.01 * torque / speed_ : 0.01 * torque;
+                return false;
+            });
         }
-        one.typical = one.start != 0 ? std::fabs(one.start) : one.typical;
+        if (!found) find_table(name, known, one);
+        if (one.start != 0) one.typical = std::fabs(one.start), one.other_starts = {0.5 * one.start, 2 * one.start};
         free_.push_back(std::move(one));
     }
 
+    /// Whether a function or an excitation stands where this number would.
+    [[nodiscard]] bool is_function(std::string_view name) const {
+        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+            const model::Joint& joint = system_.joints[j];
+            const model::ContactFriction& friction = joint.friction;
+            const bool polynomial = joint.spring.as<model::springs::PolynomialSpring>() != nullptr;
+            const std::pair<const char*, bool> functions[] = {{"friction", friction.function != nullptr},
+                                                              {"Rd", friction.sliding[0].has_value()},
+                                                              {"Re", friction.holding[0].has_value()},
+                                                              {"normal", friction.normal.has_value()},
+                                                              {"spring", !joint.spring.none() && !polynomial}};
+            for (const auto& [own, is] : functions) {
+                if (is && name.starts_with(before_names(system_, j) + own)) return true;
+            }
+        }
+        return false;
+    }
+
     /// "p.Kp": the variable p of a function of M, belt, base or a state's rate, or the global p.
-    void find_table(const std::string& name, Fitted& one) {
+    void find_table(const std::string& name, const std::vector<std::string>& known, Fitted& one) {
         const std::size_t dot = name.find('.');
         const std::string variable = name.substr(0, dot);
         bool found = false;
@@ -569,7 +664,6 @@ private:
             found = lua_istable(L_, -1);
             if (!found) lua_pop(L_, 1);
         }
-        one.of = Fitted::Of::table;
         one.table = lua_gettop(L_);
         one.key = dot == std::string::npos ? "" : name.substr(dot + 1);
         if (found && push_field(one) == LUA_TNUMBER) {
@@ -578,11 +672,17 @@ private:
             lua_pop(L_, 1);
             return;
         }
-        options_.fail({.sentence = fmt::format("free has '{}', which is no number of the system, such as k or "
-                                               "friction.speed, and none of a table that M uses, such as p.Kp",
-                                               name),
-                       .option = "free",
-                       .culprit = name});
+        if (is_function(name)) {
+            options_.fail("free",
+                          fmt::format("free has '{}', but that is a function: only numbers can be fitted", name));
+        }
+        options_.fail(
+            {.sentence = fmt::format("free has '{}', which is no number of the system, such as {}, and none of "
+                                     "a table that M uses, such as p.Kp",
+                                     name, system_.named ? known.front() : "k or friction.speed"),
+             .option = "free",
+             .culprit = name,
+             .cure = text::did_you_mean(name, known)});
     }
 
     /// Without metamethods: a library has names that it refuses.
@@ -632,53 +732,28 @@ private:
     }
 
     /// Sets the tables, and gives the system.
-    Guess with(const Eigen::VectorXd& p) {
-        Guess guess = guess_;
-        model::OscillatorParameters& own = guess.own;
-        const bool own_Re = std::any_of(free_.begin(), free_.end(), [](const Fitted& one) { return one.name == "Re"; });
+    model::Assembly with(const Eigen::VectorXd& p) {
+        model::Assembly system = system_;
+        for (std::size_t j = 0; j < system.joints.size(); ++j) {
+            change_numbers(system, j, [&](const std::string& name, double& number, Sign /*sign*/) {
+                const auto value = fitted(p, name);
+                number = value.value_or(number);
+                return value.has_value();
+            });
+        }
         for (std::size_t i = 0; i < free_.size(); ++i) {
-            const double value = p[static_cast<Eigen::Index>(i)];
-            if (free_[i].of == Fitted::Of::system) {
-                guess.with(free_[i].name, [value](NumberPlace place) { *place.value = value; });
-            } else if (free_[i].of == Fitted::Of::table) {
-                set_number(free_[i], value);
-            }
+            if (free_[i].table > 0) set_number(free_[i], p[static_cast<Eigen::Index>(i)]);
         }
-        if (!own.friction) {
-            const double before = guess_.own.kinetic_friction, Rd = own.kinetic_friction;
-            const bool one_number = !own_Re && guess_.own.breakaway.value_or(before) == before;
-            own.breakaway = one_number ? Rd : std::max(Rd, own.breakaway.value_or(Rd));
-        }
-        // Breakaway takes at least the friction of motion.
-        for (const char* way : {"", "forward.", "backward."}) {
-            double Rd = 0;
-            guess.with(fmt::format("friction.{}Rd", way), [&](NumberPlace place) { Rd = *place.value; });
-            guess.with(fmt::format("friction.{}Re", way),
-                       [&](NumberPlace place) { *place.value = std::max(*place.value, Rd); });
-        }
-        return guess;
-    }
-
-    bool push_system(const Guess& guess) {
-        if (guess.rig) {
-            if (auto wrong = guess.own.friction->complaint()) return failure_ = wrong->sentence, false;
-            lua::push<model::AssemblyHandle>(L_, guess.assembly());
-            return true;
-        }
-        auto made = model::Oscillator::make(guess.own);
-        if (!made) return failure_ = made.error().sentence, false;
-        lua::push(L_, std::move(made).value());
-        return true;
+        return system;
     }
 
     std::optional<Eigen::VectorXd> predicted(const Eigen::VectorXd& p, Eigen::Index count) {
         const int top = lua_gettop(L_);
-        const auto guess = with(p);
+        model::Assembly system = with(p);
         const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
                                                    known_until_.begin() + 1);
-        if (!push_system(guess)) return lua_settop(L_, top), std::nullopt;
-        lua_getfield(L_, -1, "simulate");
-        lua_insert(L_, -2);
+        lua_pushcfunction(L_, lua::guarded<run_with_numbers>);
+        lua_pushlightuserdata(L_, &system);
         push_options(p, rows);
         const bool good = lua_pcall(L_, 2, 1, 0) == LUA_OK;
         if (!good && lua::interrupt_requested()) lua_error(L_);
@@ -687,7 +762,7 @@ private:
         if (!good) {
             failure_ = lua::text_at(L_, -1);
         } else if (run != nullptr && static_cast<std::size_t>((*run)->trajectory.size()) == rows) {
-            found = stacked(*run, p, rows);
+            found = stacked(p, rows);
         }
         lua_settop(L_, top);
         return found;
@@ -699,39 +774,40 @@ private:
             options_.push(name);
             lua_setfield(L_, -2, name);
         }
-        lua::set_value(L_, "theta0", value_of(p, Fitted::Of::theta0, initial_.theta));
-        lua::set_value(L_, "velocity0", value_of(p, Fitted::Of::velocity0, initial_.velocity));
+        for (const auto& [option, known] : {std::pair("theta0", &theta0_), std::pair("velocity0", &velocity0_)}) {
+            std::map<std::string, double> values;
+            for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
+                const auto value = fitted(p, before_names(system_, i) + option);
+                values[system_.bodies[i].name] = value.value_or((*known)[i].value_or(0));
+            }
+            system_.named ? lua::set_value(L_, option, values) : lua::set_value(L_, option, values.begin()->second);
+        }
         lua::set_value(L_, "t_start", t_.front());
         lua::push_vector(L_, {t_.begin(), t_.begin() + static_cast<std::ptrdiff_t>(rows)});
         lua_setfield(L_, -2, "times");
     }
 
-    double value_of(const Eigen::VectorXd& p, Fitted::Of of, double otherwise) const {
+    /// The parameter of this name, if it is fitted.
+    [[nodiscard]] std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
         for (std::size_t i = 0; i < free_.size(); ++i) {
-            if (free_[i].of == of) return p[static_cast<Eigen::Index>(i)];
+            if (free_[i].name == name) return p[static_cast<Eigen::Index>(i)];
         }
-        return otherwise;
+        return {};
     }
 
     /// The measured numbers of a run, which stands on the top of the stack.
-    std::optional<Eigen::VectorXd> stacked(const RunHandle& run, const Eigen::VectorXd& p, std::size_t rows) {
-        const double offset = value_of(p, Fitted::Of::offset, asked_.offset.value_or(0));
+    std::optional<Eigen::VectorXd> stacked(const Eigen::VectorXd& p, std::size_t rows) {
         std::vector<double> all;
         std::vector<std::vector<double>> columns;
         for (const MeasuredColumn& column : columns_) {
-            std::vector<double>& numbers = columns.emplace_back(rows);
-            if (column.quantity == Measure::acceleration) {
-                lua_getfield(L_, -1, "acceleration");
-                const auto* vector = lua::test<lua::Vector>(L_, -1);
-                if (vector == nullptr) options_.fail({"the runs of this system have no acceleration"});
-                std::copy(vector->begin(), vector->end(), numbers.begin());
-                lua_pop(L_, 1);
-                continue;
-            }
-            const bool theta = column.quantity == Measure::theta;
-            const auto from = run->trajectory.column(theta ? motion::Column::theta : motion::Column::velocity);
-            for (std::size_t i = 0; i < rows; ++i)
-                numbers[i] = from[static_cast<Eigen::Index>(i)] + (theta ? offset : 0);
+            lua_getfield(L_, -1, column.name.c_str());
+            const auto* vector = lua::test<lua::Vector>(L_, -1);
+            if (vector == nullptr) options_.fail({fmt::format("the runs of this system have no {}", column.name)});
+            std::vector<double>& numbers = columns.emplace_back(vector->begin(), vector->end());
+            lua_pop(L_, 1);
+            if (column.quantity != Measure::theta) continue;
+            const auto offset = fitted(p, before_names(system_, column.joint) + "offset");
+            for (double& theta : numbers) theta += offset.value_or(offset_[column.joint].value_or(0));
         }
         for (std::size_t i = 0; i < rows; ++i) {
             for (std::size_t j = 0; j < columns_.size(); ++j) {
@@ -745,27 +821,27 @@ private:
     /// The tables are the user's.
     void restore() {
         for (const Fitted& one : free_) {
-            if (one.of == Fitted::Of::table) set_number(one, one.start);
+            if (one.table > 0) set_number(one, one.start);
         }
     }
 
     void answer(const analysis::GeneralFit& found, FitAnswer& fit) {
-        Guess guess = with(found.value);
+        model::Assembly system = with(found.value);
         restore();
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
             double value = found.value[place];  // what holds may have been less than what slides
-            if (free_[i].of == Fitted::Of::system)
-                guess.with(free_[i].name, [&](NumberPlace own) { value = *own.value; });
+            for (std::size_t j = 0; j < system.joints.size(); ++j) {
+                change_numbers(system, j, [&](const std::string& name, const double& number, Sign /*sign*/) {
+                    if (name == free_[i].name) value = number;
+                    return false;
+                });
+            }
             fit.values.emplace_back(free_[i].name, value);
             fit.errors.emplace_back(free_[i].name, found.error[place]);
             if (found.silent[i]) fit.silent.push_back(free_[i].name);
         }
-        if (guess.rig) {
-            fit.rig = guess.assembly();
-        } else if (auto made = model::Oscillator::make(guess.own)) {
-            fit.system = std::move(made).value();
-        }
+        fit.system = std::move(system);
         const MeasuredColumn& first = columns_.front();
         Eigen::Index next = 0;
         for (std::size_t row = 0; row < t_.size(); ++row) {
@@ -778,8 +854,7 @@ private:
         }
         fit.found.noise = found.noise * first.size;
         constexpr double alike = 1.3, rounding = 1e-7;
-        const double range = range_[static_cast<std::size_t>(first.quantity)];
-        if (found.widening > alike && fit.found.noise > rounding * range) {
+        if (found.widening > alike && fit.found.noise > rounding * first.range) {
             fit.remark = fmt::format(
                 "the residual is correlated from sample to sample (noise in M, another law of friction or a wrong "
                 "guess); the errors are {:.2g} times wider because of that",
@@ -791,14 +866,13 @@ private:
     const lua::Options& options_;
     const IdentifyOptions& asked_;
     const Data& record_;
-    Guess guess_;
+    model::Assembly system_;
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
     std::vector<double> t_;
-    std::vector<Eigen::Index> known_until_;  ///< how many numbers there are up to each row
-    std::array<double, 3> range_{};          ///< of each quantity, 0 where it is not measured
-    model::State initial_;
-    double swing_ = 1, angle_ = 1, speed_ = 1, torque_ = 1;
+    std::vector<Eigen::Index> known_until_;                           ///< how many numbers there are up to each row
+    std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< that are given, by body or link
+    double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;
     std::string failure_;  ///< of the last run
 };
 
@@ -838,7 +912,7 @@ void name_values(FitAnswer& fit) {
                                            .kinetic_friction = value(Unknown::Rd),
                                            .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd)),
                                            .units = fit.units});
-    if (system) fit.system = std::move(system).value();
+    if (system) fit.system = motion::engine::assembly_of(system.value());
 }
 
 int identify_record(lua_State* L) {
@@ -909,8 +983,7 @@ int fit_value(lua_State* L) {
 }
 
 lua::Pushed fit_system(lua_State* L, const FitHandle& fit) {
-    fit->system ? static_cast<void>(lua::push(L, *fit->system)) : lua_pushnil(L);
-    if (fit->rig != nullptr) lua::push<model::AssemblyHandle>(L, fit->rig);
+    fit->system ? static_cast<void>(push_with_numbers(L, *fit->system)) : lua_pushnil(L);
     return {};
 }
 
@@ -959,15 +1032,26 @@ std::string unit_of_value(const model::Units& units, std::string_view name) {
                                           : "";
 }
 
+/// "load." of "load.Rd"; empty for one body without a name.
+std::string body_of_value(const FitAnswer& fit, std::string_view name) {
+    for (std::size_t j = 0; fit.system && j < fit.system->joints.size(); ++j) {
+        std::string before = before_names(*fit.system, j);
+        if (name.starts_with(before)) return before;
+    }
+    return "";
+}
+
 /// What is known of a value that the record does not determine. That of a fit is one of many: Re is at least Rd.
 std::string text_of_silent(const FitAnswer& fit, const std::string& name, double value) {
-    const auto is_silent = [&fit](const char* other) {
+    const auto is_silent = [&fit](const std::string& other) {
         return std::find(fit.silent.begin(), fit.silent.end(), other) != fit.silent.end();
     };
-    const auto Rd = std::find_if(fit.values.begin(), fit.values.end(), [](const auto& v) { return v.first == "Rd"; });
-    const bool bounded = name == "Re" && Rd != fit.values.end() && !is_silent("Rd");
-    const std::string number =
-        model::with_unit(fmt::format("{:.6g}", bounded ? Rd->second : value), unit_of_value(fit.units, name));
+    const std::string before = body_of_value(fit, name), sliding = before + "Rd";
+    const auto Rd =
+        std::find_if(fit.values.begin(), fit.values.end(), [&](const auto& v) { return v.first == sliding; });
+    const bool bounded = name == before + "Re" && Rd != fit.values.end() && !is_silent(sliding);
+    const std::string number = model::with_unit(fmt::format("{:.6g}", bounded ? Rd->second : value),
+                                                unit_of_value(fit.units, name.substr(before.size())));
     return bounded ? fmt::format(">= {}, not determined by this record", number)
                    : fmt::format("not determined by this record; {} is possible", number);
 }
@@ -987,7 +1071,8 @@ std::string fit_summary(const FitAnswer& fit) {
         text += fmt::format("\n  {:<{}} {:<12.6g}", name, width, value);
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
-        text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
+        text =
+            model::with_unit(std::move(text), unit_of_value(fit.units, name.substr(body_of_value(fit, name).size())));
     }
     if (!unlisted.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(unlisted, ", "));
     constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
@@ -1070,9 +1155,10 @@ constexpr lua::Member identify_members[] = {
      {"identify{ OPTIONS } -> fit",
       "Finds the system that made a record. A free decay (no M) gives omega0, zeta, Rd_over_k and the start; with "
       "I or k also the others. With a known M it gives I, k, C, Rd, Re and the start. Given values are not "
-      "fitted.\nWith system, a guess, and free it fits any numbers of any system of one mass, and of tables that M "
+      "fitted.\nWith system, a guess, and free it fits any numbers of any system, and of tables that M "
       "uses, to measured angles, velocities or accelerations, also on a belt, on a shaking base or with states: "
-      "fit[\"friction.speed\"]. Correlated residuals widen the errors, and the fit reports that.",
+      "fit[\"friction.speed\"], or of several bodies and links fit[\"load.Rd\"]. Correlated residuals widen the errors, and "
+      "the fit reports that.",
       "run = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }\n"
       "fit = identify{ data = run, I = 1 }\n"
       "print(string.format(\"%.4f %.4f %.4f\", fit.k, fit.C, fit.Rd))  --> 40.0000 0.3000 0.8000",
@@ -1083,7 +1169,13 @@ constexpr lua::Member identify_members[] = {
 
 const lua::Class identify_functions = {
     "identify",
-    {"identify{ ... } -> fit", "Finds the system behind a record.", "print(identify ~= nil)  --> true"},
+    {"identify{ ... } -> fit", "Finds the system behind a record.",
+     "rig = system{ bodies = { motor = { I = 1 }, load = { I = 2, Rd = 0.4 } },\n"
+     "    links = { shaft = { \"motor\", \"load\", k = 6 } } }\n"
+     "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10, dt = 0.05 }\n"
+     "guess = rig:with{ bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 5 } } }\n"
+     "fit = identify{ data = run, system = guess, free = { \"load.Rd\", \"shaft.k\" }, measured = { \"load.theta\" } }\n"
+     "print(string.format(\"%.4f %.4f\", fit[\"load.Rd\"], fit[\"shaft.k\"]))  --> 0.4000 6.0000"},
     identify_members};
 
 const lua::Class fit_class = {

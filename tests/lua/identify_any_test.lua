@@ -103,6 +103,96 @@ test("exact data give errors of some ulps at least, and many records the coverag
     assert(part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
 end)
 
+local function drive_train(Rd, k)
+    return system { bodies = { motor = { I = 1, C = 0.05 }, load = { I = 2, k = 1, Rd = Rd } },
+        links = { shaft = { "motor", "load", k = k, C = 0.1 }, clutch = { "motor", "load", Rd = 0.2 } } }
+end
+local turned = { motor = excitation.harmonic { amplitude = 3, omega = 1.3 } }
+local turning = drive_train(0.4, 6):simulate { M = turned, t_end = 30, dt = 0.05 }
+local of_both = { "load.theta", ["motor.velocity"] = "w" }
+local function measured_both(seed)
+    return { t = turning.t, ["load.theta"] = turning["load.theta"] + noise(#turning, 0.01, seed),
+        w = turning["motor.velocity"] + noise(#turning, 0.02, 100 + seed) }
+end
+
+test("numbers of bodies and links are found from a guess that is wrong by 30 %, within their errors", function()
+    local judged, part, ratio = judge()
+    for seed = 1, lots(10) do
+        local fit = identify { data = measured_both(seed), system = drive_train(0.52, 4.2), M = turned,
+            free = { "load.Rd", "shaft.k" }, measured = of_both }
+        found(fit, { ["load.Rd"] = 0.4, ["shaft.k"] = 6 }, 0.01)
+        fits(fit, { ["motor.theta0"] = 0, ["load.velocity0"] = 0 })
+        equal(fit.system.load.Rd, fit["load.Rd"])
+        equal(fit.system.shaft.k, fit["shaft.k"])
+        equal(fit.system.clutch.Rd, 0.2)
+        equal(#fit.silent, 0)
+        near(fit.noise, 0.01, 0.001)
+        equal(#fit.residual, #turning)
+        part, ratio = judged(fit, { ["load.Rd"] = 0.4, ["shaft.k"] = 6 })
+    end
+    assert(part > 0.8 and ratio < 1.4, part .. " " .. ratio)
+end)
+
+test("starts and offsets of bodies are given by name, a run of several bodies is a record, and what it leaves open is told", function()
+    local at_rest = { load = 0, motor = 0 }
+    local fit = identify { data = turning, system = drive_train(0.5, 6), M = turned, free = { "load.Rd", "load.Re", "load.offset" },
+        measured = { "load.theta", "shaft.theta" }, theta0 = at_rest, velocity0 = at_rest, offset = { shaft = 0 } }
+    equal(table.concat(fit.names, " "), "load.Rd load.Re load.offset")
+    near(fit["load.Rd"], 0.4, 1e-6)
+    near(fit["load.offset"], 0, 1e-6)
+    local slides = system { bodies = { a = { I = 1, Rd = 0.1 } } }
+    local r = slides:simulate { velocity0 = { a = 3 }, t_end = 8, dt = 0.05 }
+    fit = identify { data = r, system = slides, free = { "a.Rd", "a.Re" }, measured = "a.velocity", theta0 = { a = 0 } }
+    equal(table.concat(fit.silent, " "), "a.Re")
+    has(fit, ">= 0.1, not determined by this record")
+end)
+
+test("a body is fitted as a system of one", function()
+    for _, normal in ipairs { 1, 2 } do
+        local body = { I = 1, k = 4, C = 0.05, Rd = 0.2 / normal, normal = normal }
+        local r = system(merged(body, { Rd = 0.1 / normal })):simulate { M = M, theta0 = 0.3, t_end = 20, dt = 0.05 }
+        local d = record(r, 3, 0.01)
+        local one = identify { data = d, system = system(body), M = M, free = { "Rd", "k" } }
+        local other = identify { data = { t = d.t, ["a.theta"] = d.theta }, system = system { bodies = { a = body } }, M = { a = M },
+            free = { "a.Rd", "a.k" }, measured = "a.theta" }
+        fits(one, { Rd = 0.1 / normal })
+        for _, name in ipairs { "Rd", "k", "theta0", "velocity0" } do
+            near(other["a." .. name], one[name], 1e-6 * math.max(math.abs(one[name]), one.std_error[name]))
+            near(other.std_error["a." .. name], one.std_error[name], 1e-4 * one.std_error[name])
+        end
+        equal(other.system.a.normal, normal)
+    end
+end)
+
+test("Re goes with Rd where both are one number, of each way of an asymmetric law, too", function()
+    local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
+    local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
+    local fit = identify { data = r, M = M, system = uneven(0.1, 0.1), free = { "friction.forward.Rd", "friction.backward.Rd" } }
+    near(fit["friction.forward.Rd"], 0.05, 1e-6)
+    local Rd, Re = tostring(fit.system):match "forward = { Rd = (%S+), Re = (%S+) }"
+    equal(Re, Rd)
+end)
+
+test("what cannot be fitted of several bodies is told", function()
+    local function refused(changes, ...)
+        local asked = { data = measured_both(1), system = drive_train(0.4, 6), M = turned, free = { "load.Rd" }, measured = of_both }
+        return { merged(asked, changes), ... }
+    end
+    local varying = system { bodies = { load = { I = 1, k = 1, Rd = function(t) return 0.1 end }, motor = { I = 1 } } }
+    refuses(identify, {
+        refused({ free = { "laod.Rd" } }, "free has 'laod.Rd', which is no number of the system, such as load.I", "did you mean 'load.Rd'?"),
+        refused({ free = { "shaft.I" } }, "free has 'shaft.I', which is no number"),
+        refused({ system = varying }, "free has 'load.Rd', but that is a function: only numbers can be fitted"),
+        refused({ measured = { "laod.theta" } }, "got \"laod.theta\"; did you mean 'load.theta'?"),
+        refused({ measured = { ["load.theta"] = "thta" } }, "there is no column 'thta' among load.theta, t, w"),
+        refused({ measured = "load.theta", theta0 = { laod = 1 } }, "theta0: the system has no 'laod'", "did you mean 'load'?"),
+        refused({ theta0 = 1 }, "theta0 must be a table by body, such as { load = 1 }, got 1"),
+        refused({ theta0 = { shaft = 1 } }, "theta0 must be a table by body"),
+        refused({ M = { laod = 1 } }, "M: there is no body 'laod'", "did you mean 'load'?"),
+    })
+    raises(function() identify { data = measured_both(1), system = varying, free = { "load.k" } } end, "measured must be", "got nil")
+end)
+
 test("what cannot be fitted is told", function()
     local record = { t = run.t, theta = run.theta }
     refuses(identify, {
