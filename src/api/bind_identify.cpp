@@ -1131,7 +1131,9 @@ constexpr lua::Member fit_members[] = {
      {"fit.noise -> number", "The standard deviation of record minus fit.",
       DINAL_FIT "print(math.abs(fit.noise - 0.01) < 0.001)  --> true"}},
     {lua::a_value<FitHandle, [](const FitAnswer& fit) { return lua::Vector(residual_of(fit)); }>,
-     {"fit.residual -> vector", "Record minus fit at each sample. It should look like noise.",
+     {"fit.residual -> vector",
+      "Record minus fit at each sample. It should look like noise. If several columns are measured, it is that of an angle if "
+      "there is one, else of a velocity.",
       DINAL_FIT "print(#fit.residual == #run)  --> true"}},
     {lua::a_method<fit_plot>,
      {"fit:plot{ OPTIONS }",
