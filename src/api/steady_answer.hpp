@@ -166,11 +166,6 @@ analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis:
 /// When its controllers repeat; raises when they never do.
 double settles_or_fail(const lua::Options& options, const analysis::RigQuestion& question);
 int steady_of_rig(lua_State* L);
-void run_of_rig(lua_State* L, const Steady& s);
-const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig);
-std::string story_of_rig(lua_State* L, const Steady& s);
-/// s.load
-int body_of_steady(lua_State* L);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",

@@ -258,7 +258,7 @@ local questions = {
         return merged(answer, each(way.part(s), "amplitude peak mean lag peak_lag stops stuck"))
     end,
     ["steady of the run"] = function(way, kind)
-        local s = way.part(simulated(way, kind)):steady(period_of(kind))
+        local s = simulated(way, kind):steady(period_of(kind))
         return fields(way.part(s), "status period amplitude")
     end,
     response = function(way, kind)
@@ -342,8 +342,6 @@ local different = {
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
-    ["steady of the run: refused, constant laws, event that bounces endlessly"] =
-        "a run of several bodies has no steady(): it is asked of the system",
     ["pictures of the run: plot"] = "the run of several bodies draws the angles of all",
     ["pictures of the run: phase_plot, constant laws, event that bounces endlessly"] =
         "the run of several bodies has no phase plane",
@@ -365,7 +363,6 @@ local unanswered = {
     ["bifurcation: answer, event that stops"] = "the run ends before its samples",
     ["bifurcation: answer, event that bounces endlessly"] = "the run ends before its samples",
     ["steady: answer, event that bounces endlessly"] = "the motion cannot be followed",
-    ["steady of the run: answer, laws of several"] = "a run of several bodies has no steady()",
 }
 
 -- The keys of such a list, each for one field and one kind.
