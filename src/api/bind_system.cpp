@@ -1,6 +1,7 @@
 // system{...}, nondimensional{...} and the systems they make. sys:simulate{...} is in bind_simulate.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -217,9 +218,154 @@ const lua::Class system_class = {
     nullptr,
     system_card};
 
+namespace {
+
+// ---- several bodies
+
+template <bool links>
+std::vector<std::string> joint_names(const model::Assembly& system) {
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (system.is_link(j) == links) names.push_back(system.joints[j].name);
+    }
+    return names;
+}
+
+int rig_with(lua_State* L) {
+    static_cast<void>(lua::self<AssemblyHandle>(L, 1, rig_with_call.example));
+    return system_with(L);
+}
+
+/// That which is no number or law of the options in the table on the top.
+const char* varying_option(lua_State* L) {
+    for (const char* name : {"friction", "Rd", "Re", "normal"}) {
+        const bool given = lua_getfield(L, -1, name) != LUA_TNIL;
+        const bool constant = lua_type(L, -1) == LUA_TNUMBER || lua::test<model::Friction>(L, -1) != nullptr;
+        lua_pop(L, 1);
+        if (given && !constant) return name;
+    }
+    return nullptr;
+}
+
+/// rig.load is the body or link as a system. One body without a name has the fields of a system.
+int field_of_rig(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) return 0;
+    const AssemblyHandle rig = lua::self<AssemblyHandle>(L, 1, "rig.load");
+    const std::string_view name = lua_tostring(L, 2);
+    const auto& members = system_class.members;
+    const auto member = std::find_if(members.begin(), members.end(), [&](const lua::Member& one) {
+        return one.name == name && one.kind == lua::Kind::field;
+    });
+    const bool own = std::any_of(rig->joints.begin(), rig->joints.end(), [&](const auto& j) { return j.name == name; });
+    if (rig->named && !own && member != members.end()) {
+        lua::raise(L, {.sentence = fmt::format("{0} is of one body or link: rig.{1}.{0}", name, rig->joints[0].name),
+                       .culprit = std::string(name)});
+    }
+    if (rig->named) {
+        return push_alone(L, fmt::format("rig.{}", name), *rig, joint_named(L, name, *rig, "this system", rig_class));
+    }
+    if (member == members.end()) return 0;
+    push_joint(L, *rig, 0);
+    const char* varying = varying_option(L);
+    if (member->name == "Rd" || member->name == "Re" || member->name == "normal" || member->name == "friction") {
+        if (lua_getfield(L, -1, lua_tostring(L, 2)) != LUA_TNIL) return 1;
+        lua_pop(L, 1);
+        if (name == "Re" && lua_getfield(L, -1, "Rd") != LUA_TNIL) return 1;
+        if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // of no matter to the law
+    } else if (name != "dead_zone") {
+        varying = nullptr;
+    }
+    if (varying != nullptr && name != "normal") {
+        lua_getfield(L, 3, varying);
+        lua::raise(L, fmt::format("this system has no constant {}: its {} is {}", name, varying,
+                                  lua::is_callable(L, -1) ? "a function" : lua::describe(L, -1)));
+    }
+    lua_pushcfunction(L, member->call);
+    lua::push(L, lua::value_or_raise(L, "rig", model::Oscillator::make(alone(*rig, 0))));
+    lua_call(L, 1, 1);
+    return 1;
+}
+
+std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
+    return source::lua_text(L, *rig);
+}
+
+#define DINAL_RIG                                                                 \
+    "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.2 } },\n" \
+    "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
+
+constexpr lua::Member rig_members[] = {
+    {lua::a_method<simulate_bodies>,
+     {"rig:simulate{ OPTIONS } -> rig_run",
+      "Runs a system of several bodies, or one whose friction depends on more than its speed: by polynomials "
+      "between located events, as integrator.spectral does. All sticking contacts are decided together.",
+      DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"
+                "print(string.format(\"%.6f\", run.events[1].t), run.events[1].kind, run.events[1].where)  --> "
+                "1.153846\tstick\tclutch",
+      {&bodies_simulate_call}}},
+    {lua::a_method<steady_of_rig>,
+     {"rig:steady{ OPTIONS } -> steady",
+      "The motion that remains when transients have died out, as sys:steady finds it for one body. s.load is the "
+      "motion of the body `load`: amplitude, mean, lag, stops, run. Angles of rotating bodies are measured "
+      "relative to each other.",
+      "rig = system{ bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },\n"
+      "    links = { rod = { \"a\", \"b\", k = 2, C = 0.1 } } }\n"
+      "s = rig:steady{ belt = { a = 0.1 }, theta0 = { a = 0.3 } }\n"
+      "print(s.status, string.format(\"%.6f %.6f\", s.period, s.b.amplitude))  --> steady\t4.627741 0.114468",
+      {&rig_steady_call}}},
+    {lua::a_method<response_of_rig>,
+     {"rig:response{ OPTIONS } -> data",
+      "The steady motion over a list of values, as sys:response has it for one body: branches are followed round their "
+      "folds, and c.points and c.jumps tell of the body or link `of`. Columns: the varied parameters; amplitude, lag, "
+      "peak, stops and stuck of each body and link, as in \"load.amplitude\"; stable, branch and status. Under controllers "
+      "that sample or wait, and where `of` goes round, each value is searched from the one before.",
+      "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
+      "} } }\n"
+      "c = rig:response{ over = { omega = { 0.5, 2 } }, at = function(p)\n"
+      "    return { M = { a = excitation.harmonic{ omega = p.omega } } }\n"
+      "end }\n"
+      "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
+      {&rig_response_call}}},
+    {lua::a_method<rig_with>,
+     {"rig:with{ OPTIONS } -> rig",
+      "A copy of the system with some parameters of its bodies and links changed, each by the options of system{...}.",
+      DINAL_RIG "print(rig:with{ bodies = { load = { Rd = 0.5 } } }.load.Rd)  --> 0.5",
+      {&rig_with_call}}},
+    {lua::a_value<AssemblyHandle, [](const AssemblyHandle& rig) { return units_by_name(rig->units); }>,
+     {"rig.units -> table", "The names of the units of theta, t and M; nil without one.",
+      DINAL_RIG "print(rig.units.theta)  --> rad"}},
+    {lua::a_value<AssemblyHandle, joint_names<false>>,
+     {"rig.bodies -> table", "The names of the bodies, in alphabetical order.",
+      DINAL_RIG "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
+    {lua::a_value<AssemblyHandle, joint_names<true>>,
+     {"rig.links -> table", "The names of the links, in alphabetical order.", DINAL_RIG "print(#rig.links)  --> 1"}},
+    {lua::a_text<AssemblyHandle, rig_text>,
+     {"tostring(rig) -> string", "The system as Lua text.",
+      "print(system{ bodies = { a = { I = 1 }, b = { I = 2, k = 4 } } })  --> system{ bodies = { a = { I = 1 }, b "
+      "= { I "
+      "= 2, k = 4 } } }"}},
+};
+
+#undef DINAL_RIG
+
+}  // namespace
+
+const lua::Class rig_class = {
+    "rig",
+    {"system{ bodies = { ... }, links = { ... } } -> rig",
+     "A system of several bodies, or of one whose friction depends on more than its speed. It cannot be changed. rig.load "
+     "is the body `load` as a system of its own, with all fields of a system: rig.load.omega0. For a link such as "
+     "rig.shaft, I is I1 I2/(I1 + I2), which is what turns if both of its bodies are free. One body without a name has "
+     "the fields of a system except for dead_zone.",
+     "rig = system{ I = 1, k = 4, Rd = 0.3, normal = function(t) return 1 + t end }\n"
+     "print(rig:simulate{ theta0 = 1, t_end = 20 }.outcome)  --> stuck at the end"},
+    rig_members,
+    field_of_rig};
+
 void register_system(lua_State* L) {
     lua::add_class<model::Oscillator>(L, system_class);
     lua::add_functions(L, system_functions);
+    lua::add_class<AssemblyHandle>(L, rig_class);
 }
 
 int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {

@@ -1,6 +1,7 @@
 // Systems of several bodies, and of one whose friction depends on more than its speed, as Lua sees them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -60,6 +61,24 @@ inline constexpr text::Option bodies_drive_rows[] = {
      .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
      .fields = {&event_call, text::Fields::Place::listed}},
 };
+inline constexpr text::Option rig_integrator_option[] = {
+    {.name = "integrator",
+     .otherwise = "spectral",
+     .meaning = "the method: integrator.spectral or integrator.rk4; exact and dinal1989 are for one body with constant "
+                "friction",
+     .object = "integrator",
+     .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
+};
+inline constexpr auto bodies_simulate_options =
+    text::joined(bodies_drive_rows, window_options, rig_integrator_option, dense_option);
+inline constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
+                                                 bodies_simulate_options};
+int simulate_bodies(lua_State* L);
+
+/// Calls f with the joint of each name in the table of this option, the value on the top of the stack.
+enum class Names { bodies, links, both };
+void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
+                    Names which, const std::function<void(std::size_t)>& f);
 /// Those of the call, by the names of the bodies.
 motion::engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system);
 /// What users' functions get as theta, velocity and z.
@@ -79,6 +98,11 @@ struct BodiesRun {
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+std::vector<std::string> body_names(const model::Assembly& system);
+/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
+model::OscillatorParameters alone(const model::Assembly& system, std::size_t joint);
+/// Pushes the table of options that makes the body or link.
+void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
 model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
 /// The run as seen from the body or link of this joint.

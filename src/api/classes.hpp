@@ -7,7 +7,6 @@ namespace dinal::api {
 
 /// One for each bind_*.cpp: called with the table `dinal` on the top of the stack, which it leaves there.
 void register_system(lua_State* L);
-void register_bodies(lua_State* L);
 void register_friction(lua_State* L);
 void register_spring(lua_State* L);
 void register_excitation(lua_State* L);

@@ -19,11 +19,11 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system,     api::register_bodies, api::register_friction, api::register_spring,
-    api::register_excitation, api::register_run,    api::register_energy,   api::register_load,
-    api::register_theory,     api::register_vector, api::register_data,     api::register_progress,
-    api::register_plot,       api::register_steady, api::register_identify, sweep::register_sweep,
-    api::register_integrator, lab::register_lab,    lab::register_report,   register_help,
+    api::register_system, api::register_friction, api::register_spring,   api::register_excitation,
+    api::register_run,    api::register_energy,   api::register_load,     api::register_theory,
+    api::register_vector, api::register_data,     api::register_progress, api::register_plot,
+    api::register_steady, api::register_identify, sweep::register_sweep,  api::register_integrator,
+    lab::register_lab,    lab::register_report,   register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.

@@ -41,9 +41,9 @@ void open_course_libraries(lua_State* course) {
         lua_pop(course, 1);
     }
     lua::make_dinal_table(course);
-    for (const auto add : {register_system, register_friction, register_excitation, register_integrator, register_run,
-                           register_energy, register_load, register_theory, register_vector, register_data,
-                           register_steady, register_identify, register_bodies}) {
+    for (const auto add :
+         {register_system, register_friction, register_excitation, register_integrator, register_run, register_energy,
+          register_load, register_theory, register_vector, register_data, register_steady, register_identify}) {
         add(course);
     }
     lua_pushglobaltable(course);

@@ -1,0 +1,94 @@
+// What drives a run of bodies and links, and from where it starts: options to engine::Drive.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "api/bind_excitation.hpp"
+#include "api/bodies.hpp"
+#include "api/extras_options.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+#include "model/controller.hpp"
+
+namespace dinal::api {
+
+namespace engine = motion::engine;
+
+namespace {
+
+/// What relays can look at: theta.load, velocity.load and the states.
+std::vector<std::string> names_for_relays(const model::Assembly& system, const engine::Drive& drive) {
+    std::vector<std::string> known;
+    if (!system.named) known = {"theta", "velocity"};
+    for (const char* kind : {"theta.", "velocity."}) {
+        for (const model::Body& each : system.bodies) {
+            if (system.named) known.push_back(kind + each.name);
+        }
+    }
+    for (const model::OwnState& state : drive.states) known.push_back(state.name);
+    return known;
+}
+
+}  // namespace
+
+engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+    engine::Drive drive;
+    const std::size_t n = system.bodies.size();
+    drive.loads.resize(n), drive.belts.resize(system.joints.size());
+    drive.theta0.assign(n, 0), drive.velocity0.assign(n, 0);
+    const auto part = [&](const char* option, std::size_t joint) {
+        return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
+    };
+    const auto named = [&](const char* option, std::size_t joint) {
+        return fmt::format("{}: {}", options.call(), part(option, joint));
+    };
+    for_each_named(L, options, "M", system, Names::bodies,
+                   [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
+    for_each_named(L, options, "belt", system, Names::both, [&](std::size_t j) {
+        drive.belts[j] = to_excitation(L, -1, named("belt", j), "belt");
+        if (drive.belts[j].has_feedback() || model::has_memory(drive.belts[j])) {
+            options.fail("belt", "belt must be a number, an excitation or a function of t alone");
+        }
+    });
+    for (const auto& [option, values] :
+         {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
+        for_each_named(L, options, option, system, Names::bodies, [&, name = option, to = values](std::size_t i) {
+            if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
+                options.fail(name,
+                             fmt::format("{} must be a finite number, got {}", part(name, i), lua::describe(L, -1)));
+            }
+            (*to)[i] = lua_tonumber(L, -1);
+        });
+    }
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        const model::Joint& joint = system.joints[j];
+        if (!joint.walls) continue;
+        const double angle = drive.theta0[static_cast<std::size_t>(joint.first)] -
+                             (joint.second < 0 ? 0 : drive.theta0[static_cast<std::size_t>(joint.second)]);
+        if (auto wrong = joint.walls->crossed_by(angle)) {
+            if (system.is_link(j)) {
+                wrong->sentence =
+                    fmt::format("theta0: the angle {:.6g} of the link {} is beyond its walls from {:.6g} to {:.6g}",
+                                angle, joint.name, joint.walls->lower, joint.walls->upper);
+            } else if (system.named) {
+                wrong->sentence = fmt::format("theta0.{}{}", joint.name, wrong->sentence.substr(sizeof "theta0" - 1));
+            }
+            options.fail(*wrong);
+        }
+    }
+    drive.base = read_motion(L, options, "base");
+    drive.states = read_states(L, options);
+    drive.events = read_events(L, options);
+    for (std::size_t i = 0; i < n; ++i)
+        check_relays(options, drive.loads[i], names_for_relays(system, drive), part("M", i));
+    return drive;
+}
+
+void name_functions(lua::CallState& call, const model::Assembly& system, const engine::Drive& drive) {
+    if (system.named) call.name_bodies(body_names(system));
+    std::vector<std::string> names;
+    for (const model::OwnState& state : drive.states) names.push_back(state.name);
+    if (!names.empty()) call.name_states(names);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,476 @@
+// What bodies and links are made of: from the options of system{...} to joints, and back to options for :with{...}.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "api/bind_excitation.hpp"
+#include "api/bind_simulate.hpp"
+#include "api/bodies.hpp"
+#include "api/classes.hpp"
+#include "api/extras_options.hpp"
+#include "api/run.hpp"
+#include "api/system_options.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+#include "model/controller.hpp"
+#include "model/laws/coulomb.hpp"
+#include "motion/engine/one_body.hpp"
+#include "source/describe.hpp"
+#include "text/characters.hpp"
+#include "text/sentences.hpp"
+
+namespace dinal::api {
+
+namespace {
+
+namespace engine = motion::engine;
+
+constexpr text::Option inertia_option[] = {model::mechanical_options[0]};
+constexpr text::Option joint_options[] = {
+    {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
+     text::fills<&model::OscillatorParameters::stiffness>},
+    model::mechanical_options[2],
+    model::mechanical_options[6],
+    model::mechanical_options[7],
+};
+constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
+constexpr auto link_options = text::joined(joint_options, friction_options);
+
+}  // namespace
+
+std::vector<std::string> body_names(const model::Assembly& system) {
+    std::vector<std::string> names;
+    for (const model::Body& body : system.bodies) names.push_back(body.name);
+    return names;
+}
+
+model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint) {
+    const model::Joint& own = system.joints[joint];
+    model::OscillatorParameters parameters;
+    parameters.inertia = system.bodies[static_cast<std::size_t>(own.first)].inertia;
+    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
+    return parameters;
+}
+
+std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
+                        const lua::Class& of) {
+    std::vector<std::string> own;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (system.joints[j].name == name) return j;
+        own.push_back(system.joints[j].name);
+    }
+    raise_unknown_name(L, fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
+                       name, own, of);
+}
+
+void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
+                    Names which, const std::function<void(std::size_t)>& f) {
+    if (!options.has(option)) return;
+    options.push(option);
+    if (!system.named) {
+        f(0);
+        lua_pop(L, 1);
+        return;
+    }
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
+    std::vector<std::string> known;
+    const std::size_t first = which == Names::links ? system.bodies.size() : 0;
+    const std::size_t end = which == Names::bodies ? system.bodies.size() : system.joints.size();
+    for (std::size_t j = first; j < end; ++j) known.push_back(system.joints[j].name);
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : lua::written(L, -2);
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            const char* kind = which == Names::bodies ? "body" : which == Names::links ? "link" : "body or link";
+            options.fail({.sentence = fmt::format("{}: there is no {} '{}'; there is {}", option, kind, name,
+                                                  known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))),
+                          .option = option,
+                          .culprit = name,
+                          .cure = text::did_you_mean(name, known)});
+        }
+        f(first + static_cast<std::size_t>(found - known.begin()));
+    }
+    lua_pop(L, 1);
+}
+
+namespace {
+
+/// What everybody asks of a run of several bodies; all else gives way to a body or link of that name.
+constexpr std::string_view names_in_runs[] = {"at",     "continue", "data",  "energy",  "events",    "explain",
+                                              "plot",   "animate",  "save",  "states",  "status",    "outcome",
+                                              "system", "t",        "t_end", "t_start", "integrator"};
+
+/// The names under the option, each of a table; that stays on the top.
+std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& options, const char* option) {
+    options.push(option);
+    std::vector<std::string> names = names_in_table(L, options, option);
+    for (const std::string& name : names) {
+        if (std::find(std::begin(names_in_runs), std::end(names_in_runs), name) != std::end(names_in_runs)) {
+            options.fail(
+                {.sentence = fmt::format("{}: '{}' is a name that a run has already; take another", option, name),
+                 .option = option,
+                 .culprit = name});
+        }
+        check_name(options, option, name, rig_class);
+        if (lua_getfield(L, -1, name.c_str()) != LUA_TTABLE) {
+            options.fail(
+                {.sentence = fmt::format("{}.{} must be a table such as {}, got {}", option, name,
+                                         *option == 'l' ? "{ \"motor\", \"load\", k = 90 }" : "{ I = 1, Rd = 0.4 }",
+                                         lua::describe(L, -1)),
+                 .option = option,
+                 .culprit = lua::written(L, -1)});
+        }
+        lua_pop(L, 1);
+    }
+    return names;
+}
+
+/// All of a joint but its bodies.
+model::Joint asked_joint(lua_State* L, const lua::Options& options, double& inertia) {
+    model::OscillatorParameters numbers;
+    options.fill(numbers);
+    inertia = numbers.inertia;
+    model::Joint joint;
+    joint.stiffness = numbers.stiffness, joint.damping = numbers.damping;
+    joint.friction = asked_friction(L, options, options.call());
+    joint.spring = asked_spring(L, options).value_or(model::Spring());
+    joint.walls = asked_walls(L, options);
+    if (const auto wrong = joint.walls ? joint.walls->complaint() : std::nullopt) options.fail(*wrong);
+    return joint;
+}
+
+/// The same from the table on the top.
+model::Joint read_joint(lua_State* L, const std::string& call, std::span<const text::Option> rows, double& inertia) {
+    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", rows};
+    return asked_joint(L, lua::Options(L, lua_gettop(L), own), inertia);
+}
+
+}  // namespace
+
+model::OscillatorParameters alone(const model::Assembly& system, std::size_t joint) {
+    const model::Joint& own = system.joints[joint];
+    model::OscillatorParameters parameters = parameters_of(system, joint);
+    if (own.second >= 0) {
+        const double other = system.bodies[static_cast<std::size_t>(own.second)].inertia;
+        parameters.inertia = parameters.inertia / (parameters.inertia + other) * other;
+    }
+    parameters.spring = own.spring, parameters.walls = own.walls;
+    if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
+    parameters.normal = own.friction.law.normal();
+    return parameters;
+}
+
+int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
+    const model::OscillatorParameters parameters = alone(system, j);
+    const auto oscillator = lua::value_or_raise(L, call, model::Oscillator::make(parameters));
+    if (system.joints[j].friction.is_constant()) {
+        lua::push(L, oscillator);
+        return 1;
+    }
+    model::Assembly one{
+        .bodies = {{"", parameters.inertia}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
+    one.joints[0].name.clear(), one.joints[0].first = 0, one.joints[0].second = model::Joint::ground;
+    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
+    return 1;
+}
+
+namespace {
+
+int body_index(const lua::Options& options, const model::Assembly& system, const std::string& link, lua_State* L) {
+    const std::string name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        if (system.bodies[i].name == name) return static_cast<int>(i);
+    }
+    const std::vector<std::string> names = body_names(system);
+    options.fail({.sentence = name.empty() ? fmt::format("links.{} must begin with the names of two bodies, such as "
+                                                         "{{ \"{}\", \"{}\", k = 90 }}",
+                                                         link, names.front(), names.back())
+                                           : fmt::format("links.{}: there is no body '{}'; there is {}", link, name,
+                                                         fmt::join(names, ", ")),
+                  .option = "links",
+                  .culprit = name,
+                  .cure = name.empty() ? "" : text::did_you_mean(name, names)});
+}
+
+}  // namespace
+
+int push_bodies(lua_State* L, const lua::Options& options) {
+    const std::vector<std::string> names = tables_by_name(L, options, "bodies");
+    if (names.empty()) options.wrong("bodies");
+    for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
+        if (!options.has(alone)) continue;
+        options.fail(alone, fmt::format("{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
+                                        std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
+    }
+    model::Assembly system;
+    system.units = asked_units(L, options).value_or(model::Units());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        lua_getfield(L, -1, names[i].c_str());
+        double inertia = 0;
+        model::Joint joint =
+            read_joint(L, fmt::format("{}: bodies.{}", options.call(), names[i]), body_options, inertia);
+        joint.name = names[i], joint.first = static_cast<int>(i);
+        system.bodies.push_back({names[i], inertia});
+        system.joints.push_back(std::move(joint));
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    if (options.has("links")) {
+        for (const std::string& name : tables_by_name(L, options, "links")) {
+            if (std::find(names.begin(), names.end(), name) != names.end()) {
+                options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
+            }
+            lua_getfield(L, -1, name.c_str());
+            std::array<int, 2> ends{};
+            for (int end = 0; end < 2; ++end) {
+                lua_rawgeti(L, -1, end + 1);
+                ends.at(static_cast<std::size_t>(end)) = body_index(options, system, name, L);
+                lua_pop(L, 1);
+            }
+            if (ends[0] == ends[1]) {
+                options.fail("links", fmt::format("links.{} must be between two different bodies", name));
+            }
+            if (lua_rawlen(L, -1) > 2) {
+                options.fail("links",
+                             fmt::format("links.{} is between two bodies, and names {}", name, lua_rawlen(L, -1)));
+            }
+            lua::push_copy(L, -1, 2);
+            double none = 0;
+            model::Joint joint = read_joint(L, fmt::format("{}: links.{}", options.call(), name), link_options, none);
+            joint.name = name, joint.first = ends[0], joint.second = ends[1];
+            system.joints.push_back(std::move(joint));
+            lua_pop(L, 2);
+        }
+        lua_pop(L, 1);
+    }
+    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(system)));
+    return 1;
+}
+
+int push_body(lua_State* L, const lua::Options& options) {
+    double inertia = 0;
+    model::Assembly system{.bodies = {}, .joints = {asked_joint(L, options, inertia)}, .named = false};
+    system.bodies.push_back({"", inertia});
+    system.units = asked_units(L, options).value_or(model::Units());
+    return push_alone(L, options.call(), system, 0);
+}
+
+model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
+    model::ContactFriction friction;
+    const auto varying = [&](const char* name) -> std::optional<model::Excitation> {
+        if (!options.has(name)) return {};
+        options.push(name);
+        model::Excitation value = to_excitation(L, -1, fmt::format("{}: {}", call, name), name);
+        lua_pop(L, 1);
+        // Only controllers in M are asked at their instants.
+        if (model::has_memory(value)) {
+            options.fail(name,
+                         fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
+        }
+        return value;
+    };
+    const auto number = [&](const char* name) -> std::optional<double> {
+        options.push(name);
+        const bool is = lua_type(L, -1) == LUA_TNUMBER;
+        lua_pop(L, 1);
+        return is ? std::optional(options.number(name)) : std::nullopt;
+    };
+    friction.normal = varying("normal");
+    const auto normal = number("normal");
+    // A constant load of a law is part of it, so that nobody else needs to know; of bristles it stretches the state.
+    const auto of_law = [&](const model::Friction& law) {
+        friction.law = law;
+        if (!normal || friction.bristle() != nullptr) return friction;
+        friction.law = law.under(*normal);
+        friction.normal.reset();
+        return friction;
+    };
+    options.push("friction");
+    const bool function = lua::is_callable(L, -1) && lua::test<model::Friction>(L, -1) == nullptr;
+    if (function) {
+        friction.function =
+            std::make_shared<lua::LuaFunction>(L, -1,
+                                               lua::FunctionRole{.name = "friction",
+                                                                 .may_be_negative = false,
+                                                                 .motion = lua::FunctionRole::Motion::always,
+                                                                 .of_speed = true});
+        if (options.has("Rd")) options.fail("Rd", "friction and Rd exclude each other; give one of them");
+    }
+    lua_pop(L, 1);
+    const auto Rd = number("Rd"), Re = number("Re");
+    if (function) {
+        if (auto holding = varying("Re")) friction.holding = {holding, holding};
+        return friction;
+    }
+    if (const auto law = asked_law(L, options, {"Rd", "Re"}, true)) {
+        return of_law(*law);
+    }
+    const bool numbers = (!options.has("Rd") || Rd) && (!options.has("Re") || Re);
+    if (numbers) {
+        const model::laws::Coulomb law{Rd.value_or(0), Re.value_or(Rd.value_or(0))};
+        if (auto wrong = law.complaint()) options.fail(*wrong);
+        return of_law(law.breakaway > 0 ? model::Friction(law) : model::Friction());
+    }
+    auto sliding = varying("Rd"), holding = varying("Re");
+    if (!sliding) {  // nothing brakes, but something holds
+        sliding = model::Excitation::make(model::Constant{0}).value();
+    }
+    friction.sliding = {sliding, sliding};
+    if (holding) friction.holding = {holding, holding};
+    return friction;
+}
+
+namespace {
+
+/// The number or the function, where it is nothing else.
+void push_acting(lua_State* L, const model::Excitation& value) {
+    const auto& parts = value.components();
+    const auto* constant = parts.size() == 1 ? std::get_if<model::Constant>(&parts.front().term) : nullptr;
+    const bool always = constant != nullptr && parts.front().from == -model::never && parts.front().to == model::never;
+    if (const lua::LuaFunction* function = source::function_alone(value)) {
+        function->push(L);
+    } else if (always) {
+        lua_pushnumber(L, parts.front().gain * constant->amplitude);
+    } else {
+        lua::push(L, value);
+    }
+}
+
+}  // namespace
+
+void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
+    const model::Joint& joint = system.joints[j];
+    const model::ContactFriction& friction = joint.friction;
+    lua_newtable(L);
+    if (system.is_link(j)) {
+        for (const int end : {joint.first, joint.second}) {
+            lua::push_text(L, system.bodies[static_cast<std::size_t>(end)].name);
+            lua_rawseti(L, -2, end == joint.first ? 1 : 2);
+        }
+    } else {
+        lua::set_number(L, "I", system.bodies[j].inertia);
+    }
+    lua::set_number(L, "k", joint.stiffness);
+    lua::set_number(L, "C", joint.damping);
+    const auto acting = [&](const char* name, const std::optional<model::Excitation>& value) {
+        if (!value) return;
+        push_acting(L, *value);
+        lua_setfield(L, -2, name);
+    };
+    if (const auto* own = dynamic_cast<const lua::LuaFunction*>(friction.function.get())) {
+        own->push(L);
+        lua_setfield(L, -2, "friction");
+    }
+    const model::Friction law = friction.law.under(1);
+    if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
+        lua::set_number(L, "Rd", coulomb->kinetic);
+        lua::set_number(L, "Re", coulomb->breakaway);
+    } else if (!law.none()) {
+        lua::set_value(L, "friction", law);
+    }
+    if (friction.law.normal() != 1) lua::set_number(L, "normal", friction.law.normal());
+    acting("Rd", friction.sliding[1]);
+    acting("Re", friction.holding[1]);
+    acting("normal", friction.normal);
+    if (!joint.spring.none()) lua::set_value(L, "spring", joint.spring);
+    lua::set_value(L, "walls", walls_by_name(joint.walls));
+}
+
+namespace {
+
+/// Writes what stands in the table on the top into that below it, the options of a body. A new Rd and Re make another
+/// law one of Coulomb's again; Re goes with Rd where the two were one number.
+void overwrite(lua_State* L, const lua::Options& options) {
+    const int changes = lua_gettop(L), into = changes - 1;
+    const auto has = [L](int table, const char* name) {
+        const bool is = lua_getfield(L, table, name) != LUA_TNIL;
+        lua_pop(L, 1);
+        return is;
+    };
+    const auto remove = [&](const char* name) {
+        lua_pushnil(L);
+        lua_setfield(L, into, name);
+    };
+    const bool Rd = has(changes, "Rd"), Re = has(changes, "Re");
+    if (has(changes, "friction")) {
+        remove("Rd"), remove("Re");
+    } else if (has(into, "friction")) {
+        lua_getfield(L, into, "friction");
+        const auto* law = lua::test<model::Friction>(L, -1);
+        if (Rd != Re && (Rd || law != nullptr)) {
+            options.fail(Rd ? "Rd" : "Re",
+                         fmt::format("the friction of this system is {}: give both Rd and Re, or friction",
+                                     law == nullptr ? "a function" : source::lua_text(L, *law)));
+        }
+        lua_pop(L, 1);
+        if (Rd) remove("friction");
+    } else if (Rd && !Re) {
+        lua_getfield(L, into, "Rd");
+        lua_getfield(L, into, "Re");
+        const bool one_number = lua_rawequal(L, -1, -2) != 0;
+        lua_pop(L, 2);
+        if (one_number) remove("Re");
+    }
+    for (lua_pushnil(L); lua_next(L, changes) != 0; lua_pop(L, 1)) {
+        lua_pushvalue(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, into);
+    }
+}
+
+}  // namespace
+
+int system_with(lua_State* L) {
+    const auto* several = lua::test<AssemblyHandle>(L, 1);
+    model::Assembly old =
+        several != nullptr ? **several : engine::assembly_of(lua::self<model::Oscillator>(L, 1, with_call.example));
+    const text::Call& call = old.named ? rig_with_call : with_call;
+    const lua::Options options(L, 2, call);
+    const int top = lua_gettop(L);
+    if (old.named) {
+        lua_newtable(L);
+        for (const Names which : {Names::bodies, Names::links}) {
+            lua_newtable(L);
+            for (std::size_t j = 0; j < old.joints.size(); ++j) {
+                if (old.is_link(j) != (which == Names::links)) continue;
+                push_joint(L, old, j);
+                lua_setfield(L, -2, old.joints[j].name.c_str());
+            }
+            const char* option = which == Names::links ? "links" : "bodies";
+            for_each_named(L, options, option, old, which, [&](std::size_t j) {
+                const std::string& name = old.joints[j].name;
+                if (!lua_istable(L, -1)) {
+                    options.fail(option, fmt::format("{}.{} must be a table such as {{ k = 3 }}, got {}", option, name,
+                                                     lua::describe(L, -1)));
+                }
+                lua_getfield(L, top + 2, name.c_str());
+                lua_pushvalue(L, -2);
+                overwrite(L, options);
+                lua_pop(L, 2);
+            });
+            lua_setfield(L, top + 1, option);
+        }
+    } else {
+        push_joint(L, old, 0);
+        lua_pushvalue(L, 2);
+        overwrite(L, options);
+        lua_pop(L, 1);
+    }
+    if (options.has("units")) {
+        options.push("units");
+        lua_setfield(L, top + 1, "units");
+    } else {
+        lua::set_value(L, "units", units_by_name(old.units));
+    }
+    lua_replace(L, 2);
+    lua_settop(L, 2);
+    const lua::Options all(L, 2, {call.name, call.example, system_options});
+    return old.named ? push_bodies(L, all) : push_body(L, all);
+}
+
+}  // namespace dinal::api
