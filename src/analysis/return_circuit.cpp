@@ -101,7 +101,7 @@ public:
         if (run.contradiction) motion.contradiction = run.contradiction;
         if (!model::is_whole(run.outcome)) return motion;
         motion.outcome = run.outcome;
-        motion.bodies = bodies_of(run, *chart_, reach_of(run, *chart_, rows));
+        motion.bodies = bodies_of(run, *chart_, reach_of_rows(run, *chart_));
         const auto seen = std::make_shared<const motion::Trajectory>(
             motion::engine::part_with_rows(system, period->drive, run, here.question.joint, here.question.system));
         motion.of_bodies = std::move(period);

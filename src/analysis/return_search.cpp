@@ -693,7 +693,7 @@ void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
 
 /// From this moment on the run is the motion.
 std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run run, double period) {
-    const Reach reach = reach_of(run, chart_);
+    const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
     const bool forced = question().repeats.period > 0;

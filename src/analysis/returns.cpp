@@ -373,6 +373,24 @@ Reach reach_of(const Runs::Run& run, const Chart& chart, int looks) {
     return reach;
 }
 
+Reach reach_of_rows(const Runs::Run& run, const Chart& chart) {
+    const auto n = static_cast<Index>(chart.bodies());
+    Reach reach;
+    VectorXd y(2 * n);
+    for (std::size_t row = 0; row < run.table.size(); ++row) {
+        for (Index i = 0; i < n; ++i) {
+            const std::size_t theta = 1 + engine::columns_of_body * static_cast<std::size_t>(i);
+            y[i] = run.table(row, theta);
+            y[n + i] = run.table(row, theta + 1);
+        }
+        const VectorXd x = chart.measured(y);
+        if (row == 0) reach = {x, x};
+        reach.low = reach.low.cwiseMin(x);
+        reach.high = reach.high.cwiseMax(x);
+    }
+    return reach;
+}
+
 Index widest_of(const Reach& reach, const Chart& chart, Index bodies) {
     const VectorXd range = reach.range();
     Index widest = -1;

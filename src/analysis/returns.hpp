@@ -161,6 +161,8 @@ struct Reach {
     [[nodiscard]] Eigen::VectorXd range() const { return high - low; }
 };
 Reach reach_of(const Runs::Run& run, const Chart& chart, int looks = 512);
+/// The same of the rows of a run, of angles and velocities only.
+Reach reach_of_rows(const Runs::Run& run, const Chart& chart);
 /// The angle that changes most beside its size, or a velocity where no angle is measured; -1: none changes.
 Eigen::Index widest_of(const Reach& reach, const Chart& chart, Eigen::Index bodies);
 /// How the bodies move in a run of one period, or stand and go round evenly.
