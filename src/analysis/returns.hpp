@@ -167,7 +167,7 @@ Reach reach_of_rows(const Runs::Run& run, const Chart& chart);
 Eigen::Index widest_of(const Reach& reach, const Chart& chart, Eigen::Index bodies);
 /// How the bodies move in a run of one period, or stand and go round evenly.
 std::vector<BodyMotion> bodies_of(const Runs::Run& run, const Chart& chart, const Reach& reach);
-std::vector<BodyMotion> bodies_at(const Eigen::VectorXd& y, const Chart& chart, Eigen::Index bodies);
+std::vector<BodyMotion> bodies_at(const Eigen::VectorXd& y, const Chart& chart, Eigen::Index n);
 
 inline constexpr double largest_stable = 1 + 1e-5;  ///< multiplier
 /// The greatest one first.

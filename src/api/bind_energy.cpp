@@ -307,6 +307,7 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
 std::string story_of_bodies(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
     std::vector<const motion::Trajectory*> seen;
+    seen.reserve(parts.size());
     for (const RunHandle& part : parts) seen.push_back(&part->trajectory);
     const auto energies = energies_of(L, parts);
     const BodiesRun& whole = *run->whole;

@@ -27,7 +27,7 @@ namespace dinal::api {
 namespace {
 
 /// The whole motion, or of one body without a name that of this body.
-SteadyHandle made(std::shared_ptr<const analysis::RigQuestion> question, analysis::SteadyMotion motion);
+SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, analysis::SteadyMotion motion);
 
 /// The motion as seen from the body or link of this joint.
 SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint) {
@@ -45,7 +45,7 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
     return part;
 }
 
-SteadyHandle made(std::shared_ptr<const analysis::RigQuestion> question, analysis::SteadyMotion motion) {
+SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, analysis::SteadyMotion motion) {
     auto rig = std::make_shared<RigSteady>(RigSteady{question, std::move(motion)});
     if (const auto& period = rig->motion.of_bodies) {
         auto run = std::make_shared<BodiesRun>();

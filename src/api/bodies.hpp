@@ -108,9 +108,9 @@ model::OscillatorParameters parameters_of(const model::Assembly& system, std::si
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
 /// Goes on with a run that is not one of an Oscillator.
-int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked);
+int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked);
 /// Pushes it; of one body without a name as seen from that.
-void push_bodies_run(lua_State* L, BodiesRunHandle run);
+void push_bodies_run(lua_State* L, const BodiesRunHandle& run);
 /// The joint of this name; raises that `what`, which has these members, has none of that name.
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of);

@@ -67,7 +67,7 @@ RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     return made;
 }
 
-void push_bodies_run(lua_State* L, BodiesRunHandle run) {
+void push_bodies_run(lua_State* L, const BodiesRunHandle& run) {
     lua::note_external_memory(L, run->run.table.own_bytes());
     push_run(L, seen_from(run, run->system->named ? std::nullopt : std::optional<std::size_t>(0)));
 }

@@ -71,7 +71,7 @@ std::string_view status_word(model::Outcome outcome);
 std::string line_of(const Run& run);
 
 /// What run:explain() says; raises what a user's spring does.
-std::string story_of_run(lua_State* L, const RunHandle& run);
+std::string story_of_run(lua_State* L, const RunHandle& handle);
 /// Lua text that makes the run again, as lines, or the comments of the file that it was read from.
 std::vector<std::string> repeat_lines(lua_State* L, const Run& run);
 /// The t_end that is asked for, the last of the times, or where a run that stopped should have ended.
