@@ -609,10 +609,15 @@ private:
         return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
     }
 
-    /// Behind a fold the walk is on its own way again: what it met there is taken back.
+    /// The walk has met a point of its own, as behind a fold where it did not find the other side: what it has met
+    /// since the fold is taken back.
     bool goes_back() {
         if (!met_again_) return false;
-        while (path_.points.size() > 1 && path_.points.back().kind != BranchKind::fold) path_.points.pop_back();
+        std::vector<BranchPoint>& points = path_.points;
+        const auto is_fold = [](const BranchPoint& point) { return point.kind == BranchKind::fold; };
+        const auto fold = std::find_if(points.rbegin(), points.rend(), is_fold);
+        if (fold == points.rend()) path_.end = WalkEnd::closed;
+        if (fold != points.rend()) points.erase(fold.base(), points.end());
         return true;
     }
 
@@ -669,8 +674,8 @@ private:
     double orientation_ = 0;  // of the walk
     double reach_ = 1;        // of the present step: differences stay on its side of a corner
     std::vector<std::optional<Anchor>> anchors_;
-    std::vector<std::pair<double, Vector>> seen_;  // places at the values asked for
-    bool met_again_ = false;                       // one of them
+    std::vector<std::pair<double, Vector>> seen_;  // points at the values asked for: parameter and place
+    bool met_again_ = false;                       // a point of the walk is one of them
     BranchPath path_;
 };
 

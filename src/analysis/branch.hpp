@@ -20,6 +20,8 @@ namespace dinal::analysis {
 /// The question at a value of the parameter. Asked only from the least to the greatest of the values asked for.
 using Family = std::function<SteadyQuestion(double parameter)>;
 
+struct HeldMode;
+
 /// The map whose fixed points are the motions of a branch, at any value of the parameter.
 class Circuit {
 public:
@@ -29,6 +31,7 @@ public:
         std::optional<Eigen::MatrixXd> derivative = {};  ///< by the place; none: differences must tell
         MapStep step = {};                               ///< of a period map
         double time = 0;
+        std::shared_ptr<const HeldMode> mode = {};  ///< what holds at its end, where that is known
     };
 
     Circuit() = default;

@@ -99,6 +99,7 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
         if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);
         facts.settled = std::move(run);
     } else if (whole.is_found()) {
+        facts.amplitude = 0;
         facts.low = facts.high = of([](const BodyMotion& body) { return body.begin; });
         facts.start = {facts.low, of([](const BodyMotion& body) { return body.turned; })};
         facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(own, facts.low)
@@ -115,7 +116,7 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
     return facts;
 }
 
-SteadyMotion seen_again(const SteadyQuestion& question, const SteadyMotion& motion) {
+SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion) {
     const RigQuestion assembly = as_assembly(question);
     std::shared_ptr<const Trajectory> run;
     if (const auto& period = motion.of_bodies) {

@@ -66,6 +66,7 @@ public:
         const Returns::Return back = returns(here, section_)(x, {}, passages_);
         Lap lap{.to = back.to, .finished = back.finished};
         lap.time = back.time;
+        if (back.mode) lap.mode = std::make_shared<const HeldMode>(*back.mode);
         see(back.outcome, here.runs.contradiction());
         return lap;
     }
@@ -73,8 +74,8 @@ public:
     SteadyMotion motion(const VectorXd& x, double p, const Lap& lap, const Eigen::MatrixXd& derivative) override {
         Here& here = at(p);
         // What holds when it comes back, holds from the beginning.
-        const auto mode = stands_ ? std::nullopt : returns(here, section_)(x, {}, passages_).mode;
-        const Moment begin = returns(here, section_).moment(x, mode);
+        Moment begin = moment(x, p);
+        if (!stands_ && lap.mode) begin.mode = *lap.mode;
         const model::Assembly& system = here.runs.system();
         SteadyMotion motion;
         motion.multipliers = multipliers_of(derivative);

@@ -741,7 +741,7 @@ SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& m
 
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const RigQuestion assembly = as_assembly(question);
-    return seen_again(question, steady_motion(assembly, monitor));
+    return seen_from(question, steady_motion(assembly, monitor));
 }
 
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {

@@ -298,8 +298,8 @@ private:
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const bool waits = model::has_memory<model::DelayedController>(question.excitation);
-    if (question.whole || waits || question.is_timeless() || question.extras.any())
-        return returning_motion(question, monitor);
+    const bool returns = question.whole || waits || question.is_timeless() || question.extras.any();
+    if (returns) return returning_motion(question, monitor);
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
     if (model::has_memory(question.excitation) && !goes_on(question, motion, monitor) &&

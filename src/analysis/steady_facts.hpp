@@ -68,8 +68,8 @@ std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, c
 SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, std::size_t joint,
                        const SteadyQuestion& own, std::shared_ptr<const motion::Trajectory> run);
 
-/// The same of a motion that was found as seen from another body or link.
-SteadyMotion seen_again(const SteadyQuestion& question, const SteadyMotion& motion);
+/// The same from the body or link of the question, of a motion that was seen from any.
+SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion);
 
 /// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to.
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);

@@ -227,7 +227,7 @@ int animate_run(lua_State* L) {
     const lua::Options options(L, 2, animate_call);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
     const motion::Trajectory& whole = run->trajectory;
-    if (run->whole && !run->joint) {
+    if (run->of_all()) {
         return animate(L, options, whole,
                        [&](const animation::Take& take) { return asked_rig(L, options, run, take, units); });
     }

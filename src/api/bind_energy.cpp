@@ -125,7 +125,7 @@ int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
     const Run& run = *energy->run;
-    if (!run.whole || run.joint) return 0;
+    if (!run.of_all()) return 0;
     NamedNumbers numbers;
     const std::size_t joint = joint_named(L, lua_tostring(L, 2), *run.whole->system, "this energy", energy_class);
     add_balance(numbers, energy->parts[joint].total, true);

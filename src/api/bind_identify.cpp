@@ -133,7 +133,10 @@ Data record_of(lua_State* L, const lua::Options& options) {
     if (const auto* data = lua::test<DataHandle>(L, place)) {
         record.columns = (*data)->columns;
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
-        if (!options.has("system")) check_one(L, **run, ":data");
+        if ((*run)->of_all() && !options.has("system")) {
+            options.fail("data", fmt::format("a run of several bodies needs system = ..., or data = run.{} alone",
+                                             (*run)->whole->system->joints.front().name));
+        }
         record = rows_of(*run);
     } else if (lua_istable(L, place)) {
         for (const std::string& name : lua::text_keys(L, place)) {

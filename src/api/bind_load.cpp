@@ -37,7 +37,7 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
     return 1;
 }
 
-/// Units of the comments are those of rig_run:save, whose columns begin with the names of bodies.
+/// Units of the comments are those of run:save, whose columns may begin with the names of bodies.
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
     const ColumnUnits in(model::Units::from_file(content.comments));
     Data data;

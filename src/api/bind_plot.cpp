@@ -206,8 +206,7 @@ std::shared_ptr<const motion::Trajectory> without_events(const motion::Trajector
 
 plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run,
                        const std::vector<double>& window = {}) {
-    const bool of_all = run->whole && !run->joint;
-    const auto drawn = of_all ? without_events(run->trajectory) : drawn_trajectory(L, run, window);
+    const auto drawn = run->of_all() ? without_events(run->trajectory) : drawn_trajectory(L, run, window);
     if (drawn->size() == 0) {
         options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
     }
@@ -390,7 +389,7 @@ std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& optio
 int plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
     const lua::Options options(L, 2, plot_run_call);
-    if (run->whole && !run->joint && !options.has("x") && !options.has("y")) {
+    if (run->of_all() && !options.has("x") && !options.has("y")) {
         std::vector<plots::Figure> figures = angles_of_all(L, options, run);
         apply_options(L, options, figures);
         return deliver(L, options, std::move(figures));

@@ -51,8 +51,7 @@
 namespace dinal::api {
 
 std::string line_of(const Run& run) {
-    const bool of_all = run.whole && !run.joint;
-    return (of_all ? text::counted(run.whole->system->bodies.size(), "body") + ", " : "") +
+    return (run.of_all() ? text::counted(run.whole->system->bodies.size(), "body") + ", " : "") +
            motion::summary(run.trajectory);
 }
 
@@ -251,9 +250,11 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
     return {.values = {values.begin(), end}, .dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1)};
 }
 
-/// Of which body or link "load.theta" is; none of columns of the whole run.
+/// Of which body or link "load.theta" is; a state is of each. None of other columns of the whole run.
 std::optional<std::size_t> joint_of_column(const Run& run, std::string_view column) {
-    if (!run.whole || run.joint) return {};
+    if (!run.of_all()) return {};
+    const auto& states = run.whole->drive.states;
+    if (std::any_of(states.begin(), states.end(), [&](const model::OwnState& s) { return s.name == column; })) return 0;
     const auto& joints = run.whole->system->joints;
     const auto is_its = [&](const model::Joint& joint) {
         return column.starts_with(joint.name) && column.substr(joint.name.size()).starts_with('.');
@@ -281,8 +282,8 @@ int spectrum_of_run(lua_State* L) {
         run = part_of(run->whole, *joint);
         own_name.remove_prefix(name.find('.') + 1);
     }
-    check_one(L, *run, "." + name);
     const auto column = files::find_column(run->trajectory.names(), own_name);
+    if (!column && run->of_all() && part_of(run->whole, 0)->trajectory.find(name)) check_one(L, *run, "." + name);
     if (!column) options.fail(column.error());
     const auto [values, dt, kind] = samples_of(L, options, *run, *column, asked.from);
     const std::size_t rows = values.size();
@@ -358,7 +359,7 @@ int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
     const motion::Trajectory& trajectory = run->trajectory;
     const auto column = trajectory.find(name);
-    if (!column && run->whole && !run->joint) joint_named(L, name, *run->whole->system, "this run", run_class);
+    if (!column && run->of_all()) joint_named(L, name, *run->whole->system, "this run", run_class);  // raises
     if (!column) {
         raise_unknown_name(
             L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
@@ -404,7 +405,7 @@ int other_column(lua_State* L) {
 /// run.load
 int body_or_link(lua_State* L) {
     const RunHandle& run = run_self(L, "run.load");
-    if (!run->whole || run->joint) return 0;
+    if (!run->of_all()) return 0;
     const std::string_view name = lua_tostring(L, 2);
     const auto& joints = run->whole->system->joints;
     const auto own = std::find_if(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
@@ -437,9 +438,8 @@ int data_of_run(lua_State* L) {
 }
 
 lua::Pushed events(lua_State* L, const RunHandle& run) {
-    const bool of_all = run->whole && !run->joint;
     push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run),
-                of_all ? &*run->whole->system : nullptr);
+                run->of_all() ? &*run->whole->system : nullptr);
     return {};
 }
 
@@ -456,7 +456,7 @@ Data rows_of(const RunHandle& run) {
 }
 
 void check_one(lua_State* L, const Run& run, std::string_view member) {
-    if (!run.whole || run.joint) return;
+    if (!run.of_all()) return;
     const std::string name(member.substr(1));
     lua::raise(L, {.sentence = fmt::format("{} is of one body or link: run.{}{}", name,
                                            run.whole->system->joints.front().name, member),
@@ -464,7 +464,7 @@ void check_one(lua_State* L, const Run& run, std::string_view member) {
 }
 
 std::vector<RunHandle> parts_of(const RunHandle& run) {
-    if (!run->whole || run->joint) return {run};
+    if (!run->of_all()) return {run};
     std::vector<RunHandle> parts;
     for (std::size_t j = 0; j < run->whole->system->joints.size(); ++j) parts.push_back(part_of(run->whole, j));
     return parts;
@@ -816,7 +816,7 @@ int run_at(lua_State* L) {
         lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
     lua::CallState call(L);  // between rows the integrator asks the excitation again
-    const bool of_all = run->whole && !run->joint;
+    const bool of_all = run->of_all();
     const auto state = (of_all ? *part_of(run->whole, 0) : *run).trajectory.at(t);
     call.check();
     if (!state) {

@@ -26,9 +26,6 @@ namespace dinal::api {
 
 namespace {
 
-/// The whole motion, or of one body without a name that of this body.
-SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, analysis::SteadyMotion motion);
-
 /// The motion as seen from the body or link of this joint.
 SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint) {
     const analysis::SteadyMotion& whole = rig->motion;
@@ -45,6 +42,7 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
     return part;
 }
 
+/// The whole motion, or of one body without a name that of this body.
 SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, analysis::SteadyMotion motion) {
     auto rig = std::make_shared<RigSteady>(RigSteady{question, std::move(motion)});
     if (const auto& period = rig->motion.of_bodies) {

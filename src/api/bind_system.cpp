@@ -296,7 +296,7 @@ std::string rig_text(lua_State* L, const AssemblyHandle& rig) {
 
 constexpr lua::Member rig_members[] = {
     {lua::a_method<simulate_bodies>,
-     {"rig:simulate{ OPTIONS } -> rig_run",
+     {"rig:simulate{ OPTIONS } -> run",
       "Runs a system of several bodies, or one whose friction depends on more than its speed: by polynomials "
       "between located events, as integrator.spectral does. All sticking contacts are decided together.",
       DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"

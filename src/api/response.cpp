@@ -234,6 +234,7 @@ public:
         }
         choose();
         function_ = options.has("at");
+        if (several_ && !function_) options.missing("at");
         if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
         if (!several_) extras_ = question(values_.front()).extras;
@@ -400,14 +401,16 @@ private:
         beside_ = beside_values().front();
     }
 
+    /// Of bodies and links with names most columns have these in theirs.
     void check_name(std::string_view name) const {
-        for (const char* column : {"lag", "peak", "stops", "stuck", "stable", "branch", "status"}) {
-            if (name != column) continue;
+        const bool named = several_ && several_->named;
+        for (const char* column : {"stable", "branch", "status", "lag", "peak", "stops", "stuck", "amplitude"}) {
+            const std::string_view known = column;
+            const bool own = known == "stable" || known == "branch" || known == "status";
+            const bool harmonic = known == "amplitude" && !options_.has("at");  // its column is M0
+            if (name != known || (named && !own) || harmonic) continue;
             options_.fail("over",
                           fmt::format("'{}' is a column of the result: give the parameter another name", column));
-        }
-        if (name == "amplitude" && options_.has("at")) {
-            options_.fail("over", "'amplitude' is a column of the result: give the parameter another name");
         }
     }
 
@@ -475,7 +478,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
     } else {
         for (std::size_t j = 0; j < question.whole->system->joints.size(); ++j) {
             const analysis::SteadyQuestion own = question_of_joint(question.whole, j);
-            const analysis::SteadyMotion motion = analysis::seen_again(own, point.motion);
+            const analysis::SteadyMotion motion = analysis::seen_from(own, point.motion);
             row.joints.push_back({motion, analysis::shape_of(own, motion, monitor).lag});
         }
     }
@@ -534,9 +537,7 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
 
 namespace {
 
-int response_of(lua_State* L, const lua::Options& options, const ResponseCall& asked_call,
-                const model::Oscillator& system) {
-    ResponseCall call = asked_call;
+int response_of(lua_State* L, const lua::Options& options, ResponseCall call, const model::Oscillator& system) {
     const AssemblyHandle several = call.several();
     const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },
                                            .values = call.values(),
@@ -576,7 +577,7 @@ int response_of(lua_State* L, const lua::Options& options, const ResponseCall& a
     }
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
-    if (!several && call.harmonic() && !call.is_plane()) {
+    if (call.harmonic() && !call.is_plane()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{
             .system = system,

@@ -31,6 +31,9 @@ struct Run {
     lua::MemoryCharge rows = {};                  ///< of the file it was read from
     std::shared_ptr<const BodiesRun> whole = {};  ///< what was simulated, if it had names or a friction that varies
     std::optional<std::size_t> joint = {};        ///< of `whole`: the body or link it is seen from; none: all of them
+
+    /// It is seen from no body or link in particular.
+    [[nodiscard]] bool of_all() const { return whole != nullptr && !joint; }
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

@@ -272,11 +272,26 @@ test("branches of two bodies fold where those of the one body do that they are t
     for i = 1, #one do near(two["b.amplitude"][i], one.amplitude[i], 1e-5) end
 end)
 
+test("a parameter of a response may be called like a column that has the name of a body before it", function()
+    local rig = pair({ I = 1, k = 4, C = 0.1 }, { I = 1, k = 1, C = 0.1 }, { k = 2 })
+    local c = rig:response { over = { amplitude = { 1, 2 } }, at = function(p) return { M = { a = p.amplitude * sine(1) } } end }
+    near(c["b.amplitude"][2], 2 * c["b.amplitude"][1], 1e-9)
+    refuses(function(o) rig:response(o) end, {
+        { { over = { status = { 1, 2 } }, at = function() return {} end }, "'status' is a column of the result" },
+        { { over = { omega = { 1, 2 } } }, "rig:response needs at" },
+    })
+end)
+
 test("a steady rotation is followed to where it begins to stick and slip", function()
     local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, C = 0.05, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
         links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
     local function at(p) return { M = { top = function(t, theta, velocity) return 20 * (p.speed - velocity.top) end } } end
     local c = rig:response { of = "pipe", over = { speed = { 3, 2, 1 } }, at = at }
+    local rotates = rig:response { over = { speed = { 3, 2.5 } }, at = function(p) -- told by the bit, which goes round
+        return merged(at(p), { velocity0 = { top = p.speed, bit = p.speed } })
+    end }
+    equal(rotates["pipe.amplitude"], vector { 0, 0 })
+    assert(rotates["bit.amplitude"][1] ~= rotates["bit.amplitude"][1])
     local points = c.points:filter(function(p) return p.kind == "hopf" end)
     equal(#points, 1)
     local v = points.speed[1]
