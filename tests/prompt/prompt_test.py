@@ -193,6 +193,9 @@ class Interrupts(PromptTest):
     def test_a_second_ctrl_c_ends_c_code_that_never_returns(self):
         session = self.session()
         self.run_on(session, "busy() return ('a'):rep(40):find(('a-'):rep(40) .. 'b')")
+        began = processor_time(session.child.pid)
+        while processor_time(session.child.pid) - began < AT_ONCE:  # before find is called, one would stop the Lua code
+            time.sleep(0.05)
         while session.child.isalive():  # two that come at the same time, to a machine that does other work, are one
             session.press(CTRL_C)
             time.sleep(0.3)
