@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "analysis/phase_lag.hpp"
@@ -14,6 +15,8 @@
 #include "model/laws/stribeck.hpp"
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
+#include "motion/engine/one_body.hpp"
+#include "motion/engine/part.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -22,36 +25,65 @@ constexpr std::size_t most_stops = 5;  // told one by one; of more, these:
 constexpr std::size_t first_stops = 2, last_stops = 2;
 constexpr std::size_t most_turns = 4;
 
-/// The story of a run while it is being told, sentence by sentence, paragraph by paragraph.
+constexpr const char* base_text =
+    "The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.";
+
+bool several(const RunToTell& whole) {
+    return whole.system.joints.size() > 1;
+}
+
+bool tells_all(const RunToTell& whole) {
+    return several(whole) && !whole.joint;
+}
+
+/// What acts on the joint of this number as M; nothing acts on a link by itself.
+const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
+    static const model::Excitation none;
+    return whole.system.is_link(joint) ? none : whole.drive.loads[joint];
+}
+
+/// The natural period of a joint that others do not disturb, or else the shortest in the system, as a measure of times.
+double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool undisturbed) {
+    if (undisturbed) return seen.has_spring() ? seen.natural_period() : 1;
+    const double shortest = whole.system.shortest_natural_period();
+    const motion::Trajectory& run = *whole.parts.front();
+    return std::isfinite(shortest) ? shortest : run.t_stop - run.t_start;
+}
+
+/// The story of one body or link while it is being told, sentence by sentence, paragraph by paragraph.
 class Story : protected Prose {
 public:
-    /// All of it must outlive the story.
-    Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-          motion::MethodView method, const model::Extras& extras)
-        : run_(trajectory),
-          system_(system),
-          excitation_(excitation),
-          own_rule_(method.own_rule()),
-          stretches_(stretches(trajectory)),
-          swings_(analysis::half_cycles(trajectory)),
-          events_(events_of_motion(trajectory, extras.events)),
-          extras_(extras),
-          on_base_(!extras.base.components().empty()),
-          on_belt_(!extras.belt.components().empty()),
-          steady_belt_(extras.belt.constant_from() <= trajectory.t_start),
-          T0_(system.has_spring() ? system.natural_period() : 1),
-          constant_from_(excitation.has_feedback() || on_base_ || on_belt_ ? model::never
-                                                                           : excitation.constant_from()) {
+    /// All of it must outlive the story. `seen` is the joint by itself.
+    Story(const RunToTell& whole, std::size_t joint, const model::Oscillator& seen)
+        : whole_(whole),
+          joint_(whole.system.joints[joint]),
+          is_link_(whole.system.is_link(joint)),
+          undisturbed_(!is_link_ && !whole.system.is_linked(joint)),
+          run_(*whole.parts[joint]),
+          system_(seen),
+          excitation_(load_on(whole, joint)),
+          belt_(whole.drive.belts[joint]),
+          own_rule_(whole.method.own_rule()),
+          stretches_(stretches(run_)),
+          swings_(analysis::half_cycles(run_)),
+          events_(events_of_motion(run_, whole.drive.events)),
+          on_base_(!whole.drive.base.components().empty()),
+          on_belt_(!belt_.components().empty()),
+          steady_belt_(belt_.constant_from() <= run_.t_start),
+          T0_(time_scale(whole, seen, undisturbed_)),
+          constant_from_(excitation_.has_feedback() || on_base_ || on_belt_ || !has_reasons()
+                             ? model::never
+                             : excitation_.constant_from()) {
         for (const Stretch& s : stretches_) {
             if (s.stuck) stuck_ += s.lasts();
             if (s.stuck && s.begun_by) stops_.push_back(&s);
         }
-        if ((stretches_.size() == 1 && stuck_ > 0) || (on_belt_ && run_.course == nullptr))
+        if ((stretches_.size() == 1 && stuck_ > 0) || (run_.on_belt && run_.course == nullptr))
             return;  // no turns are known
         const auto before = [](const model::Event& event, double t) { return event.t < t; };
         for (const Stretch& s : swings_) {
             half_cycles_ += s.stuck ? 0 : 1;
-            if (!on_belt_ || !s.ended_by) continue;
+            if (!run_.on_belt || !s.ended_by) continue;
             const double near = 1e-9 * T0_;
             const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
             if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // else that is it
@@ -70,6 +102,10 @@ public:
     }
 
 private:
+    [[nodiscard]] bool named() const { return whole_.system.named; }
+    [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
+    /// All torques on a standing mass and the limit of its friction are known.
+    [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.friction.is_constant(); }
     [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
     /// Where a stretch ended.
     [[nodiscard]] static std::string place(const Stretch& s) {
@@ -92,10 +128,10 @@ private:
     }
     /// -I a - I vb' - C vb, from the right.
     [[nodiscard]] double around(double t) const {
-        double torque = on_base_ ? -system_.inertia() * extras_.base.value_after(t) : 0;
+        double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;
-        const double rate = motion::belt_slope(extras_.belt, t, motion::belt_stretch * T0_).rate;
-        torque -= system_.damping() * motion::belt_from(extras_.belt, t) + system_.inertia() * rate;
+        const double rate = motion::belt_slope(belt_, t, motion::belt_stretch * T0_).rate;
+        torque -= system_.damping() * motion::belt_from(belt_, t) + system_.inertia() * rate;
         return torque;
     }
 
@@ -121,14 +157,13 @@ private:
         return walls && (theta == walls->lower || theta == walls->upper);
     }
     void tell_surroundings() {
-        if (on_base_)
-            say("The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.");
+        if (on_base_ && !several(whole_)) say("{}", base_text);
         if (!on_belt_) return;
         if (steady_belt_) {
-            say("The mass rubs on a belt that moves with velocity vb = {:.5g}.",
-                motion::belt_from(extras_.belt, run_.t_start));
+            say("{} rubs on a belt that moves with velocity vb = {:.5g}.", name_or("The mass"),
+                motion::belt_from(belt_, run_.t_start));
         } else {
-            say("The mass rubs on a belt of velocity vb.");
+            say("{} rubs on a belt of velocity vb.", name_or("The mass"));
         }
     }
 
@@ -163,6 +198,7 @@ private:
     }
 
     [[nodiscard]] std::string slip_from_wall(const model::Event& event) const {
+        if (!has_reasons()) return "it left the wall";
         const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
         if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
         return fmt::format("{} pulled it off the wall {} with more than Re = {:.5g}", pull_name(), way,
@@ -175,84 +211,107 @@ private:
     // ---- how it began and went on
 
     void tell_setting() {
-        if (system_.has_linear_spring()) {
-            say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(),
-                model::name(system_.regime()));
+        const std::string who = name_or("The system");
+        const std::string friction = " and " + friction_text() + ".";
+        if (!undisturbed_) {
+            tell_numbers();
+        } else if (system_.has_linear_spring()) {
+            say("{} has T0 = {:.5g}, zeta = {:.4g} ({}){}", who, T0_, system_.damping_ratio(),
+                model::name(system_.regime()), friction);
         } else if (system_.has_spring()) {
-            say("The system has a second spring besides k theta (T0 = {:.5g} and zeta = {:.4g} are for k alone)", T0_,
-                system_.damping_ratio());
+            say("{} has a second spring besides k theta (T0 = {:.5g} and zeta = {:.4g} are for k alone){}", who, T0_,
+                system_.damping_ratio(), friction);
         } else {
-            say("The system is a block {}", system_.spring().none() ? "without a spring" : "on a nonlinear spring");
+            say("{} is a block {}", who, system_.spring().none() ? "without a spring" : "on a nonlinear spring");
             if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
+            add("{}", friction);
         }
-        tell_friction();
-        if (!system_.units().usual()) say("Units: {}.", system_.units().in_words());
-        const double period = model::period_from(excitation_, run_.t_start);
-        if (excitation_.components().empty()) {
-            say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
-        } else if (excitation_.has_feedback()) {
-            say("M is a feedback: it depends on the motion.");
-        } else if (free()) {
-            say("M is constant{}", system_.has_linear_spring() ? ": the motion is free, about theta = M/k." : ".");
-        } else if (period > 0) {
-            say("M has the period {:.5g}", period);
-            if (system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
-            add(".");
-        } else if (constant_from_ < run_.t_stop) {
-            say("M is constant from t = {} on.", at(constant_from_));
-        }
+        tell_law();
+        tell_walls();
+        if (!tells_all(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
+        if (!is_link_) tell_load();
         tell_surroundings();
-        if (run_.gap > 0) {
-            say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
-                text::number_text(run_.gap, T0_));
-        }
-        if (run_.noise > 0) {
-            say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
-        }
-        if (run_.jumps_often()) {
-            say("M jumps {} times along the motion. Each jump was located, which takes at least six evaluations of M: "
-                "fine steps, as of an encoder, make a run slow.",
-                run_.jumps);
-        }
         if (own_rule_) say("{}", own_rule_->setting);
         end_paragraph();
     }
 
-    void tell_friction() {
+    /// Of a link, or of a body that is not alone.
+    void tell_numbers() {
+        std::string numbers;
+        const auto number = [&](const char* name, double value) {
+            if (value > 0) numbers += fmt::format("{}{} = {:.5g}", numbers.empty() ? "" : ", ", name, value);
+        };
+        if (is_link_) {
+            say("{} links {} and {}.", joint_.name, whole_.system.bodies[static_cast<std::size_t>(joint_.first)].name,
+                whole_.system.bodies[static_cast<std::size_t>(joint_.second)].name);
+        } else {
+            number("I", system_.inertia());
+        }
+        number("k", joint_.stiffness), number("C", joint_.damping);
+        if (!joint_.spring.none()) numbers += numbers.empty() ? "a nonlinear spring" : ", a nonlinear spring";
+        say("{} has {}{}{}.", is_link_ ? "It" : joint_.name, numbers, numbers.empty() ? "" : " and ", friction_text());
+    }
+
+    void tell_load() {
+        const double period = model::period_from(excitation_, run_.t_start);
+        if (excitation_.components().empty()) {
+            if (!several(whole_)) say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
+        } else if (excitation_.has_feedback()) {
+            say("M is a feedback: it depends on the motion.");
+        } else if (excitation_.constant_from() <= run_.t_start) {
+            say("M is constant{}",
+                free() && system_.has_linear_spring() ? ": the motion is free, about theta = M/k." : ".");
+        } else if (period > 0) {
+            say("M has the period {:.5g}", period);
+            if (undisturbed_ && system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
+            add(".");
+        } else if (constant_from_ < run_.t_stop) {
+            say("M is constant from t = {} on.", at(constant_from_));
+        }
+    }
+
+    [[nodiscard]] std::string friction_text() const {
         const model::Friction& law = system_.friction();
         const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
         const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
         const auto Re = [&](model::Motion way) { return law.holding(way); };
         using enum model::Motion;
-        if (law.none()) {
-            add(" and no dry friction.");
-        } else if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {
-            add(" and dry friction: Rd = {:.5g} while sliding forward and {:.5g} backward; breakaway takes Re = {:.5g} "
-                "forward and {:.5g} backward.",
+        if (joint_.friction.bristle() != nullptr) return "friction of bristles, which neither stick nor slip";
+        if (!joint_.friction.is_constant()) return "dry friction that varies";
+        if (law.none()) return "no dry friction";
+        if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {
+            return fmt::format(
+                "dry friction: Rd = {:.5g} while sliding forward and {:.5g} backward; breakaway takes Re = {:.5g} "
+                "forward and {:.5g} backward",
                 Rd(forward), Rd(backward), Re(forward), Re(backward));
-        } else if (Rd(forward) == Re(forward)) {
-            add(" and dry friction Rd = Re = {:.5g}.", Rd(forward));
-        } else {
-            add(" and dry friction: Rd = {:.5g} while sliding, Re = {:.5g} to break away.", Rd(forward), Re(forward));
         }
+        if (Rd(forward) == Re(forward)) return fmt::format("dry friction Rd = Re = {:.5g}", Rd(forward));
+        return fmt::format("dry friction: Rd = {:.5g} while sliding, Re = {:.5g} to break away", Rd(forward),
+                           Re(forward));
+    }
+
+    void tell_law() {
+        const model::Friction& law = system_.friction();
+        if (!joint_.friction.is_constant()) return;
         if (law.normal() != 1) say("These are the torques under the normal load {:.5g}.", law.normal());
-        if (law.depends_on_speed()) {
-            say("{}", stribeck ? "Friction falls from Re at rest to Rd at high speed."
-                               : "These values hold near speed zero: friction depends on the speed.");
-        }
-        tell_walls();
+        if (!law.depends_on_speed()) return;
+        say("{}", law.as<model::laws::Stribeck>() != nullptr
+                      ? "Friction falls from Re at rest to Rd at high speed."
+                      : "These values hold near speed zero: friction depends on the speed.");
     }
 
     void tell_start() {
         const model::State& y = run_.initial;
         const Stretch& first = stretches_.front();
-        say("The mass started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta,
-            y.velocity);
-        const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
-        const bool stands = first.stuck || motion::belt_from(extras_.belt, run_.t_start) == 0;
+        say("{} started at t = {} from theta = {:.5g} with velocity {:.5g}", name_or("The mass"), at(run_.t_start),
+            y.theta, y.velocity);
+        const bool known = has_reasons() && run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
+        const bool stands = first.stuck || motion::belt_from(belt_, run_.t_start) == 0;
         const bool told =
             y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
-        if (first.stuck) add(" and stuck {}", on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
+        if (first.stuck) {
+            add(" and stuck {}", is_link_ ? "together" : on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
+        }
         if (told && first.stuck && at_wall(y.theta)) {
             add(" at the wall");
         } else if (told) {
@@ -296,6 +355,10 @@ private:
     }
 
     void tell_turns() {
+        if (!undisturbed_) {
+            tell_reach();
+            return;
+        }
         std::string places;
         std::size_t n = 0;
         for (const Stretch& s : stretches_) {
@@ -310,11 +373,24 @@ private:
         end_paragraph();
     }
 
+    /// Of what others disturb, whose turns have no rule.
+    void tell_reach() {
+        double low = run_.initial.theta, high = low;
+        for (const Stretch& swing : swings_) {
+            low = std::min(low, swing.end.theta), high = std::max(high, swing.end.theta);
+        }
+        const double size = std::max(std::fabs(low), std::fabs(high));
+        if (low < high) {
+            say("theta was between {} and {}.", text::number_text(low, size), text::number_text(high, size));
+        }
+        end_paragraph();
+    }
+
     /// What the closed forms say about a free motion, as far as it has turned.
     void tell_decay() {
         const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
         const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
-        if (!free() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
+        if (!free() || !has_reasons() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
         decay_told_ = true;
         const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
         const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
@@ -355,8 +431,12 @@ private:
         if (at_wall(begun.theta)) {
             say("It came to rest at the wall, theta = {:.5g}, at t = {}", begun.theta, at(begun.t));
         } else {
-            say("It {} at t = {} at theta = {} because {}", on_belt_ ? "stuck to the belt" : "stopped", at(begun.t),
-                place(*(&stop - 1)), reason(pull(begun)));
+            say("It {} at t = {} at theta = {}",
+                is_link_   ? "locked"
+                : on_belt_ ? "stuck to the belt"
+                           : "stopped",
+                at(begun.t), place(*(&stop - 1)));
+            if (has_reasons()) add(" because {}", reason(pull(begun)));
         }
         if (stop.ended_by) {
             add("; it stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
@@ -374,8 +454,9 @@ private:
     /// Why it slipped and which way; after a sentence about |M - k theta| it is "this torque".
     [[nodiscard]] std::string slip(const model::Event& event, bool told) const {
         if (at_wall(event.theta)) return slip_from_wall(event);
+        if (!has_reasons()) return "it slipped";
         if (on_belt_) {
-            const double vb = motion::belt_from(extras_.belt, event.t), slides = event.velocity - vb;
+            const double vb = motion::belt_from(belt_, event.t), slides = event.velocity - vb;
             constexpr double clearly = 1e-6;
             if (std::fabs(slides) > clearly * (std::fabs(vb) + std::fabs(event.velocity))) {
                 return fmt::format("vb jumped to {:.5g} and it slipped {}", vb, slides < 0 ? "backward" : "forward");
@@ -399,13 +480,11 @@ private:
         if (half_cycles_ > 0 && !over) {
             if (const auto motion = recurrence(events_)) {
                 tell_recurrence(*motion);
-            } else if (!decay_told_) {
+            } else if (!decay_told_ && undisturbed_) {
                 tell_trend();
             }
         }
-        if (failed) {
-            tell_outcome();
-        } else if (const Stretch& last = stretches_.back(); !last.stuck) {
+        if (const Stretch& last = stretches_.back(); !failed && !last.stuck) {
             say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop), place(last),
                 last.end.velocity);
         }
@@ -416,7 +495,7 @@ private:
     void tell_stillness() {
         still_ = run_.outcome == model::Outcome::at_rest;
         if (!still_) return;
-        if (on_base_ || on_belt_) {
+        if (on_base_ || on_belt_ || !has_reasons()) {
             say("It stays at rest.");
             return;
         }
@@ -518,22 +597,18 @@ private:
         }
     }
 
-    void tell_outcome() {
-        if (run_.outcome == model::Outcome::interrupted) {
-            say("The run was interrupted at t = {}: the text covers the time until then.", at(run_.t_stop));
-        } else {
-            say("The run stopped early, at t = {}: {}.", at(run_.t_stop), motion::outcome_text(run_));
-        }
-    }
-
+    const RunToTell& whole_;
+    const model::Joint& joint_;
+    bool is_link_;
+    bool undisturbed_;  // by links
     const motion::Trajectory& run_;
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
+    const model::Excitation& belt_;
     std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
     std::vector<Stretch> stretches_, swings_;  // the same but on a belt: against the belt, and of theta
     std::vector<model::Event> events_;         // with the extremes of theta on a belt
     std::vector<const Stretch*> stops_;
-    const model::Extras& extras_;
     bool on_base_, on_belt_, steady_belt_;
     double T0_, constant_from_;
     double stuck_ = 0;
@@ -542,11 +617,128 @@ private:
     bool still_ = false;       // for good, under a periodic M
 };
 
+/// The story of all: what stands before and behind those of its bodies and links.
+class WholeStory : protected Prose {
+public:
+    explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
+
+    std::string told(const std::vector<Energy>& energies) {
+        const bool all = tells_all(whole_);
+        if (all) tell_setting();
+        end_paragraph();
+        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+            if (whole_.joint && *whole_.joint != j) continue;
+            // A joint whose numbers are beyond all bounds has no story.
+            const auto seen = motion::engine::seen_alone(system_, j);
+            if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).told();
+        }
+        if (all) text_ += "\n";
+        if (all && !energies.empty()) tell_energy(energies);
+        tell_doubts();
+        tell_outcome();
+        end_paragraph();
+        return std::move(text_);
+    }
+
+private:
+    [[nodiscard]] std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
+    [[nodiscard]] const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
+
+    void tell_setting() {
+        const std::size_t n = system_.bodies.size(), links = system_.joints.size() - n;
+        say("{} and {}, from t = {} to {}.", text::counted(n, "body"), text::counted(links, "link"), time(run_.t_start),
+            time(run_.t_stop));
+        std::vector<std::string> driven;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!whole_.drive.loads[i].components().empty()) driven.push_back(name(i));
+        }
+        driven.empty() ? say("There is no M.") : say("M acts on {}.", fmt::join(driven, " and "));
+        if (!whole_.drive.base.components().empty()) say("{}", base_text);
+        if (!system_.units.usual()) say("Units: {}.", system_.units.in_words());
+    }
+
+    /// What the run may have missed, and what made it long.
+    void tell_doubts() {
+        if (run_.gap > 0) {
+            say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
+                text::number_text(run_.gap, system_.shortest_natural_period()));
+        }
+        if (run_.noise > 0) {
+            say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
+        }
+        if (run_.jumps_often()) {
+            say("M jumps {} times along the motion. Each jump was located, which takes at least six evaluations of M: "
+                "fine steps, as of an encoder, make a run slow.",
+                run_.jumps);
+        }
+    }
+
+    void tell_energy(const std::vector<Energy>& energies) {
+        const Energy whole = sum_of(energies);
+        if (!(whole.flow > 0)) return;
+        struct Share {
+            double value;
+            std::string what;
+        };
+        std::vector<Share> given, taken;
+        const auto of = [this](const char* what, std::size_t j) { return fmt::format("{} of {}", what, name(j)); };
+        const auto note = [&](double value, const std::string& what) {
+            if (value > 0) given.push_back({value, what});
+            if (value < 0) taken.push_back({-value, what});
+        };
+        for (std::size_t j = 0; j < energies.size(); ++j) {
+            const Work& work = energies[j].total.work;
+            note(work.input, of("M", j));
+            note(work.base, "the base under " + name(j));
+            note(work.belt, of("the belt", j));
+            note(-work.viscous, of("the damping", j));
+            note(-work.dry, of("the friction", j));
+            note(-work.impacts, of("the impacts", j));
+        }
+        note(whole.total.work.acts, "acts at events");
+        note(-whole.total.change.kinetic - whole.total.change.spring, "stored energy");
+        for (auto* list : {&given, &taken}) {
+            std::sort(list->begin(), list->end(), [](const Share& a, const Share& b) { return a.value > b.value; });
+            const double all = std::accumulate(list->begin(), list->end(), 0.0,
+                                               [](double so_far, const Share& share) { return so_far + share.value; });
+            std::string text;
+            list->erase(std::remove_if(list->begin(), list->end(),
+                                       [all](const Share& share) { return share.value < 1e-3 * all; }),
+                        list->end());
+            for (const Share& share : *list) {
+                text += fmt::format("{}{} {:.5g}", text.empty() ? "" : ", ", share.what, share.value);
+                if (list->size() > 1) text += fmt::format(" ({})", text::percent(share.value / all));
+            }
+            if (!text.empty()) say("{}: {}.", list == &given ? "Energy came from" : "Energy went to", text);
+        }
+        end_paragraph();
+    }
+
+    void tell_outcome() {
+        if (model::is_whole(run_.outcome)) return;
+        if (run_.outcome == model::Outcome::interrupted) {
+            say("The run was interrupted at t = {}: the text covers the time until then.", time(run_.t_stop));
+        } else {
+            say("The run stopped early, at t = {}: {}.", time(run_.t_stop), motion::outcome_text(run_));
+        }
+    }
+
+    const RunToTell& whole_;
+    const model::Assembly& system_;
+    const motion::Trajectory& run_;
+};
+
 }  // namespace
+
+std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
+    return WholeStory(run).told(energies);
+}
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
                     const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras) {
-    return Story(trajectory, system, excitation, method, extras).told();
+    const auto whole = motion::engine::assembly_of(system);
+    const auto drive = motion::engine::drive_of(excitation, extras, trajectory.initial);
+    return explain({.system = whole, .drive = drive, .parts = {&trajectory}, .method = method});
 }
 
 std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/energy.hpp"
-#include "analysis/rig_story.hpp"
+#include "analysis/explain.hpp"
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
@@ -306,12 +306,17 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
 
 std::string story_of_bodies(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
-    std::vector<const motion::Trajectory*> seen;
-    seen.reserve(parts.size());
-    for (const RunHandle& part : parts) seen.push_back(&part->trajectory);
-    const auto energies = energies_of(L, parts);
     const BodiesRun& whole = *run->whole;
-    return analysis::explain(*whole.system, whole.drive, whole.run, seen,
+    std::vector<const motion::Trajectory*> seen(whole.system->joints.size(), &run->trajectory);
+    if (!run->joint)
+        std::transform(parts.begin(), parts.end(), seen.begin(),
+                       [](const RunHandle& part) { return &part->trajectory; });
+    const auto energies = energies_of(L, parts);
+    return analysis::explain({.system = *whole.system,
+                              .drive = whole.drive,
+                              .parts = std::move(seen),
+                              .method = whole.integrator,
+                              .joint = run->joint},
                              energies ? energies.value() : std::vector<analysis::Energy>());
 }
 

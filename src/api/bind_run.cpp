@@ -57,15 +57,12 @@ std::string line_of(const Run& run) {
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const Run& run = *handle;
-    if (run.whole && run.whole->system->named && run.joint) {
-        return line_of(run) + ". The run of all bodies tells more: run:explain().";
-    }
-    if (run.whole) return story_of_bodies(L, handle);
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
-    std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system,
-                                                      run.terms ? *run.terms : run.origin->excitation,
-                                                      run.origin->integrator, run.origin->extras)
-                                  : analysis::explain_rows(run.trajectory, run.units);
+    std::string text = run.whole    ? story_of_bodies(L, handle)
+                       : run.origin ? analysis::explain(run.trajectory, run.origin->system,
+                                                        run.terms ? *run.terms : run.origin->excitation,
+                                                        run.origin->integrator, run.origin->extras)
+                                    : analysis::explain_rows(run.trajectory, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }

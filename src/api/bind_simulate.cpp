@@ -138,13 +138,11 @@ private:
     bool wanted_, goes_on_;
 };
 
-/// Tells of the functions of M, belt and base how they were evaluated.
-void note_readings(Run& run) {
-    const model::Extras& extras = run.origin->extras;
-    const bool locates = run.trajectory.located;
-    const std::pair<const char*, const model::Excitation&> excitations[] = {
-        {"M", run.origin->excitation}, {"The belt", extras.belt}, {"The base", extras.base}};
-    for (const auto& [name, excitation] : excitations) {
+}  // namespace
+
+std::string readings_of(const model::Assembly& system, const motion::engine::Drive& drive, bool located, bool native) {
+    std::string all;
+    const auto tell = [&](const std::string& name, const model::Excitation& excitation) {
         for (const model::Component& component : excitation.components()) {
             const auto* script = std::get_if<model::Scripted>(&component.term);
             if (script == nullptr) continue;
@@ -160,18 +158,25 @@ void note_readings(Run& run) {
                 const char* conditions =
                     !read->has_conditions() ? ""
                     : !of_motion            ? ": the times at which its conditions change are events"
-                    : locates
+                    : located
                         ? ": the times at which its conditions change, also those on theta, velocity or states, are located"
                         : ": the times at which its conditions change are events, except for conditions on theta, velocity or states, which are sampled";
-                told = fmt::format("{} is read as a {}{}.", name, run.terms ? "sum of native terms" : "formula",
-                                   conditions);
+                told =
+                    fmt::format("{} is read as a {}{}.", name, native ? "sum of native terms" : "formula", conditions);
             }
-            if (run.readings.find(told) == std::string::npos) run.readings += (run.readings.empty() ? "" : " ") + told;
+            if (all.find(told) == std::string::npos) all += (all.empty() ? "" : " ") + told;
         }
-    }
+    };
+    const auto each = [&](const char* name, const std::vector<model::Excitation>& acting, const char* of) {
+        for (std::size_t j = 0; j < acting.size(); ++j) {
+            tell(acting.size() == 1 ? name : name + (of + system.joints[j].name), acting[j]);
+        }
+    };
+    each("M", drive.loads, " of ");
+    each("The belt", drive.belts, " under ");
+    tell("The base", drive.base);
+    return all;
 }
-
-}  // namespace
 
 bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located) {
     bool all = drive.events.empty();  // of which only values are known to the integrator
@@ -235,11 +240,10 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     if (call.failed() && lua::interrupt_requested()) {
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
-    note_readings(*run);
-    const bool all_seen =
-        sees_all(motion::engine::assembly_of(asked.system),
-                 motion::engine::drive_of(asked.excitation, asked.extras, asked.initial), run->trajectory.located);
-    if (all_seen) run->trajectory.gap = 0;
+    const model::Assembly system = motion::engine::assembly_of(asked.system);
+    const auto drive = motion::engine::drive_of(asked.excitation, asked.extras, asked.initial);
+    run->readings = readings_of(system, drive, run->trajectory.located, run->terms.has_value());
+    if (sees_all(system, drive, run->trajectory.located)) run->trajectory.gap = 0;
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());

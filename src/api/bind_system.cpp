@@ -17,6 +17,7 @@
 #include "lua/values.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
+#include "motion/engine/part.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -281,7 +282,7 @@ int field_of_rig(lua_State* L) {
                                   lua::is_callable(L, -1) ? "a function" : lua::describe(L, -1)));
     }
     lua_pushcfunction(L, member->call);
-    lua::push(L, lua::value_or_raise(L, "rig", model::Oscillator::make(alone(*rig, 0))));
+    lua::push(L, lua::value_or_raise(L, "rig", motion::engine::seen_alone(*rig, 0)));
     lua_call(L, 1, 1);
     return 1;
 }

@@ -93,14 +93,13 @@ struct BodiesRun {
     double t_end = 0;    ///< that was asked for
     bool spaced = true;  ///< a row every dt, not at times of the user
     motion::Integrator integrator = motion::Spectral{};
+    std::string readings = {};             ///< which functions were read as formulas: sentences
     std::vector<std::string> set_up = {};  ///< Lua text that makes all that was run, as it was at the start
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 std::vector<std::string> body_names(const model::Assembly& system);
-/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
-model::OscillatorParameters alone(const model::Assembly& system, std::size_t joint);
 /// Pushes the table of options that makes the body or link.
 void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
@@ -118,6 +117,10 @@ std::size_t joint_named(lua_State* L, std::string_view name, const model::Assemb
 /// Whether no pulse of a function that acts can have been missed: all were read as formulas, whose changes were
 /// `located` if they depend on the motion.
 [[nodiscard]] bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located);
+
+/// Sentences that say of each function of M, belt and base how it was evaluated; `native`: M as a sum of native terms.
+[[nodiscard]] std::string readings_of(const model::Assembly& system, const motion::engine::Drive& drive, bool located,
+                                      bool native);
 
 /// Pushes the body or link as a system of its own.
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t joint);

@@ -29,7 +29,7 @@ bool keeps_motion(const engine::AssemblyRun& run) {
 /// The joint as a system of one body; none where the motion between the rows is not known.
 std::optional<model::Oscillator> seen_alone(const BodiesRun& run, std::size_t joint) {
     if (!keeps_motion(run.run)) return {};
-    const auto made = model::Oscillator::make(alone(*run.system, joint));
+    const auto made = engine::seen_alone(*run.system, joint);
     return made ? std::optional(made.value()) : std::nullopt;
 }
 
@@ -54,6 +54,7 @@ std::shared_ptr<Run> seen_from(const BodiesRunHandle& run, std::optional<std::si
               : trajectory_of(*run);
     seen->whole = run, seen->joint = joint;
     seen->units = run->system->units;
+    seen->readings = run->readings;
     return seen;
 }
 
@@ -141,6 +142,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
                             .step = cut.step,
                             .keeps_torques = true});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
+    run->readings = readings_of(*run->system, run->drive, run->run.located, false);
     if (sees_all(*run->system, run->drive, run->run.located)) run->run.gap = 0;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);

@@ -20,6 +20,7 @@
 #include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
 #include "motion/engine/one_body.hpp"
+#include "motion/engine/part.hpp"
 #include "source/describe.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
@@ -152,28 +153,14 @@ model::Joint read_joint(lua_State* L, const std::string& call, std::span<const t
 
 }  // namespace
 
-model::OscillatorParameters alone(const model::Assembly& system, std::size_t joint) {
-    const model::Joint& own = system.joints[joint];
-    model::OscillatorParameters parameters = parameters_of(system, joint);
-    if (own.second >= 0) {
-        const double other = system.bodies[static_cast<std::size_t>(own.second)].inertia;
-        parameters.inertia = parameters.inertia / (parameters.inertia + other) * other;
-    }
-    parameters.spring = own.spring, parameters.walls = own.walls;
-    if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
-    parameters.normal = own.friction.law.normal();
-    return parameters;
-}
-
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
-    const model::OscillatorParameters parameters = alone(system, j);
-    const auto oscillator = lua::value_or_raise(L, call, model::Oscillator::make(parameters));
+    const auto oscillator = lua::value_or_raise(L, call, engine::seen_alone(system, j));
     if (system.joints[j].friction.is_constant()) {
         lua::push(L, oscillator);
         return 1;
     }
     model::Assembly one{
-        .bodies = {{"", parameters.inertia}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
+        .bodies = {{"", oscillator.inertia()}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
     one.joints[0].name.clear(), one.joints[0].first = 0, one.joints[0].second = model::Joint::ground;
     lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
     return 1;

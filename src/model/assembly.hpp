@@ -73,6 +73,12 @@ struct Assembly {
     Units units = {};
 
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+    [[nodiscard]] bool is_linked(std::size_t body) const {
+        return std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
+            const int own = static_cast<int>(body);
+            return joint.second >= 0 && (joint.first == own || joint.second == own);
+        });
+    }
     /// Of each body on the stiffness around it, the others being at rest; infinite where there is none.
     [[nodiscard]] std::vector<double> natural_periods() const {
         std::vector<double> stiffness(bodies.size(), 0), periods;

@@ -28,6 +28,9 @@ local alone = {
     system = function(body) return system(body) end,
     options = function(drive) return drive end,
     part = function(whole) return whole end,
+    told = function(story)
+        return (story:gsub("%s+", " "):gsub("The system ", "a "):gsub("The mass ", "a "))
+    end,
 }
 local only_one = {
     f = function(text) return compiled(named(text)) end,
@@ -42,6 +45,7 @@ local only_one = {
         return options
     end,
     part = function(whole) return whole.a end,
+    told = function(story) return (story:gsub("%s+", " ")) end,
 }
 
 -- ---- the kinds of systems: what a body has beside I, k and C, and what acts on it
@@ -207,11 +211,11 @@ local questions = {
     ["fields of the body"] = function(way, kind) return each(way.part(simulated(way, kind)), run_fields) end,
     ["words of the run"] = function(way, kind)
         local run = simulated(way, kind)
-        return { line = tostring(run), story = run:explain(), energy = tostring(run:energy()) }
+        return { line = tostring(run), story = way.told(run:explain()), energy = tostring(run:energy()) }
     end,
     ["words of the body"] = function(way, kind)
         local run = way.part(simulated(way, kind))
-        return { line = tostring(run), story = run:explain(), energy = tostring(run:energy()) }
+        return { line = tostring(run), story = way.told(run:explain()), energy = tostring(run:energy()) }
     end,
     ["energy of the run"] = function(way, kind) return balance(simulated(way, kind)) end,
     ["energy of the body"] = function(way, kind) return balance(way.part(simulated(way, kind))) end,
@@ -347,8 +351,7 @@ local different = {
         "the run of several bodies has no phase plane",
     ["pictures of the body: plot phase_plot, constant laws, event that bounces endlessly"] =
         "the run of a body draws no M/k and has no phase plane",
-    ["words of the run: line story"] = writers,
-    ["words of the body: story"] = "the run of a body tells no story but its line",
+    ["words of the run: line"] = writers,
     ["save: acceleration"] = "only the file of several bodies has the column acceleration",
     ["save: header, exact by default"] = exact_of_one,
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,

@@ -92,6 +92,21 @@ bool tells_turns(const model::Assembly& system, const Drive& drive, std::size_t 
 
 }  // namespace
 
+text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint) {
+    const model::Joint& own = system.joints[joint];
+    model::OscillatorParameters parameters;
+    parameters.inertia = system.bodies[static_cast<std::size_t>(own.first)].inertia;
+    if (system.is_link(joint)) {
+        const double other = system.bodies[static_cast<std::size_t>(own.second)].inertia;
+        parameters.inertia = parameters.inertia / (parameters.inertia + other) * other;
+    }
+    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
+    parameters.spring = own.spring, parameters.walls = own.walls;
+    if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
+    parameters.normal = own.friction.law.normal();
+    return model::Oscillator::make(parameters);
+}
+
 Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen) {
     const Place place(system, joint);

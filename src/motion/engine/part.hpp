@@ -15,6 +15,10 @@ struct Left final : Carried {
     std::shared_ptr<const Carry> carry;
 };
 
+/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
+/// Fails where its numbers are beyond what a system may have.
+text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint);
+
 /// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
 /// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
 /// each joint.
