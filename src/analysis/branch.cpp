@@ -98,8 +98,8 @@ public:
 private:
     [[nodiscard]] double sign() const { return half_ ? -1 : 1; }
     [[nodiscard]] PeriodMap map(const SteadyQuestion& question) const {
-        const double length = half_ ? question.drive.period / 2 : periods_ * question.drive.period;
-        return {question.system, question.excitation, question.drive.start, length, monitor_};
+        const double length = half_ ? question.repeats.period / 2 : periods_ * question.repeats.period;
+        return {question.system, question.excitation, question.repeats.start, length, monitor_};
     }
 
     const Family& family_;

@@ -17,9 +17,9 @@ bool is_linear_but_for_friction(const SteadyQuestion& question) {
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
                                        const motion::Trajectory& run, std::complex<double> M_wave) {
     const model::Lowered system(question.system);
-    const Drive& drive = question.drive;
-    const double omega = 2 * std::numbers::pi / drive.period, length = run.t_stop - run.t_start;
-    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - drive.start)); };
+    const Repetition& repeats = question.repeats;
+    const double omega = 2 * std::numbers::pi / repeats.period, length = run.t_stop - run.t_start;
+    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - repeats.start)); };
     double sum = 0;
     std::complex<double> sum_wave;
     for (const Stretch& s : stretches(run)) {
@@ -28,7 +28,7 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
             (wave(s.to) - wave(s.from)) * std::complex<double>(0, 1 / omega);  // of e^(-i omega t)
         if (s.stuck) {
             const double held = -system.stiffness() * s.begin.theta;
-            const double piece = std::min(drive.period / 64, s.lasts() / 12);
+            const double piece = std::min(repeats.period / 64, s.lasts() / 12);
             sum += held * s.lasts();
             sum_wave += held * between;
             sum += integral(question.excitation, s.from, s.to, piece,
@@ -49,7 +49,7 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
     found.wave =
         left / std::complex<double>(system.stiffness() - system.inertia() * omega * omega, system.damping() * omega);
     if (!motion.symmetric) {
-        const double mean_M = integral(question.excitation, run.t_start, run.t_stop, drive.period / 64,
+        const double mean_M = integral(question.excitation, run.t_start, run.t_stop, repeats.period / 64,
                                        [&](double t) { return question.excitation.value(t); }) /
                               length;
         found.mean = (mean_M - sum / length) / system.stiffness();

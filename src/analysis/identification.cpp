@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "algebra/decompositions.hpp"
-#include "analysis/drive.hpp"
 #include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
+#include "analysis/repetition.hpp"
 #include "analysis/turning_points.hpp"
 #include "motion/integrators.hpp"
 #include "theory/theory_free.hpp"

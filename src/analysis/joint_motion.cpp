@@ -20,17 +20,17 @@ RigQuestion as_assembly(const SteadyQuestion& question) {
     const model::Oscillator& system = question.system;
     RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
                       .drive = engine::drive_of(question.excitation, question.extras, question.initial),
-                      .repeats = question.drive,
+                      .repeats = question.repeats,
                       .periods = question.periods};
     if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
-    asked.settles = settles_after(asked).value_or(question.drive.period);
+    asked.settles = settles_after(asked).value_or(question.repeats.period);
     return asked;
 }
 
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const engine::Drive& drive,
                                                double start) {
     SteadyQuestion asked = question;
-    asked.drive.start = start;
+    asked.repeats.start = start;
     if (question.whole) {
         auto whole = std::make_shared<RigQuestion>(*question.whole);
         whole->drive = drive;
@@ -105,7 +105,7 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
         facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(own, facts.low)
                                                                             : std::pair(facts.low, facts.low);
         if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
-        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, own.drive.start);
+        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, own.repeats.start);
     }
     // Of a body that goes round the angle never comes back.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;

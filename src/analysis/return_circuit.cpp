@@ -30,7 +30,7 @@ public:
         timeless_ = here.question.is_timeless();
         stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
-        offset_ = motion.asked->drive.start - here.question.drive.start;
+        offset_ = motion.asked->repeats.start - here.question.repeats.start;
         period_ = motion.period;
         Moment begin = Runs(asked, monitor).first();
         if (motion.of_bodies) begin.y = vector_of(motion.of_bodies->run.history->at(motion.of_bodies->run.t_start));
@@ -45,7 +45,7 @@ public:
         // A passage against the way of the belt slides.
         const auto n = here.runs.bodies();
         const model::Excitation& belt = here.assembly.drive.belts[static_cast<std::size_t>(section_.measured % n)];
-        if (!belt.components().empty() && belt.value(here.question.drive.start) > 0) section_.way = -1;
+        if (!belt.components().empty() && belt.value(here.question.repeats.start) > 0) section_.way = -1;
         Returns map = returns(here, section_);
         Returns::Return arrival = map.arrival(begin);
         if (!arrival.finished) return;
@@ -202,12 +202,12 @@ private:
         if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), relays_, monitor_);
         return *here_;
     }
-    [[nodiscard]] double start(const Here& here) const { return here.question.drive.start + offset_; }
+    [[nodiscard]] double start(const Here& here) const { return here.question.repeats.start + offset_; }
     [[nodiscard]] Returns returns(Here& here, const Returns::Section& section) const {
         // Of a rest a quarter of the fastest natural period, in which no disturbance turns too far to see how fast.
         const double natural = here.runs.system().shortest_natural_period();
         const double length = cycles_                  ? 3 * period_
-                              : !timeless_             ? periods_ * here.question.drive.period
+                              : !timeless_             ? periods_ * here.question.repeats.period
                               : std::isfinite(natural) ? natural / 4
                                                        : 1;
         return {here.runs,

@@ -747,7 +747,7 @@ SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Moni
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
     if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
     constexpr double periods = 4;
-    const PeriodMap map(question.system, question.excitation, question.drive.start, periods * motion.period, monitor);
+    const PeriodMap map(question.system, question.excitation, question.repeats.start, periods * motion.period, monitor);
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
     const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});

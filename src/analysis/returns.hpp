@@ -17,8 +17,8 @@ namespace dinal::analysis {
 struct RigQuestion {
     model::AssemblyHandle system;
     motion::engine::Drive drive;
-    Drive repeats = {};  ///< period 0: nothing depends on the time
-    int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
+    Repetition repeats = {};  ///< period 0: nothing depends on the time
+    int periods = 0;          ///< of M in one of the motion; 0: as many as it takes
     /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
     /// none.
     double settles = -1;
@@ -190,9 +190,9 @@ std::vector<Acting> acting_in(const RigQuestion& question);
 
 /// When all that drives the run repeats itself: period 0 where nothing depends on the time; none where no period is
 /// known. What is a function is looked at at some times: only its user knows its period.
-std::optional<Drive> drive_of(const RigQuestion& question);
+std::optional<Repetition> repetition_of(const RigQuestion& question);
 /// Asks all of it at times all over the period and one period later: the sentence that names the worst two that differ.
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive);
+std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& drive);
 /// `settles` of the question; none where its controllers and what else drives the bodies have no common period, or too
 /// long a one.
 std::optional<double> settles_after(const RigQuestion& question);

@@ -20,15 +20,15 @@ public:
         : question_(question),
           system_(question.system),
           monitor_(monitor),
-          map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
-          half_(map_, question.drive.period / 2) {
+          map_(question.system, question.excitation, question.repeats.start, question.repeats.period, monitor),
+          half_(map_, question.repeats.period / 2) {
         symmetric_ = is_alike_both_ways(question);
         contracts_ = contracts(question);
     }
 
     SteadyMotion found() {
         const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
-        answer_.period = question_.drive.period;
+        answer_.period = question_.repeats.period;
         if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
         if (question_.periods > 1) {
             if (!search_multiple(start, question_.periods, true)) answer_.status = SteadyStatus::none;
@@ -44,7 +44,7 @@ public:
 
     SteadyMotion found_near() {
         const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
-        answer_.period = question_.drive.period;
+        answer_.period = question_.repeats.period;
         if (resonant_growth() > 0) return found();
         if (contracts_ && symmetric_ && follows_sine()) return answer_;
         if (search_once(start, symmetric_) && answer_.stable) return answer_;
@@ -71,9 +71,9 @@ private:
         const model::Oscillator& system = question_.system;
         if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
         if (system_.has_remainder() || system.walls() || question_.excitation.has_feedback()) return 0;
-        const double ratio = question_.drive.period / system.natural_period(), n = std::round(ratio);
+        const double ratio = question_.repeats.period / system.natural_period(), n = std::round(ratio);
         if (n < 1 || std::fabs(ratio - n) > 1e-12 * n) return 0;
-        const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.drive, n));
+        const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.repeats, n));
         const double taken = 2 * (system_.braking(model::Motion::forward) - system_.braking(model::Motion::backward));
         const double growth = n * (fed - taken) / system.stiffness();
         const double most = question_.excitation.most();
@@ -131,8 +131,8 @@ private:
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
-        const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
-                            periods * question_.drive.period, monitor_);
+        const PeriodMap map(question_.system, question_.excitation, question_.repeats.start,
+                            periods * question_.repeats.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
         const bool good = found && (any || length_of(found->x - start) <= 0.2 * found->size);
         const bool settled = good && settle(*found, map, periods, false);
@@ -245,8 +245,8 @@ private:
         const double beside = 0.01 * size;
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
-            const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
-                                n * question_.drive.period, monitor_);
+            const PeriodMap map(question_.system, question_.excitation, question_.repeats.start,
+                                n * question_.repeats.period, monitor_);
             const MapStep step = map(x);
             ++answer_.maps;
             if (!step.finished || length_of(step.to - x) > 1e-6 * size) continue;
@@ -338,7 +338,7 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
         question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
     // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
     const bool asks = question.excitation.has_feedback() || question.is_timeless();
-    const auto M = asks ? DriveRange{} : extremes(question.excitation, question.drive);
+    const auto M = asks ? TorqueRange{} : extremes(question.excitation, question.repeats);
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);

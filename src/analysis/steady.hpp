@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/drive.hpp"
 #include "analysis/period_map.hpp"
+#include "analysis/repetition.hpp"
 #include "model/extras.hpp"
 #include "motion/engine/run.hpp"
 
@@ -28,8 +28,8 @@ struct RigQuestion;
 struct SteadyQuestion {
     model::Oscillator system;
     model::Excitation excitation;
-    Drive drive;      ///< period 0: nothing depends on the time, and the period of a cycle is to be found
-    int periods = 0;  ///< of M in one of the motion; 0: as many as it takes
+    Repetition repeats;  ///< period 0: nothing depends on the time, and the period of a cycle is to be found
+    int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
     model::State initial = {};
     model::Extras extras = {};
     /// Of one of several bodies or links: what is asked of all of them. The system is that of this one alone, and the
@@ -37,7 +37,7 @@ struct SteadyQuestion {
     std::shared_ptr<const RigQuestion> whole = {};
     std::size_t joint = 0;
 
-    [[nodiscard]] bool is_timeless() const { return drive.period == 0; }
+    [[nodiscard]] bool is_timeless() const { return repeats.period == 0; }
 };
 
 /// How one of several bodies moves.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/drive.hpp"
+#include "analysis/repetition.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
 
@@ -47,7 +47,7 @@ bool is_monotone(const model::Friction& law, const model::Spring& spring, const 
 }
 
 /// How far from here, this way, the springs pull back with no more than friction can hold through all of the period.
-double edge_of_rest(const model::Lowered& system, double here, double way, const DriveRange& M) {
+double edge_of_rest(const model::Lowered& system, double here, double way, const TorqueRange& M) {
     const double least = M.high - system.holding(Motion::forward), most = M.low + system.holding(Motion::backward);
     const auto holds = [&](double d) {
         const double torque = system.pull_back(here + way * d);
@@ -75,8 +75,8 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
     const model::Excitation& base = question.extras.base;
     const model::Excitation loads =
         base.components().empty() ? question.excitation : question.excitation + base.scaled(-question.system.inertia());
-    const double now = loads.value(question.drive.start);
-    const DriveRange M = question.is_timeless() ? DriveRange{now, now} : extremes(loads, question.drive);
+    const double now = loads.value(question.repeats.start);
+    const TorqueRange M = question.is_timeless() ? TorqueRange{now, now} : extremes(loads, question.repeats);
     if (own_spring) return {edge_of_rest(system, here, -1, M), edge_of_rest(system, here, 1, M)};
     const double low = (M.high - system.holding(Motion::forward)) / k;
     const double high = (M.low + system.holding(Motion::backward)) / k;
@@ -118,7 +118,7 @@ double miss_one(const std::vector<std::complex<double>>& multipliers) {
 bool is_alike_both_ways(const SteadyQuestion& question) {
     const model::Oscillator& system = question.system;
     return acts_evenly(system.friction(), system) && system.spring().is_odd() &&
-           (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.excitation, question.drive);
+           (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.excitation, question.repeats);
 }
 
 std::complex<double> start_around(int i, double farthest, std::size_t body) {

@@ -33,7 +33,7 @@ struct Moments {
 bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<double>& wave) {
     const double most = question.excitation.most();
     if (std::isfinite(most)) return std::abs(wave) > least_harmonic * 2 * most;
-    const DriveRange M = extremes(question.excitation, question.drive);
+    const TorqueRange M = extremes(question.excitation, question.repeats);
     return std::abs(wave) > least_harmonic * (M.high - M.low);
 }
 
@@ -49,15 +49,15 @@ double in_one_turn(double angle) {
 namespace {
 
 /// The mean and the fundamental from the motion itself.
-std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive& drive, const SteadyMotion& motion,
-                                     const PeriodMap& map, double length) {
+std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
+                                     const SteadyMotion& motion, const PeriodMap& map, double length) {
     const motion::Trajectory run =
         motion.settled ? *motion.settled
                        : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
     if (!model::is_whole(run.outcome)) return {};
-    const double omega = 2 * std::numbers::pi / drive.period;
+    const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
-    const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
+    const double own = question.system.stiffness() > 0 ? question.system.natural_period() : repeats.period;
     const model::Excitation breaking = question.excitation + question.extras.belt + question.extras.base;
     const std::vector<double> ends = run.course == nullptr ? std::vector<double>() : run.course->piece_ends();
     Moments sum;
@@ -69,9 +69,9 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive
                 const auto state = run.at(std::clamp(t, s.from, s.to));
                 off = state ? state->theta - middle : 0;
             }
-            return Moments{off, off * std::polar(1.0, -omega * (t - drive.start))};
+            return Moments{off, off * std::polar(1.0, -omega * (t - repeats.start))};
         };
-        const double longest = std::min({own, drive.period, s.lasts()}) / 12;
+        const double longest = std::min({own, repeats.period, s.lasts()}) / 12;
         auto end = std::upper_bound(ends.begin(), ends.end(), s.from);
         for (double from = s.from; from < s.to;) {
             const double to = end == ends.end() ? s.to : std::min(*end++, s.to);
@@ -88,12 +88,13 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     SteadyShape shape;
     shape.mean = motion.start.theta;
     if (motion.status != SteadyStatus::steady || motion.period == 0) return shape;
-    const Drive drive = question.is_timeless() ? Drive{question.drive.start, motion.period} : question.drive;
+    const Repetition repeats =
+        question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
     // Half a period of a symmetric motion tells all of it.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
-    const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
+    const PeriodMap map(question.system, question.excitation, repeats.start, length, monitor);
     const bool feedback = question.excitation.has_feedback() || question.is_timeless();
-    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, drive, 1);
+    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, repeats, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
     if (const auto slides = drives && !motion.settled ? sine::ShortSlides::of(question) : std::nullopt) {
@@ -104,7 +105,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         if (!model::is_whole(run.outcome)) return shape;
         found = by_friction(question, motion, run, M_wave);
     }
-    if (!found) found = by_motion(question, drive, motion, map, length);
+    if (!found) found = by_motion(question, repeats, motion, map, length);
     if (!found) return shape;
     shape.mean = found->mean;
     shape.fundamental = std::abs(found->wave);
@@ -113,8 +114,8 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         shape.lag = in_one_turn(std::arg(M_wave) - std::arg(found->wave));
     }
     // The fundamental |M| cos(omega t + arg) is greatest when omega t = -arg.
-    const double omega = 2 * std::numbers::pi / drive.period;
-    shape.peak_lag = in_one_turn(omega * (motion.t_high - drive.start) + std::arg(M_wave));
+    const double omega = 2 * std::numbers::pi / repeats.period;
+    shape.peak_lag = in_one_turn(omega * (motion.t_high - repeats.start) + std::arg(M_wave));
     return shape;
 }
 
@@ -297,7 +298,7 @@ std::string told(const SteadyQuestion& question, const SteadyMotion& motion, con
                  const std::vector<OtherMotion>& others) {
     const std::vector<std::string> nobody;
     SteadyStory story(motion, question.is_timeless(), nobody);
-    story.tell(shape, model::has_memory<model::SampledController>(question.excitation), question.drive.period);
+    story.tell(shape, model::has_memory<model::SampledController>(question.excitation), question.repeats.period);
     if (motion.is_found()) story.tell_others(others);
     return story.told();
 }

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/drive.hpp"
 #include "analysis/explain.hpp"
 #include "analysis/recurrence.hpp"
+#include "analysis/repetition.hpp"
 #include "analysis/spectrum.hpp"
 #include "api/animate.hpp"
 #include "api/bind_simulate.hpp"
@@ -168,7 +168,7 @@ bool closes(std::span<const double> values) {
 /// That of M, where it knows one; else 0.
 double period_of_run(const Run& run) {
     const auto drive =
-        run.origin ? analysis::drive_of(run.terms ? *run.terms : run.origin->excitation, 0) : std::nullopt;
+        run.origin ? analysis::repetition_of(run.terms ? *run.terms : run.origin->excitation, 0) : std::nullopt;
     return drive ? drive->period : 0;
 }
 

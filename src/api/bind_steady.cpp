@@ -57,7 +57,7 @@ SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, 
     auto whole =
         std::make_shared<Steady>(Steady{{.system = model::Oscillator::make(parameters_of(*question->system, 0)).value(),
                                          .excitation = {},
-                                         .drive = question->repeats},
+                                         .repeats = question->repeats},
                                         rig->motion});
     whole->rig = std::move(rig);
     return whole;
@@ -70,7 +70,7 @@ analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis:
     const model::Assembly& system = *whole->system;
     analysis::SteadyQuestion question{.system = model::Oscillator::make(parameters_of(system, joint)).value(),
                                       .excitation = {},
-                                      .drive = whole->repeats,
+                                      .repeats = whole->repeats,
                                       .periods = whole->periods};
     question.whole = whole, question.joint = joint;
     if (!system.is_link(joint)) {
@@ -111,7 +111,7 @@ int steady_of_rig(lua_State* L) {
     options.fill(asked);
     question.drive = asked_drive(L, options, *question.system);
     question.periods = asked.periods.value_or(0);
-    question.repeats = drive_or_fail(L, options, question, asked_period(options));
+    question.repeats = repetition_or_fail(L, options, question, asked_period(options));
     return push_motion(L, options, std::move(question));
 }
 
@@ -448,9 +448,9 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
 }
 
 /// The state of the run at the last beginning of a period of M in it.
-model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Drive& drive) {
-    const double n = std::floor((trajectory.t_stop - drive.start) / drive.period);
-    const double t = drive.start + n * drive.period;
+model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Repetition& repeats) {
+    const double n = std::floor((trajectory.t_stop - repeats.start) / repeats.period);
+    const double t = repeats.start + n * repeats.period;
     if (t >= trajectory.t_start) {
         if (const auto state = trajectory.at(t)) return *state;
     }
@@ -484,7 +484,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     if (s.motion.settled) {
         // What led there is a part of the run that is asked for again, and its rows are those of its last period.
         const motion::Trajectory& last = *s.motion.settled;
-        task.window = {.start = s.motion.asked ? last.t_start : asked.drive.start, .end = last.t_stop};
+        task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.asked) {
             task.integrator = motion::integrator_for(asked.system, asked.excitation, asked.extras);
         } else {
@@ -495,7 +495,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     }
     if (asked.is_timeless()) return {};
     task.initial = s.motion.start;
-    task.window = {.start = asked.drive.start, .end = asked.drive.start + s.motion.period};
+    task.window = {.start = asked.repeats.start, .end = asked.repeats.start + s.motion.period};
     task.extras = {};
     Run made{.trajectory = {}, .origin = source::origin_of(L, task)};
     asking(L, [&](const motion::Monitor& monitor) {
@@ -518,26 +518,26 @@ lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s) {
     return {};
 }
 
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
-                              const std::optional<double>& period) {
+analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& options,
+                                        const analysis::RigQuestion& question, const std::optional<double>& period) {
     const auto acting = analysis::acting_in(question);
     const auto is_script = [](const analysis::Acting& one) { return one.what->has_script(); };
     const bool scripts = !question.drive.states.empty() || std::any_of(acting.begin(), acting.end(), is_script);
-    std::optional<analysis::Drive> drive;
-    asking_bodies(L, question, [&](const motion::Monitor&) { drive = analysis::drive_of(question); });
-    if (!drive && !period) {
+    std::optional<analysis::Repetition> repeats;
+    asking_bodies(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
+    if (!repeats && !period) {
         options.fail("period",
                      scripts ? "the period of M is not known; give it with period = ..."
                              : "the terms of M have no common period, so no motion is periodic; make a run and use "
                                "run:spectrum");
     }
-    if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
-    if (drive->period > 0 && (period || scripts)) {
+    if (period) repeats = analysis::Repetition{repeats ? repeats->start : 0, *period};
+    if (repeats->period > 0 && (period || scripts)) {
         std::optional<text::Error> wrong;
-        asking_bodies(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *drive); });
+        asking_bodies(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *repeats); });
         if (wrong) options.fail(*wrong);
     }
-    return *drive;
+    return *repeats;
 }
 
 std::optional<double> asked_period(const lua::Options& options) {
@@ -569,14 +569,14 @@ int steady_of_system(lua_State* L) {
     options.push("M");
     analysis::SteadyQuestion question{.system = system,
                                       .excitation = to_excitation(L, -1, "sys:steady: M", "M"),
-                                      .drive = {},
+                                      .repeats = {},
                                       .periods = asked.periods.value_or(0),
                                       .initial = {asked.theta0, asked.velocity0},
                                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
     check_relays(options, question.excitation, seen_by_relays(question.extras));
     find_period(L, question);
-    question.drive = drive_or_fail(L, options, as_assembly(question), period);
+    question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
     return push_steady(L, options, std::move(question));
 }
 
@@ -588,7 +588,7 @@ int push_motion_after(lua_State* L, const lua::Options& options, const BodiesRun
     analysis::RigQuestion question{.system = run.system, .drive = run.drive, .periods = periods};
     const motion::Monitor none;
     question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(run.run), run.run.t_stop);
-    question.repeats = drive_or_fail(L, options, question, period);
+    question.repeats = repetition_or_fail(L, options, question, period);
     question.repeats.start = std::max(question.repeats.start, run.run.t_stop);
     return push_motion(L, options, std::move(question));
 }
@@ -609,18 +609,18 @@ int steady_of_run(lua_State* L) {
     const source::Task& task = *run->origin;
     analysis::SteadyQuestion question{.system = task.system,
                                       .excitation = task.excitation,
-                                      .drive = {},
+                                      .repeats = {},
                                       .periods = asked.periods.value_or(0),
                                       .initial = run->trajectory.state_at_stop,
                                       .extras = task.extras};
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
     find_period(L, question);
-    question.drive = drive_or_fail(L, options, as_assembly(question), period);
+    question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
     if (question.extras.any()) {
-        question.drive.start = std::max(question.drive.start, ended.t_stop);
+        question.repeats.start = std::max(question.repeats.start, ended.t_stop);
     } else if (!question.is_timeless()) {
-        asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(ended, question.drive); });
+        asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(ended, question.repeats); });
     }
     return push_steady(L, options, std::move(question));
 }

@@ -291,12 +291,12 @@ public:
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
         if (several_) return question_of_bodies(x);
-        analysis::SteadyQuestion question{.system = system_, .excitation = {}, .drive = {}, .initial = start()};
+        analysis::SteadyQuestion question{.system = system_, .excitation = {}, .repeats = {}, .initial = start()};
         if (!function_) {
             const double frequency = frequency_at(x);
             question.excitation = options_.value_or_fail(model::Excitation::make(
                 model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
-            question.drive = {0, 1 / frequency};
+            question.repeats = {0, 1 / frequency};
             return question;
         }
         push_point(x);
@@ -312,7 +312,7 @@ public:
         question.periods = asked.periods.value_or(0);
         question.extras = read_extras(L_, own);
         check_relays(own, question.excitation, seen_by_relays(question.extras));
-        question.drive = drive_at(x, own, as_assembly(question), period);
+        question.repeats = repetition_at(x, own, as_assembly(question), period);
         lua_pop(L_, 1);
         return question;
     }
@@ -356,21 +356,22 @@ private:
         own.fill(asked);
         whole.drive = asked_drive(L_, own, *whole.system);
         whole.periods = asked.periods.value_or(0);
-        whole.repeats = drive_at(x, own, whole, asked_period(own));
+        whole.repeats = repetition_at(x, own, whole, asked_period(own));
         whole.settles = settles_or_fail(own, whole);
         lua_pop(L_, 1);
         return question_of_joint(std::make_shared<const analysis::RigQuestion>(std::move(whole)), joint_);
     }
 
-    [[nodiscard]] analysis::Drive drive_at(double x, const lua::Options& own, const analysis::RigQuestion& question,
-                                           const std::optional<double>& period) const {
+    [[nodiscard]] analysis::Repetition repetition_at(double x, const lua::Options& own,
+                                                     const analysis::RigQuestion& question,
+                                                     const std::optional<double>& period) const {
         const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
         // Between the values M is taken for what it is at them.
-        std::optional<analysis::Drive> known;
+        std::optional<analysis::Repetition> known;
         if (!is_value)
-            asking_bodies(L_, question, [&](const motion::Monitor&) { known = analysis::drive_of(question); });
+            asking_bodies(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
         if (known) return {known->start, period.value_or(known->period)};
-        return drive_or_fail(L_, own, question, period);
+        return repetition_or_fail(L_, own, question, period);
     }
 
     /// Adds the resonance where the motion grows: a curve past it would show a finite peak.

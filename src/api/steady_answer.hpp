@@ -147,8 +147,8 @@ void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work wor
 
 /// When all that drives the question repeats itself, as its terms have it or as the user gives it; period 0 where
 /// nothing depends on t. Raises when the period is unknown or wrong.
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::RigQuestion& question,
-                              const std::optional<double>& period);
+analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& options,
+                                        const analysis::RigQuestion& question, const std::optional<double>& period);
 
 /// Raises when the motion could not be followed, or M was found to be no function of its arguments.
 void check_motion(const lua::Options& options, const analysis::SteadyMotion& motion);

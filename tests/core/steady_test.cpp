@@ -24,12 +24,12 @@ constexpr double pi = std::numbers::pi;
 SteadyQuestion driven(double r, double gamma, double zeta = 0, double breakaway_factor = 1) {
     return {.system = truth::nondimensional(zeta, gamma, breakaway_factor * gamma),
             .excitation = truth::harmonic(1, 2 * pi * r),
-            .drive = {0, 1 / r}};
+            .repeats = {0, 1 / r}};
 }
 
 /// The amplitude after `periods` of M, by rk4 with steps of a ten-thousandth: another integrator and no map.
 double waited_for(const SteadyQuestion& question, int periods) {
-    const double T = question.drive.period;
+    const double T = question.repeats.period;
     const auto run = truth::must_run(question.system, question.excitation, question.initial, {0, periods * T},
                                      motion::Grid::none(), motion::Rk4{std::min(T, 1.0) / 2000});
     double low = 1e300, high = -1e300;
@@ -94,7 +94,7 @@ TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
     for (int i = 0; i < 12; ++i) {
         SteadyQuestion question =
             driven(0.25 + unit(random), 0.2 + 0.6 * unit(random), 0.1 + 0.2 * unit(random), i % 2 == 0 ? 1 : 1.2);
-        const double second = 0.5 * unit(random), T = question.drive.period;
+        const double second = 0.5 * unit(random), T = question.repeats.period;
         question.excitation = question.excitation + truth::harmonic(second, 4 * pi / T, 1);
         const SteadyMotion found = steady_motion(question);
         if (found.status != SteadyStatus::steady) continue;
@@ -192,7 +192,7 @@ TEST_CASE("what creeps up to the edge of where friction holds it comes to rest t
     const SteadyMotion rest = steady_motion(question);
     REQUIRE(rest.status == SteadyStatus::adheres);
     // It was pushed there from 0, by the least M: the upper edge.
-    const double least = extremes(question.excitation, question.drive).low;
+    const double least = extremes(question.excitation, question.repeats).low;
     CHECK(rest.rest.second == within(least + gamma, 1e-12));
     CHECK(rest.start.theta == within(least + gamma, 1e-12));
 }

@@ -13,7 +13,7 @@ constexpr double longest = 3;  // of a slide, in the shortest time of all parts:
 std::optional<ShortSlides> ShortSlides::of(const SteadyQuestion& question) {
     const auto sine = single_sine(question);
     if (!sine || sine->holding != sine->sliding || !(sine->spare > 0)) return {};
-    const double turns = sine->r * sine->omega0 * question.drive.period / (2 * half_load);
+    const double turns = sine->r * sine->omega0 * question.repeats.period / (2 * half_load);
     constexpr double once = 1e-12;
     if (std::fabs(turns - 1) > once) return {};
     ShortSlides slides(*sine);
@@ -112,13 +112,13 @@ SteadyMotion ShortSlides::motion(const SteadyQuestion& question) const {
     const bool slides = since < end_;
     SteadyMotion motion;
     motion.status = SteadyStatus::steady;
-    motion.period = question.drive.period;
+    motion.period = question.repeats.period;
     motion.start = sine_.state(
         {sign * (slides ? way(since) - rest_ : rest_), slides ? sign * speed_by_square(since) * since * since : 0.0});
     motion.amplitude = motion.high = sine_.unit * rest_;
     motion.low = -motion.high;
     const double stop = release_ + sine_.r * end_;
-    motion.t_high = question.drive.start + (stop - sine_.phase) / (sine_.r * sine_.omega0);
+    motion.t_high = question.repeats.start + (stop - sine_.phase) / (sine_.r * sine_.omega0);
     motion.stops = 2;
     motion.stuck = 1 - sine_.r * end_ / half_load;
     const double kept = 1 - forgets(end_);

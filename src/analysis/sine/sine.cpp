@@ -31,7 +31,7 @@ std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
     own.sliding = Rd / M0, own.holding = Re / M0;
     own.spare = (M0 - Re) / M0;
     own.unit = M0 / system.stiffness();
-    own.phase = sine->angle(question.drive.start) + (load < 0 ? std::numbers::pi : 0);
+    own.phase = sine->angle(question.repeats.start) + (load < 0 ? std::numbers::pi : 0);
     return own;
 }
 

@@ -1,4 +1,4 @@
-#include "analysis/drive.hpp"
+#include "analysis/repetition.hpp"
 
 #include <fmt/format.h>
 
@@ -19,23 +19,23 @@ namespace {
 constexpr double golden = 0.6180339887498949;  // multiples of it, less their whole parts, fill a period evenly
 
 /// The i-th of times that are spread over the period.
-double probe(const Drive& drive, int i) {
+double probe(const Repetition& repeats, int i) {
     const double place = (i + 0.5) * golden;
-    return drive.start + drive.period * (place - std::floor(place));
+    return repeats.start + repeats.period * (place - std::floor(place));
 }
 
 /// Times all over the period, and some within each piece of half a period in which neither M nor what it is half a
 /// period later breaks: a difference as short as that piece is seen. None where there are too many pieces to look at.
-std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Drive& drive) {
+std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Repetition& repeats) {
     constexpr int spread = 24;
     constexpr std::size_t most_breaks = 20000;
     std::vector<double> times(spread);
-    for (int i = 0; i < spread; ++i) times[static_cast<std::size_t>(i)] = probe(drive, i);
-    const double half = drive.period / 2;
+    for (int i = 0; i < spread; ++i) times[static_cast<std::size_t>(i)] = probe(repeats, i);
+    const double half = repeats.period / 2;
     std::vector<double> breaks{0, half};
-    double t = excitation.next_break(drive.start);
-    while (t < drive.start + drive.period) {
-        const double since = t - drive.start;
+    double t = excitation.next_break(repeats.start);
+    while (t < repeats.start + repeats.period) {
+        const double since = t - repeats.start;
         breaks.push_back(since < half ? since : since - half);
         if (breaks.size() > most_breaks) return {};
         t = excitation.next_break(t);
@@ -45,8 +45,8 @@ std::optional<std::vector<double>> probes_of_halves(const model::Excitation& exc
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
         const double length = breaks[i + 1] - breaks[i];
         constexpr double rounding = 1e-12;
-        if (!(length > rounding * (std::fabs(drive.start) + drive.period))) continue;
-        for (const double part : {0.21, 0.5, 0.83}) times.push_back(drive.start + breaks[i] + part * length);
+        if (!(length > rounding * (std::fabs(repeats.start) + repeats.period))) continue;
+        for (const double part : {0.21, 0.5, 0.83}) times.push_back(repeats.start + breaks[i] + part * length);
     }
     return times;
 }
@@ -61,10 +61,10 @@ double refined(const model::Excitation& excitation, double sign, double a, doubl
 }
 
 /// The number of the harmonic of the period that a component is, where it is one sine for all times.
-std::optional<double> harmonic_number(const model::Component& component, const Drive& drive) {
+std::optional<double> harmonic_number(const model::Component& component, const Repetition& repeats) {
     const auto* sine = std::get_if<model::Harmonic>(&component.term);
     if (sine == nullptr || std::isfinite(component.from) || std::isfinite(component.to)) return {};
-    const double number = sine->omega * drive.period / (2 * std::numbers::pi), whole = std::round(number);
+    const double number = sine->omega * repeats.period / (2 * std::numbers::pi), whole = std::round(number);
     if (std::fabs(number - whole) > 1e-12 * std::max(1.0, whole)) return {};
     return whole;
 }
@@ -74,31 +74,31 @@ bool is_odd(double whole) {
 }
 
 /// Of one sine and nothing else.
-std::optional<DriveRange> extremes_of_sine(const model::Excitation& excitation, const Drive& drive) {
+std::optional<TorqueRange> extremes_of_sine(const model::Excitation& excitation, const Repetition& repeats) {
     double swing = 0;
     int sines = 0;
     for (const model::Component& c : excitation.components()) {
-        const auto number = harmonic_number(c, drive);
+        const auto number = harmonic_number(c, repeats);
         if (!number || *number == 0) return {};
         swing = std::fabs(c.gain * std::get<model::Harmonic>(c.term).amplitude);
         ++sines;
     }
-    return sines == 1 ? std::optional(DriveRange{-swing, swing}) : std::nullopt;
+    return sines == 1 ? std::optional(TorqueRange{-swing, swing}) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<Drive> drive_of(const model::Excitation& excitation, double otherwise) {
+std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise) {
     double from = 0;
-    if (excitation.constant_from() <= from) return Drive{from, otherwise};
-    if (const double period = model::period_from(excitation, from); period > 0) return Drive{from, period};
+    if (excitation.constant_from() <= from) return Repetition{from, otherwise};
+    if (const double period = model::period_from(excitation, from); period > 0) return Repetition{from, period};
     for (const model::Component& c : excitation.components()) {
         for (const double t : {c.from, model::constant_from(c)}) {
             if (std::isfinite(t)) from = std::max(from, t);
         }
     }
-    if (excitation.constant_from() <= from) return Drive{from, otherwise};
-    if (const double period = model::period_from(excitation, from); period > 0) return Drive{from, period};
+    if (excitation.constant_from() <= from) return Repetition{from, otherwise};
+    if (const double period = model::period_from(excitation, from); period > 0) return Repetition{from, period};
     return {};
 }
 
@@ -119,8 +119,8 @@ std::vector<double> states_of(const RigQuestion& question) {
 /// The function that a term asks at any time; none of one that samples, which is asked at its instants.
 std::shared_ptr<model::UserFunction> function_of(const model::Scripted& script) {
     if (const auto* controller = dynamic_cast<const model::Controller*>(script.function.get())) {
-        const bool samples = dynamic_cast<const model::SampledController*>(controller) != nullptr;
-        return samples ? nullptr : controller->function;
+        const bool sampled = dynamic_cast<const model::SampledController*>(controller) != nullptr;
+        return sampled ? nullptr : controller->function;
     }
     return script.function;
 }
@@ -192,7 +192,7 @@ std::vector<Acting> acting_in(const RigQuestion& question) {
     return all;
 }
 
-std::optional<Drive> drive_of(const RigQuestion& question) {
+std::optional<Repetition> repetition_of(const RigQuestion& question) {
     const std::vector<double> states = states_of(question);
     const model::State initial{question.drive.theta0.front(), question.drive.velocity0.front()};
     double start = 0;
@@ -204,8 +204,8 @@ std::optional<Drive> drive_of(const RigQuestion& question) {
         }
     }
     if (!driven.components().empty()) {
-        const auto drive = drive_of(driven, 0);
-        if (drive) return Drive{std::max(start, drive->start), drive->period};
+        const auto repeats = repetition_of(driven, 0);
+        if (repeats) return Repetition{std::max(start, repeats->start), repeats->period};
         return {};
     }
     for (const model::OwnState& state : question.drive.states) {
@@ -214,18 +214,18 @@ std::optional<Drive> drive_of(const RigQuestion& question) {
     for (const model::WantedEvent& event : question.drive.events) {
         if (event.act != nullptr && !is_timeless(*event.when, initial, states)) return {};
     }
-    return Drive{start, 0};
+    return Repetition{start, 0};
 }
 
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive) {
+std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& repeats) {
     const std::vector<double> states = states_of(question);
     const auto differs = [&](const std::string& name, auto&& value) -> std::optional<text::Error> {
         constexpr int probes = 50;
         double most = 0, worst = 0, at = 0, before = 0, after = 0;
         for (int i = 0; i < probes; ++i) {
-            const double t = probe(drive, i);
+            const double t = probe(repeats, i);
             const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
-            const double now = value(t, y), later = value(t + drive.period, y);
+            const double now = value(t, y), later = value(t + repeats.period, y);
             if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
             most = std::max({most, std::fabs(now), std::fabs(later)});
             if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t, before = now, after = later;
@@ -234,7 +234,7 @@ std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive
         return text::Error{
             .sentence = fmt::format("{} does not repeat itself after period = {:.10g}: it is {:.6g} at t = {:.6g}, and "
                                     "{:.6g} at t = {:.6g}",
-                                    name, drive.period, before, at, after, at + drive.period),
+                                    name, repeats.period, before, at, after, at + repeats.period),
             .option = "period"};
     };
     for (const Acting& acting : acting_in(question)) {
@@ -250,22 +250,22 @@ std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive
     return {};
 }
 
-bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
+bool is_antisymmetric(const model::Excitation& excitation, const Repetition& repeats) {
     const auto components = excitation.components();
     if (std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
-            const auto number = harmonic_number(c, drive);
+            const auto number = harmonic_number(c, repeats);
             return number && is_odd(*number);
         })) {
         return true;
     }
-    const auto times = probes_of_halves(excitation, drive);
+    const auto times = probes_of_halves(excitation, repeats);
     if (!times) return false;
     double greatest = 0, worst = 0;
     for (std::size_t j = 0; j < times->size(); ++j) {
         const double t = (*times)[j];
         const int i = static_cast<int>(j % 35);
         const model::State y{0.13 * (i % 5 - 2), 0.17 * (i % 7 - 3)}, opposite{-y.theta, -y.velocity};
-        const double now = excitation.value(t, y), half = excitation.value(t + drive.period / 2, opposite);
+        const double now = excitation.value(t, y), half = excitation.value(t + repeats.period / 2, opposite);
         if (!std::isfinite(now) || !std::isfinite(half)) return false;
         const double size = std::fabs(now) + std::fabs(half);
         greatest = std::max(greatest, size);
@@ -276,45 +276,45 @@ bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
     return worst <= 1e-13 * (std::isfinite(most) ? most : greatest);
 }
 
-std::complex<double> harmonic_of(const model::Excitation& excitation, const Drive& drive, double n) {
-    const double omega = 2 * std::numbers::pi * n / drive.period;
+std::complex<double> harmonic_of(const model::Excitation& excitation, const Repetition& repeats, double n) {
+    const double omega = 2 * std::numbers::pi * n / repeats.period;
     const auto components = excitation.components();
     // a sin(w t + p) = a cos(w t + p - pi/2): the sum of those of this number.
     std::complex<double> known;
     const bool sines = std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
-        const auto number = harmonic_number(c, drive);
+        const auto number = harmonic_number(c, repeats);
         if (number == n && n > 0) {
             const auto& sine = std::get<model::Harmonic>(c.term);
-            known += std::polar(1.0, sine.angle(drive.start) - std::numbers::pi / 2) * (c.gain * sine.amplitude);
+            known += std::polar(1.0, sine.angle(repeats.start) - std::numbers::pi / 2) * (c.gain * sine.amplitude);
         }
         return number.has_value() && n > 0;
     });
     if (sines) return known;
-    const auto sum = integral(excitation, drive.start, drive.start + drive.period, drive.period / 64, [&](double t) {
-        return excitation.value(t) * std::polar(1.0, -omega * (t - drive.start));
-    });
-    return sum * (2 / drive.period);
+    const auto sum =
+        integral(excitation, repeats.start, repeats.start + repeats.period, repeats.period / 64,
+                 [&](double t) { return excitation.value(t) * std::polar(1.0, -omega * (t - repeats.start)); });
+    return sum * (2 / repeats.period);
 }
 
-DriveRange extremes(const model::Excitation& excitation, const Drive& drive) {
-    if (const auto sine = extremes_of_sine(excitation, drive)) return *sine;
+TorqueRange extremes(const model::Excitation& excitation, const Repetition& repeats) {
+    if (const auto sine = extremes_of_sine(excitation, repeats)) return *sine;
     constexpr int pieces = 512;
-    const double end = drive.start + drive.period, h = drive.period / pieces;
-    DriveRange range{excitation.value(drive.start), excitation.value(drive.start)};
+    const double end = repeats.start + repeats.period, h = repeats.period / pieces;
+    TorqueRange range{excitation.value(repeats.start), excitation.value(repeats.start)};
     const auto see = [&range](double value) {
         range.low = std::min(range.low, value);
         range.high = std::max(range.high, value);
     };
-    double jump = excitation.next_break(drive.start);
-    const double behind_end = end + 1e-12 * (std::fabs(end) + drive.period);  // where a period ends it may jump, too
+    double jump = excitation.next_break(repeats.start);
+    const double behind_end = end + 1e-12 * (std::fabs(end) + repeats.period);  // where a period ends it may jump, too
     while (jump < behind_end) {
         see(excitation.value(jump));
         see(excitation.value_before(jump));
         jump = excitation.next_break(jump);
     }
-    double before = excitation.value(drive.start - h), now = excitation.value(drive.start);
+    double before = excitation.value(repeats.start - h), now = excitation.value(repeats.start);
     for (int i = 0; i < pieces; ++i) {
-        const double t = drive.start + i * h, next = excitation.value(t + h);
+        const double t = repeats.start + i * h, next = excitation.value(t + h);
         see(now);
         if (now >= before && now >= next && now > range.high - 1e-3 * (range.high - range.low)) {
             see(refined(excitation, 1, t - h, t + h));

@@ -12,23 +12,23 @@
 namespace dinal::analysis {
 
 /// From `start` on M repeats itself every `period`; 0: nothing depends on the time.
-struct Drive {
+struct Repetition {
     double start = 0, period = 0;
 };
 
 /// What is known of M without asking it: none when no period is. A constant M has any: `otherwise`.
-std::optional<Drive> drive_of(const model::Excitation& excitation, double otherwise);
+std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise);
 
 /// M half a period later is the opposite (of the opposite state, where it depends on that).
-bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive);
+bool is_antisymmetric(const model::Excitation& excitation, const Repetition& repeats);
 
 /// (2/T) times the integral of M e^(-i 2 pi n t/T), counted from `start`: n = 0 has twice the mean.
-std::complex<double> harmonic_of(const model::Excitation& excitation, const Drive& drive, double n);
+std::complex<double> harmonic_of(const model::Excitation& excitation, const Repetition& repeats, double n);
 
-struct DriveRange {
+struct TorqueRange {
     double low = 0, high = 0;
 };
-DriveRange extremes(const model::Excitation& excitation, const Drive& drive);
+TorqueRange extremes(const model::Excitation& excitation, const Repetition& repeats);
 
 inline double size_of(double value) {
     return std::fabs(value);
