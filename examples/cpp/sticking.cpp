@@ -10,7 +10,7 @@ int main() {
     const auto M = model::Excitation::make(model::Harmonic{.amplitude = 0.6, .omega = 0.5});
     if (!system || !M) return 1;
     const motion::Integrator integrator = motion::integrator_for(*system, *M);  // or motion::Rk4{.h = 0.01}
-    const auto run = motion::simulate(*system, *M, {.theta = 1}, {0, 20}, motion::Grid::every(0.01), integrator);
+    const auto run = motion::simulate(*system, {*M, {.theta = 1}}, {0, 20}, motion::Grid::every(0.01), integrator);
     if (!run) {
         std::cerr << run.error().message() << '\n';
         return 1;

@@ -734,10 +734,9 @@ std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
     return WholeStory(run).told(energies);
 }
 
-std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras) {
+std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
+                    motion::MethodView method) {
     const auto whole = motion::engine::assembly_of(system);
-    const auto drive = motion::engine::drive_of(excitation, extras, trajectory.initial);
     return explain({.system = whole, .drive = drive, .parts = {&trajectory}, .method = method});
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "analysis/energy.hpp"
+#include "model/drive.hpp"
 #include "model/excitation.hpp"
-#include "model/extras.hpp"
 #include "model/oscillator.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/method.hpp"
@@ -17,7 +17,7 @@ namespace dinal::analysis {
 
 struct RunToTell {
     const model::Assembly& system;
-    const motion::engine::Drive& drive;
+    const model::Drive& drive;
     std::vector<const motion::Trajectory*> parts;  ///< the run as seen from each body and link
     motion::MethodView method;
     std::optional<std::size_t> joint = {};  ///< whose story alone is told
@@ -28,8 +28,8 @@ std::string explain(const RunToTell& run, const std::vector<Energy>& energies = 
 
 /// The story of one body. Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are
 /// told one by one. No user function is called, but for a spring, a belt and a base.
-std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras = {});
+std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
+                    motion::MethodView method);
 
 /// What rows alone tell, of a trajectory that was read from a file.
 std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units = {});

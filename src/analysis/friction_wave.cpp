@@ -11,7 +11,7 @@ namespace dinal::analysis {
 bool is_linear_but_for_friction(const SteadyQuestion& question) {
     const model::Lowered system(question.system);
     return question.system.has_linear_spring() && system.stiffness() > 0 && !system.has_remainder() &&
-           !question.system.walls() && !question.excitation.has_feedback();
+           !question.system.walls() && !question.drive.M().has_feedback();
 }
 
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
@@ -31,10 +31,10 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
             const double piece = std::min(repeats.period / 64, s.lasts() / 12);
             sum += held * s.lasts();
             sum_wave += held * between;
-            sum += integral(question.excitation, s.from, s.to, piece,
-                            [&](double t) { return question.excitation.value(t); });
-            sum_wave += integral(question.excitation, s.from, s.to, piece,
-                                 [&](double t) { return question.excitation.value(t) * wave(t); });
+            sum += integral(question.drive.M(), s.from, s.to, piece,
+                            [&](double t) { return question.drive.M().value(t); });
+            sum_wave += integral(question.drive.M(), s.from, s.to, piece,
+                                 [&](double t) { return question.drive.M().value(t) * wave(t); });
         } else {
             const double braking =
                 system.braking(s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward);
@@ -49,8 +49,8 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
     found.wave =
         left / std::complex<double>(system.stiffness() - system.inertia() * omega * omega, system.damping() * omega);
     if (!motion.symmetric) {
-        const double mean_M = integral(question.excitation, run.t_start, run.t_stop, repeats.period / 64,
-                                       [&](double t) { return question.excitation.value(t); }) /
+        const double mean_M = integral(question.drive.M(), run.t_start, run.t_stop, repeats.period / 64,
+                                       [&](double t) { return question.drive.M().value(t); }) /
                               length;
         found.mean = (mean_M - sum / length) / system.stiffness();
     }

@@ -220,7 +220,7 @@ private:
         motion::Limits limits;
         limits.dense = false;
         const auto run =
-            motion::simulate(*system, *question_.M, initial, {times.front(), times.back()}, motion::Grid::at(times),
+            motion::simulate(*system, {*question_.M, initial}, {times.front(), times.back()}, motion::Grid::at(times),
                              motion::integrator_for(*system, *question_.M), monitor_, limits);
         if (!run || static_cast<std::size_t>(run->size()) != rows) {
             stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||

@@ -19,7 +19,7 @@ RigQuestion as_assembly(const SteadyQuestion& question) {
     if (question.whole) return *question.whole;
     const model::Oscillator& system = question.system;
     RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
-                      .drive = engine::drive_of(question.excitation, question.extras, question.initial),
+                      .drive = question.drive,
                       .repeats = question.repeats,
                       .periods = question.periods};
     if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
@@ -27,7 +27,7 @@ RigQuestion as_assembly(const SteadyQuestion& question) {
     return asked;
 }
 
-std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const engine::Drive& drive,
+std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive,
                                                double start) {
     SteadyQuestion asked = question;
     asked.repeats.start = start;
@@ -38,9 +38,7 @@ std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, c
         asked.whole = std::move(whole);
         return std::make_shared<const SteadyQuestion>(std::move(asked));
     }
-    asked.excitation = drive.loads.front();
-    asked.initial = {drive.theta0.front(), drive.velocity0.front()};
-    asked.extras.states = drive.states;
+    asked.drive = drive;
     return std::make_shared<const SteadyQuestion>(std::move(asked));
 }
 

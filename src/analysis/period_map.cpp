@@ -21,7 +21,7 @@ PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& e
                      const motion::Monitor& monitor)
     : system_(system),
       lowered_(system),
-      excitation_(excitation),
+      drive_(excitation),
       integrator_(motion::integrator_for(system, excitation)),
       start_(start),
       length_(length),
@@ -41,7 +41,8 @@ double PeriodMap::rounding() const {
 motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
     motion::Limits limits;
     limits.dense = dense;  // a series is read between its nodes more quickly than a closed form
-    auto result = motion::simulate(system_, excitation_, state(from), {start_, start_ + length}, motion::Grid::none(),
+    drive_.start_at(state(from));
+    auto result = motion::simulate(system_, drive_, {start_, start_ + length}, motion::Grid::none(),
                                    dense ? motion::Integrator(motion::Spectral{}) : integrator_, monitor_, limits);
     if (result && result->contradiction) contradiction_ = result->contradiction;
     if (result) return std::move(result).value();
@@ -53,12 +54,12 @@ motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) 
 MapStep PeriodMap::operator()(const Place& from) const {
     MapStep step;
     constexpr double most = 1e100;  // where powers of the motion would soon be no numbers
-    const bool powers = lowered_.has_remainder() || excitation_.has_feedback();
+    const bool powers = lowered_.has_remainder() || drive_.M().has_feedback();
     const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
     const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
     // Springs may have no number for what goes beyond all bounds. (Were it M, the user's function has told it.)
     const bool flew_away =
-        run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !excitation_.has_feedback();
+        run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !drive_.M().has_feedback();
     step.outcome = finite && !flew_away ? run.outcome : model::Outcome::state_not_finite;
     step.finished = model::is_whole(step.outcome);
     if (!step.finished) {
@@ -131,14 +132,14 @@ Eigen::Matrix2d PeriodMap::free_motion(double length) const {
 /// M' from the left, which is where a breakaway comes from.
 double PeriodMap::slope_before(double t) const {
     const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
-    const double now = excitation_.value_before(t), one = excitation_.value(t - h), two = excitation_.value(t - 2 * h);
+    const double now = drive_.M().value_before(t), one = drive_.M().value(t - h), two = drive_.M().value(t - 2 * h);
     return (3 * now - 4 * one + two) / (2 * h);
 }
 
 void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) const {
     const model::Lowered& system = lowered_;
     Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
-    step.differentiable = !system.has_remainder() && !excitation_.has_feedback();
+    step.differentiable = !system.has_remainder() && !drive_.M().has_feedback();
     for (const Stretch& s : parts) {
         if (!step.differentiable) break;
         if (s.stuck) {
@@ -164,7 +165,7 @@ void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) 
                 const model::Motion back =
                     way == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
                 const double before =
-                    std::fma(-system.stiffness(), event.theta, excitation_.value_before(event.t)) - system.braking(way);
+                    std::fma(-system.stiffness(), event.theta, drive_.M().value_before(event.t)) - system.braking(way);
                 const double after = pull - system.braking(back);
                 step.differentiable = before != 0;
                 total.row(1) *= after / before;
@@ -173,7 +174,7 @@ void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) 
             case model::EventKind::slip: {
                 const model::Motion way = pull < 0 ? model::Motion::backward : model::Motion::forward;
                 const double after = pull - system.braking(way);
-                const double jump = event.M - excitation_.value_before(event.t);
+                const double jump = event.M - drive_.M().value_before(event.t);
                 const double least = 1e-9 * system.greatest_holding();
                 const double slope = std::fabs(after) <= least || std::fabs(jump) > least ? 0 : slope_before(event.t);
                 const double turned =

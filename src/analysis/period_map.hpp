@@ -68,7 +68,7 @@ public:
     /// All of a step but its derivative, from a run of any length.
     [[nodiscard]] MapStep told(const motion::Trajectory& run, const std::vector<Stretch>& parts) const;
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
-    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
+    [[nodiscard]] const model::Excitation& excitation() const { return drive_.M(); }
     [[nodiscard]] double start() const { return start_; }
     /// What was found of a function that is none, in any of the runs so far.
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
@@ -80,7 +80,7 @@ private:
 
     const model::Oscillator& system_;
     model::Lowered lowered_;
-    const model::Excitation& excitation_;
+    mutable model::Drive drive_;     // of the last run
     motion::Integrator integrator_;  // the usual one
     double start_, length_, omega_;
     motion::Monitor monitor_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/stretches.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 
 namespace dinal::analysis {
 

@@ -106,7 +106,7 @@ namespace {
 
 /// What functions are given as states: of bodies with names all angles and velocities, and then the states of the run.
 std::vector<double> states_of(const RigQuestion& question) {
-    const motion::engine::Drive& drive = question.drive;
+    const model::Drive& drive = question.drive;
     std::vector<double> states;
     if (question.system->named) {
         states = drive.theta0;

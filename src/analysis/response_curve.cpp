@@ -45,7 +45,7 @@ private:
         SteadyQuestion question = question_.family(p);
         // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
         if (question.is_timeless()) return motion_of(question, near);
-        if (!before && !question.whole) question.initial = question_.start;
+        if (!before && !question.whole) question.drive.start_at(question_.start);
         if (before) question = from_motion(std::move(question), *before, false);
         return motion_of(question, near);
     }
@@ -65,11 +65,11 @@ private:
             question.whole = std::move(whole);
             return question;
         }
-        question.initial = motion.start;
+        question.drive.start_at(motion.start);
         if (states && motion.asked) {
-            question.initial.velocity = motion.asked->initial.velocity;
-            for (std::size_t i = 0; i < question.extras.states.size(); ++i) {
-                question.extras.states[i].start = motion.asked->extras.states[i].start;
+            question.drive.velocity0 = motion.asked->drive.velocity0;
+            for (std::size_t i = 0; i < question.drive.states.size(); ++i) {
+                question.drive.states[i].start = motion.asked->drive.states[i].start;
             }
         }
         return question;
@@ -89,11 +89,11 @@ private:
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it goes round: its size tells nothing
         const SteadyQuestion question = question_.family(p);
-        const bool plain = !question.whole && !question.is_timeless() && !question.extras.any();
+        const bool plain = !question.whole && !question.is_timeless() && !question.drive.has_more();
         if (question.whole && (question.whole->settles >= 0 || contracts(question))) return {};
-        if (contracts(question) && question.extras.states.empty() && question.extras.events.empty()) return {};
+        if (contracts(question) && question.drive.states.empty() && question.drive.events.empty()) return {};
         if (!plain) return circuit_of_returns(question_.family, p, motion, periods, monitor_);
-        if (model::has_memory(question.excitation)) return {};
+        if (model::has_memory(question.drive.M())) return {};
         return circuit_of_periods(question_.family, p, motion, periods, monitor_);
     }
 

@@ -81,7 +81,7 @@ public:
         motion.multipliers = multipliers_of(derivative);
         motion.differentiable = true;
         motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
-        motion.begun = std::make_shared<const motion::engine::Drive>(here.runs.from(begin, start(here)));
+        motion.begun = std::make_shared<const model::Drive>(here.runs.from(begin, start(here)));
         if (stands_) {
             const auto velocity = begin.y.segment(here.runs.bodies(), here.runs.bodies());
             const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
@@ -117,7 +117,7 @@ public:
         if (stands_) {
             const double natural = here_->runs.natural_period(),
                          omega = natural > 0 ? 2 * std::numbers::pi / natural : 1;
-            const motion::engine::Drive& drive = here_->assembly.drive;
+            const model::Drive& drive = here_->assembly.drive;
             double size = 0;
             for (const model::Excitation& belt : drive.belts) {
                 size = std::max(size, std::fabs(belt.value(start(*here_))) / omega);

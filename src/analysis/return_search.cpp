@@ -20,13 +20,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-bool has_acts(const engine::Drive& drive) {
+bool has_acts(const model::Drive& drive) {
     return std::any_of(drive.events.begin(), drive.events.end(),
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
 /// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
-bool is_linear(const model::Assembly& system, const engine::Drive& drive) {
+bool is_linear(const model::Assembly& system, const model::Drive& drive) {
     const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
     const auto bends = [](const model::Joint& joint) {
         return !joint.spring.none() || joint.walls || !joint.friction.is_constant() ||
@@ -666,7 +666,7 @@ std::optional<VectorXd> ReturnSearch::tells(const Moment& moment, double start) 
     constexpr double rows = 400;
     Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
-    facts_.begun = std::make_shared<const engine::Drive>(runs_.from(moment, start));
+    facts_.begun = std::make_shared<const model::Drive>(runs_.from(moment, start));
     return tell_period(moment, std::move(run), period);
 }
 
@@ -687,7 +687,7 @@ void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
     if (moves && stuck) facts_.status = SteadyStatus::adheres;  // to the belt, which takes it along
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
-    if (question().settles < 0) facts_.begun = std::make_shared<const engine::Drive>(runs_.from(now, run.t_stop));
+    if (question().settles < 0) facts_.begun = std::make_shared<const model::Drive>(runs_.from(now, run.t_stop));
     facts_.bodies = bodies_at(now.y, chart_, n());
 }
 
@@ -747,7 +747,7 @@ SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Moni
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
     if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
     constexpr double periods = 4;
-    const PeriodMap map(question.system, question.excitation, question.repeats.start, periods * motion.period, monitor);
+    const PeriodMap map(question.system, question.drive.M(), question.repeats.start, periods * motion.period, monitor);
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
     const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});

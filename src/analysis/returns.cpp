@@ -144,8 +144,8 @@ model::Excitation with_relays(const model::Excitation& excitation, const std::ve
     });
 }
 
-engine::Drive Runs::from(const Moment& moment, double start) const {
-    engine::Drive drive = question_.drive;
+model::Drive Runs::from(const Moment& moment, double start) const {
+    model::Drive drive = question_.drive;
     const Index n = bodies();
     for (Index i = 0; i < n; ++i) {
         drive.theta0[static_cast<std::size_t>(i)] = moment.y[i];
@@ -176,7 +176,7 @@ engine::Drive Runs::from(const Moment& moment, double start) const {
 
 Runs::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
                     const std::optional<model::WantedEvent>& section) {
-    engine::Drive drive = this->from(from, start);
+    model::Drive drive = this->from(from, start);
     if (section) drive.events.push_back(*section);
     std::shared_ptr<engine::Carry> before;
     if (from.mode) {
@@ -190,7 +190,7 @@ Runs::Run Runs::run(const Moment& from, double start, double end, const motion::
 Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start, double end, const motion::Grid& rows,
                       const std::optional<model::WantedEvent>& section) {
     if (!section) return run(question_.drive, start, end, rows, true, std::move(before));
-    engine::Drive drive = question_.drive;
+    model::Drive drive = question_.drive;
     drive.events.push_back(*section);
     const auto unwatched = [](const engine::Carry& carry) {  // other runs have other events
         auto copy = std::make_shared<engine::Carry>(carry);
@@ -202,7 +202,7 @@ Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start,
     return result;
 }
 
-Runs::Run Runs::run(const engine::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
+Runs::Run Runs::run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
                     std::shared_ptr<const engine::Carry> before) {
     motion::Limits limits;
     limits.dense = dense;

@@ -16,7 +16,7 @@ namespace dinal::analysis {
 
 struct RigQuestion {
     model::AssemblyHandle system;
-    motion::engine::Drive drive;
+    model::Drive drive;
     Repetition repeats = {};  ///< period 0: nothing depends on the time
     int periods = 0;          ///< of M in one of the motion; 0: as many as it takes
     /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
     [[nodiscard]] Moment first() const;
     /// The drive of a run that begins at this moment and time.
-    [[nodiscard]] motion::engine::Drive from(const Moment& moment, double start) const;
+    [[nodiscard]] model::Drive from(const Moment& moment, double start) const;
     [[nodiscard]] Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
                           const std::optional<model::WantedEvent>& section = {});
     /// From where another run ended, with all that its controllers and delays remember; none: from the start.
@@ -64,8 +64,8 @@ public:
     [[nodiscard]] Eigen::MatrixXd allowed(const HeldMode& mode, Eigen::Index size) const;
 
 private:
-    [[nodiscard]] Run run(const motion::engine::Drive& drive, double start, double end, const motion::Grid& rows,
-                          bool dense, std::shared_ptr<const motion::engine::Carry> before);
+    [[nodiscard]] Run run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
+                          std::shared_ptr<const motion::engine::Carry> before);
 
     const RigQuestion& question_;
     const motion::Monitor& monitor_;

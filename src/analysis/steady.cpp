@@ -20,14 +20,14 @@ public:
         : question_(question),
           system_(question.system),
           monitor_(monitor),
-          map_(question.system, question.excitation, question.repeats.start, question.repeats.period, monitor),
+          map_(question.system, question.drive.M(), question.repeats.start, question.repeats.period, monitor),
           half_(map_, question.repeats.period / 2) {
         symmetric_ = is_alike_both_ways(question);
         contracts_ = contracts(question);
     }
 
     SteadyMotion found() {
-        const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
+        const Place start = inside(question_.system, place_of(question_.drive.start(), map_.omega()));
         answer_.period = question_.repeats.period;
         if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
         if (question_.periods > 1) {
@@ -43,7 +43,7 @@ public:
     }
 
     SteadyMotion found_near() {
-        const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
+        const Place start = inside(question_.system, place_of(question_.drive.start(), map_.omega()));
         answer_.period = question_.repeats.period;
         if (resonant_growth() > 0) return found();
         if (contracts_ && symmetric_ && follows_sine()) return answer_;
@@ -70,13 +70,13 @@ private:
     [[nodiscard]] double resonant_growth() const {
         const model::Oscillator& system = question_.system;
         if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
-        if (system_.has_remainder() || system.walls() || question_.excitation.has_feedback()) return 0;
+        if (system_.has_remainder() || system.walls() || question_.drive.M().has_feedback()) return 0;
         const double ratio = question_.repeats.period / system.natural_period(), n = std::round(ratio);
         if (n < 1 || std::fabs(ratio - n) > 1e-12 * n) return 0;
-        const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.repeats, n));
+        const double fed = std::numbers::pi * std::abs(harmonic_of(question_.drive.M(), question_.repeats, n));
         const double taken = 2 * (system_.braking(model::Motion::forward) - system_.braking(model::Motion::backward));
         const double growth = n * (fed - taken) / system.stiffness();
-        const double most = question_.excitation.most();
+        const double most = question_.drive.M().most();
         const double rounding = 1e-9 * n * (std::isfinite(most) ? most : fed) / system.stiffness();
         return growth > rounding ? growth : 0;
     }
@@ -123,7 +123,7 @@ private:
 
     /// What a function gives was looked at here and there only: a whole period shows whether both halves are alike.
     bool repeats(const FixedPointSearch::Try& found) {
-        if (std::isfinite(question_.excitation.most())) return true;
+        if (std::isfinite(question_.drive.M().most())) return true;
         const MapStep whole = map_(found.x);
         ++answer_.maps;
         const double alike = std::max(1e-9 * found.size, 4 * found.rounding);
@@ -131,7 +131,7 @@ private:
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
-        const PeriodMap map(question_.system, question_.excitation, question_.repeats.start,
+        const PeriodMap map(question_.system, question_.drive.M(), question_.repeats.start,
                             periods * question_.repeats.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
         const bool good = found && (any || length_of(found->x - start) <= 0.2 * found->size);
@@ -144,7 +144,7 @@ private:
     [[nodiscard]] std::optional<Place> rest_beside(const Place& x, const MapStep& step) const {
         const double k = system_.stiffness(), size = system_.greatest_holding() / k;
         if (!question_.system.has_linear_spring() || !(step.high - step.low <= 1e-8 * size) ||
-            question_.excitation.has_feedback()) {
+            question_.drive.M().has_feedback()) {
             return {};
         }
         const auto [low, high] = rest_of(question_, x[0]);
@@ -245,7 +245,7 @@ private:
         const double beside = 0.01 * size;
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
-            const PeriodMap map(question_.system, question_.excitation, question_.repeats.start,
+            const PeriodMap map(question_.system, question_.drive.M(), question_.repeats.start,
                                 n * question_.repeats.period, monitor_);
             const MapStep step = map(x);
             ++answer_.maps;
@@ -263,7 +263,7 @@ private:
 
     /// A linear spring off resonance, and friction, which only takes.
     [[nodiscard]] bool is_bounded() const {
-        return !system_.has_remainder() && !question_.system.walls() && !question_.excitation.has_feedback() &&
+        return !system_.has_remainder() && !question_.system.walls() && !question_.drive.M().has_feedback() &&
                question_.system.stiffness() > 0 && question_.system.damping() >= 0;
     }
 
@@ -297,12 +297,12 @@ private:
 }  // namespace
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const bool waits = model::has_memory<model::DelayedController>(question.excitation);
-    const bool returns = question.whole || waits || question.is_timeless() || question.extras.any();
+    const bool waits = model::has_memory<model::DelayedController>(question.drive.M());
+    const bool returns = question.whole || waits || question.is_timeless() || question.drive.has_more();
     if (returns) return returning_motion(question, monitor);
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
-    if (model::has_memory(question.excitation) && !goes_on(question, motion, monitor) &&
+    if (model::has_memory(question.drive.M()) && !goes_on(question, motion, monitor) &&
         motion.outcome != model::Outcome::interrupted) {
         return returning_motion(question, monitor);
     }
@@ -310,8 +310,8 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const bool plain = !question.whole && !question.is_timeless() && !question.extras.any();
-    if (!plain || model::has_memory(question.excitation)) return steady_motion(question, monitor);
+    const bool plain = !question.whole && !question.is_timeless() && !question.drive.has_more();
+    if (!plain || model::has_memory(question.drive.M())) return steady_motion(question, monitor);
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());
 }
@@ -337,8 +337,8 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
     const double omega =
         question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
     // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
-    const bool asks = question.excitation.has_feedback() || question.is_timeless();
-    const auto M = asks ? TorqueRange{} : extremes(question.excitation, question.repeats);
+    const bool asks = question.drive.M().has_feedback() || question.is_timeless();
+    const auto M = asks ? TorqueRange{} : extremes(question.drive.M(), question.repeats);
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
@@ -348,7 +348,7 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
         const Place start = inside(question.system, Place(spot.real(), spot.imag()));
         SteadyQuestion& other = questions[static_cast<std::size_t>(i)];
         other.periods = 0;
-        other.initial = {start[0], start[1] * omega};
+        other.drive.start_at({start[0], start[1] * omega});
     }
     return questions;
 }
@@ -362,7 +362,7 @@ std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const Ste
     double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
     // At rest the initial state is all that says how large motions may be.
     if (known.stands())
-        size = std::max({size, std::fabs(question.initial.theta), std::fabs(question.initial.velocity)});
+        size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
     const auto alike = [size](const SteadyMotion& a, const SteadyMotion& b) { return are_alike(a, b, size); };
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }

@@ -12,7 +12,7 @@
 
 #include "analysis/period_map.hpp"
 #include "analysis/repetition.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "motion/engine/run.hpp"
 
 namespace dinal::analysis {
@@ -27,11 +27,9 @@ struct RigQuestion;
 
 struct SteadyQuestion {
     model::Oscillator system;
-    model::Excitation excitation;
+    model::Drive drive;
     Repetition repeats;  ///< period 0: nothing depends on the time, and the period of a cycle is to be found
     int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
-    model::State initial = {};
-    model::Extras extras = {};
     /// Of one of several bodies or links: what is asked of all of them. The system is that of this one alone, and the
     /// excitation is looked at for its harmonics only.
     std::shared_ptr<const RigQuestion> whole = {};
@@ -49,7 +47,7 @@ struct BodyMotion {
 
 /// One period of several bodies.
 struct PeriodOfBodies {
-    motion::engine::Drive drive;
+    model::Drive drive;
     motion::engine::AssemblyRun run;
 };
 
@@ -75,8 +73,8 @@ struct SteadyMotion {
     std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
     // Of motions that return:
     std::vector<BodyMotion> bodies = {};
-    std::shared_ptr<const PeriodOfBodies> of_bodies = {};     ///< none at rest
-    std::shared_ptr<const motion::engine::Drive> begun = {};  ///< of a run that is the motion from its start on
+    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< none at rest
+    std::shared_ptr<const model::Drive> begun = {};        ///< of a run that is the motion from its start on
 
     /// Whether there is a motion or a rest, and so facts about it.
     [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }

@@ -71,10 +71,10 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
     const model::Lowered system(question.system);
     const double k = system.stiffness();
     const bool own_spring = !question.system.spring().none();
-    if (question.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
-    const model::Excitation& base = question.extras.base;
+    if (question.drive.M().has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
+    const model::Excitation& base = question.drive.base;
     const model::Excitation loads =
-        base.components().empty() ? question.excitation : question.excitation + base.scaled(-question.system.inertia());
+        base.components().empty() ? question.drive.M() : question.drive.M() + base.scaled(-question.system.inertia());
     const double now = loads.value(question.repeats.start);
     const TorqueRange M = question.is_timeless() ? TorqueRange{now, now} : extremes(loads, question.repeats);
     if (own_spring) return {edge_of_rest(system, here, -1, M), edge_of_rest(system, here, 1, M)};
@@ -88,11 +88,11 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
 bool contracts(const SteadyQuestion& question) {
     if (question.whole) return contracts(*question.whole);
     const model::Oscillator& system = question.system;
-    return is_monotone(system.friction(), system.spring(), system.walls()) && !question.excitation.has_feedback();
+    return is_monotone(system.friction(), system.spring(), system.walls()) && !question.drive.M().has_feedback();
 }
 
 bool contracts(const RigQuestion& question) {
-    const motion::engine::Drive& drive = question.drive;
+    const model::Drive& drive = question.drive;
     const auto asks = [](const model::Excitation& of) { return of.has_feedback() || model::has_memory(of); };
     const auto& joints = question.system->joints;
     return drive.states.empty() && drive.events.empty() && !asks(drive.base) &&
@@ -118,7 +118,7 @@ double miss_one(const std::vector<std::complex<double>>& multipliers) {
 bool is_alike_both_ways(const SteadyQuestion& question) {
     const model::Oscillator& system = question.system;
     return acts_evenly(system.friction(), system) && system.spring().is_odd() &&
-           (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.excitation, question.repeats);
+           (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.drive.M(), question.repeats);
 }
 
 std::complex<double> start_around(int i, double farthest, std::size_t body) {

@@ -60,8 +60,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
 void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
 
 /// The question whose run begins so.
-std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const motion::engine::Drive& drive,
-                                               double start);
+std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
 /// The motion as seen from a body or link, whose own question is that of one body; `run` is the run of its period as
 /// seen from there, none at rest.

@@ -31,9 +31,9 @@ struct Moments {
 
 /// The fundamental of M, beside all of M.
 bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<double>& wave) {
-    const double most = question.excitation.most();
+    const double most = question.drive.M().most();
     if (std::isfinite(most)) return std::abs(wave) > least_harmonic * 2 * most;
-    const TorqueRange M = extremes(question.excitation, question.repeats);
+    const TorqueRange M = extremes(question.drive.M(), question.repeats);
     return std::abs(wave) > least_harmonic * (M.high - M.low);
 }
 
@@ -58,7 +58,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repet
     const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : repeats.period;
-    const model::Excitation breaking = question.excitation + question.extras.belt + question.extras.base;
+    const model::Excitation breaking = question.drive.M() + question.drive.belt() + question.drive.base;
     const std::vector<double> ends = run.course == nullptr ? std::vector<double>() : run.course->piece_ends();
     Moments sum;
     for (const Stretch& s : stretches(run)) {
@@ -92,9 +92,9 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
     // Half a period of a symmetric motion tells all of it.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
-    const PeriodMap map(question.system, question.excitation, repeats.start, length, monitor);
-    const bool feedback = question.excitation.has_feedback() || question.is_timeless();
-    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, repeats, 1);
+    const PeriodMap map(question.system, question.drive.M(), repeats.start, length, monitor);
+    const bool feedback = question.drive.M().has_feedback() || question.is_timeless();
+    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.drive.M(), repeats, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
     if (const auto slides = drives && !motion.settled ? sine::ShortSlides::of(question) : std::nullopt) {
@@ -298,7 +298,7 @@ std::string told(const SteadyQuestion& question, const SteadyMotion& motion, con
                  const std::vector<OtherMotion>& others) {
     const std::vector<std::string> nobody;
     SteadyStory story(motion, question.is_timeless(), nobody);
-    story.tell(shape, model::has_memory<model::SampledController>(question.excitation), question.repeats.period);
+    story.tell(shape, model::has_memory<model::SampledController>(question.drive.M()), question.repeats.period);
     if (motion.is_found()) story.tell_others(others);
     return story.told();
 }

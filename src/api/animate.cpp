@@ -53,7 +53,7 @@ AnimationViewer animation_viewer = nullptr;
 
 /// The surface that the run slides on, where it moves.
 const model::Excitation* belt_of(const Run& run) {
-    const model::Excitation* belt = run.origin  ? &run.origin->extras.belt
+    const model::Excitation* belt = run.origin  ? &run.origin->drive.belt()
                                     : run.whole ? &run.whole->drive.belts[*run.joint]
                                                 : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;

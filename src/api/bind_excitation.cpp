@@ -169,9 +169,12 @@ lua::LuaFunction* read_function(const model::Component& component) {
 
 }  // namespace
 
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
-                                             double from, double to, const model::Extras& extras) {
-    if (!M.has_script() || motion::has_functions(system, {}, extras)) return {};
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Drive& drive,
+                                             double from, double to) {
+    const model::Excitation& M = drive.M();
+    model::Drive others = drive;
+    others.loads = {model::Excitation()};
+    if (!M.has_script() || motion::has_functions(system, others)) return {};
     lua::CallState call(L);
     if (to < no_end) call.set_span(to - from);
     model::Excitation sum;

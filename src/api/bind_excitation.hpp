@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "lua/bind.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 
 namespace dinal::api {
 
@@ -15,8 +15,8 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
 
 /// The functions in M as native terms, to rounding, from one time to another. None where one is no such sum on each of
 /// its pieces, or where something else runs in Lua meanwhile, which may change what M depends on.
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
-                                             double from, double to, const model::Extras& extras);
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Drive& drive,
+                                             double from, double to);
 /// The same M, whose functions have the periods that they are proven to have.
 model::Excitation with_periods(lua_State* L, const model::Excitation& M);
 

@@ -18,7 +18,7 @@
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/picture.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
@@ -103,7 +103,8 @@ inline constexpr text::Option own_identify_options[] = {
      .meaning = "the reading where the spring is relaxed, if known; of several bodies by name",
      .wanted = by_body_wanted},
 };
-inline constexpr text::Option extras_of_record[] = {extras_options[0], extras_options[2], extras_options[3]};
+inline constexpr text::Option extras_of_record[] = {more_drive_options[0], more_drive_options[2],
+                                                    more_drive_options[3]};
 inline constexpr auto identify_options = text::joined(own_identify_options, extras_of_record);
 inline constexpr text::Call identify_call{"identify", "identify{ data = run }", identify_options};
 

@@ -191,8 +191,8 @@ std::optional<double> constant_load(const Run& run) {
     if (!run.origin) return {};
     const source::Task& task = *run.origin;
     const double t = task.window.start;
-    const auto M = constant_value(run.terms ? *run.terms : task.excitation, t);
-    const auto belt = constant_value(task.extras.belt, t), base = constant_value(task.extras.base, t);
+    const auto M = constant_value(run.terms ? *run.terms : task.drive.M(), t);
+    const auto belt = constant_value(task.drive.belt(), t), base = constant_value(task.drive.base, t);
     if (!M || !base || belt != 0.0) return {};
     return *M - task.system.inertia() * *base;
 }
@@ -293,9 +293,9 @@ void join_columns(lua_State* L) {
 
 motion::BetweenRows between_rows(const Run& run) {
     const model::Excitation* M = nullptr;
-    if (run.origin) M = run.terms ? &*run.terms : &run.origin->excitation;
+    if (run.origin) M = run.terms ? &*run.terms : &run.origin->drive.M();
     if (run.joint && !run.whole->system->is_link(*run.joint)) M = &run.whole->drive.loads[*run.joint];
-    const bool of_state = run.origin && run.origin->extras.states.empty();  // of theta and velocity alone
+    const bool of_state = run.origin && run.origin->drive.states.empty();  // of theta and velocity alone
     const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
     return {run.trajectory, known ? M : nullptr};

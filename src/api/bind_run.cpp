@@ -58,11 +58,16 @@ std::string line_of(const Run& run) {
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const Run& run = *handle;
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
-    std::string text = run.whole    ? story_of_bodies(L, handle)
-                       : run.origin ? analysis::explain(run.trajectory, run.origin->system,
-                                                        run.terms ? *run.terms : run.origin->excitation,
-                                                        run.origin->integrator, run.origin->extras)
-                                    : analysis::explain_rows(run.trajectory, run.units);
+    std::string text;
+    if (run.whole) {
+        text = story_of_bodies(L, handle);
+    } else if (run.origin) {
+        model::Drive drive = run.origin->drive;
+        if (run.terms) drive.loads = {*run.terms};
+        text = analysis::explain(run.trajectory, run.origin->system, drive, run.origin->integrator);
+    } else {
+        text = analysis::explain_rows(run.trajectory, run.units);
+    }
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }
@@ -168,7 +173,7 @@ bool closes(std::span<const double> values) {
 /// That of M, where it knows one; else 0.
 double period_of_run(const Run& run) {
     const auto drive =
-        run.origin ? analysis::repetition_of(run.terms ? *run.terms : run.origin->excitation, 0) : std::nullopt;
+        run.origin ? analysis::repetition_of(run.terms ? *run.terms : run.origin->drive.M(), 0) : std::nullopt;
     return drive ? drive->period : 0;
 }
 
@@ -188,7 +193,7 @@ Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, st
     double period = trajectory.course->system().natural_period();
     if (const double own = period_of_run(run); own > 0) period = std::min(period, own);
     const std::span<const model::Component> M = run.origin
-                                                    ? (run.terms ? *run.terms : run.origin->excitation).components()
+                                                    ? (run.terms ? *run.terms : run.origin->drive.M()).components()
                                                     : std::span<const model::Component>();
     for (const model::Component& component : M) {
         if (const auto* sine = std::get_if<model::Harmonic>(&component.term)) {
@@ -513,7 +518,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     const motion::Trajectory& trajectory = run->trajectory;
     lua::CallState call(L);
     std::vector<model::WantedEvent> wanted;
-    if (run->origin) wanted = run->origin->extras.events;
+    if (run->origin) wanted = run->origin->drive.events;
     if (run->whole) wanted = run->whole->drive.events;
     std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
     if (trajectory.on_belt) {  // no event tells the extremes of theta there
@@ -556,7 +561,7 @@ lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
 
 std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".excitation");
-    if (run->origin) return run->origin->excitation;
+    if (run->origin) return run->origin->drive.M();
     if (!run->whole || run->whole->system->is_link(*run->joint)) return {};
     return run->whole->drive.loads[*run->joint];
 }
@@ -870,7 +875,7 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
     for (Eigen::Index i = 0; i < trajectory.size(); ++i) {
         const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
         const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
-        const double base = task.extras.base.components().empty() ? 0 : task.extras.base.value(t[i]);
+        const double base = task.drive.base.components().empty() ? 0 : task.drive.base.value(t[i]);
         values[static_cast<std::size_t>(i)] = leans ? 0 : torque / task.system.inertia() - base + 0.0;
         call.check();
     }
@@ -950,7 +955,7 @@ int continue_run(lua_State* L) {
              "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;
-    for (const model::Component& component : origin.excitation.components()) {
+    for (const model::Component& component : origin.drive.M().components()) {
         const auto* sampled = model::controller_of<model::SampledController>(component);
         if (sampled != nullptr && sampled->first && sampled->latest != run.get()) {
             options.fail(
@@ -969,8 +974,8 @@ int continue_run(lua_State* L) {
     }
     const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
                                    const motion::Limits& limits) {
-        return motion::resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator,
-                              monitor, limits, task.extras);
+        return motion::resume(task.system, task.drive, so_far, task.window.end, task.rows, task.integrator, monitor,
+                              limits);
     };
     return run_task(L, options, std::move(origin), so_far.t_stop, so_far.course != nullptr, compute);
 }

@@ -11,7 +11,7 @@
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/run.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
@@ -48,27 +48,23 @@ std::optional<std::size_t> memory_of_machine() {
 source::Task asked_task(lua_State* L, const lua::Options& options, const RunOptions& asked,
                         const model::Oscillator& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
-    options.push("M");
     source::Task task{.system = system,
-                      .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
-                      .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
+                      .drive = asked_drive(L, options, motion::engine::assembly_of(system)),
                       .window = {.start = asked.t_start},
                       .rows = motion::Grid::at(asked.times),
-                      .integrator = {},
-                      .extras = read_extras(L, options)};
-    lua_pop(L, 1);
-    check_relays(options, task.excitation, seen_by_relays(task.extras));
+                      .integrator = {}};
     if (!asked.t_end && asked.times.empty()) {
         options.missing("t_end");
     }
     // The latest time and not the last one: times that do not increase are an error of their own.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
-    const auto terms = integrator == nullptr
-                           ? terms_alone(L, system, task.excitation, asked.t_start, task.window.end, task.extras)
-                           : std::nullopt;
-    task.integrator = integrator != nullptr
-                          ? *integrator
-                          : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
+    if (integrator != nullptr) {
+        task.integrator = *integrator;
+    } else {
+        model::Drive played = task.drive;
+        if (auto terms = terms_alone(L, system, task.drive, asked.t_start, task.window.end)) played.loads = {*terms};
+        task.integrator = motion::integrator_for(system, played);
+    }
     if (!options.has("times") && task.window.end > task.window.start) {
         task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system.natural_period())));
     }
@@ -140,7 +136,7 @@ private:
 
 }  // namespace
 
-std::string readings_of(const model::Assembly& system, const motion::engine::Drive& drive, bool located, bool native) {
+std::string readings_of(const model::Assembly& system, const model::Drive& drive, bool located, bool native) {
     std::string all;
     const auto tell = [&](const std::string& name, const model::Excitation& excitation) {
         for (const model::Component& component : excitation.components()) {
@@ -178,7 +174,7 @@ std::string readings_of(const model::Assembly& system, const motion::engine::Dri
     return all;
 }
 
-bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located) {
+bool sees_all(const model::Assembly& system, const model::Drive& drive, bool located) {
     bool all = drive.events.empty();  // of which only values are known to the integrator
     const auto see = [&](const model::UserFunction& function) {
         const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
@@ -222,28 +218,27 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
     if (std::holds_alternative<motion::Exact>(asked.integrator)) {
-        run->terms = terms_alone(L, asked.system, asked.excitation, asked.window.start, to, asked.extras);
+        run->terms = terms_alone(L, asked.system, asked.drive, asked.window.start, to);
     }
 
-    const Memories memories(L, options, run->origin->excitation, from != run->origin->window.start);
+    const Memories memories(L, options, run->origin->drive.M(), from != run->origin->window.start);
     lua::CallState call(L);
     call.set_span(to - from);
-    if (!run->origin->extras.states.empty()) call.name_states(names_of(run->origin->extras));
+    if (!asked.drive.states.empty()) call.name_states(names_of_states(asked.drive));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
         return !lua::interrupt_requested();
     };
     source::Task played = asked;
-    if (run->terms) played.excitation = *run->terms;
+    if (run->terms) played.drive.loads = {*run->terms};
     run->trajectory = options.value_or_fail(compute(played, monitor, limits));
     if (call.failed() && lua::interrupt_requested()) {
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
     const model::Assembly system = motion::engine::assembly_of(asked.system);
-    const auto drive = motion::engine::drive_of(asked.excitation, asked.extras, asked.initial);
-    run->readings = readings_of(system, drive, run->trajectory.located, run->terms.has_value());
-    if (sees_all(system, drive, run->trajectory.located)) run->trajectory.gap = 0;
+    run->readings = readings_of(system, asked.drive, run->trajectory.located, run->terms.has_value());
+    if (sees_all(system, asked.drive, run->trajectory.located)) run->trajectory.gap = 0;
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());
@@ -273,8 +268,7 @@ int simulate_system(lua_State* L) {
     }
     const double from = task.window.start;
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
-        return motion::simulate(given.system, given.excitation, given.initial, given.window, given.rows,
-                                given.integrator, monitor, limits, given.extras);
+        return motion::simulate(given.system, given.drive, given.window, given.rows, given.integrator, monitor, limits);
     };
     // What M refers to is written down before M runs, because it may change that.
     return run_task(L, options, source::origin_of(L, std::move(task)), from, asked.dense, compute);
@@ -414,27 +408,6 @@ model::Excitation read_motion(lua_State* L, const lua::Options& options, const c
     }
     lua_pop(L, 1);
     return motion;
-}
-
-model::Extras read_extras(lua_State* L, const lua::Options& options) {
-    return {.states = read_states(L, options),
-            .events = read_events(L, options),
-            .belt = read_motion(L, options, "belt"),
-            .base = read_motion(L, options, "base")};
-}
-
-std::vector<std::string> seen_by_relays(const model::Extras& extras) {
-    std::vector<std::string> names = names_of(extras);
-    names.insert(names.begin(), {"theta", "velocity"});
-    return names;
-}
-
-std::vector<std::string> names_of(const model::Extras& extras) {
-    std::vector<std::string> names;
-    for (const model::OwnState& state : extras.states) {
-        names.push_back(state.name);
-    }
-    return names;
 }
 
 void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/system_options.hpp"
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
@@ -86,7 +86,7 @@ inline constexpr text::Option dense_option[] = {
      .filled = text::fills<&RunOptions::dense>},
 };
 inline constexpr auto simulate_options = text::joined(run_start_options, window_options, integrator_option,
-                                                      dense_option, extras_options, model::units_option);
+                                                      dense_option, more_drive_options, model::units_option);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options, false, &with_call};
 

@@ -56,7 +56,7 @@ SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, 
     if (!question->system->named) return seen_from(rig, 0);
     auto whole =
         std::make_shared<Steady>(Steady{{.system = model::Oscillator::make(parameters_of(*question->system, 0)).value(),
-                                         .excitation = {},
+                                         .drive = {},
                                          .repeats = question->repeats},
                                         rig->motion});
     whole->rig = std::move(rig);
@@ -69,13 +69,13 @@ analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis:
                                            std::size_t joint) {
     const model::Assembly& system = *whole->system;
     analysis::SteadyQuestion question{.system = model::Oscillator::make(parameters_of(system, joint)).value(),
-                                      .excitation = {},
+                                      .drive = {},
                                       .repeats = whole->repeats,
                                       .periods = whole->periods};
     question.whole = whole, question.joint = joint;
     if (!system.is_link(joint)) {
         const model::Excitation& load = whole->drive.loads[joint];
-        if (!load.has_feedback() && !model::has_memory(load)) question.excitation = load;
+        if (!load.has_feedback() && !model::has_memory(load)) question.drive = load;
     }
     return question;
 }
@@ -176,7 +176,7 @@ const Steady& of_one(lua_State* L, const Steady& s) {
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     of_one(L, *s);
     if (!s->shape) {
-        asking(L, s->question.extras,
+        asking(L, s->question.drive,
                [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
     }
     return *s->shape;
@@ -185,7 +185,7 @@ const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
 const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHandle& s) {
     if (!s->others) {
         std::vector<analysis::OtherMotion> others;
-        asking(L, s->question.extras, [&](const motion::Monitor& monitor) {
+        asking(L, s->question.drive, [&](const motion::Monitor& monitor) {
             others = analysis::other_motions(s->question, s->motion, monitor);
         });
         s->others = std::move(others);
@@ -437,8 +437,8 @@ namespace {
 
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
     const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
-    const auto note = watched_memories(L, options, steady->question.excitation, false);
-    asking(L, steady->question.extras, [&](const motion::Monitor& monitor) {
+    const auto note = watched_memories(L, options, steady->question.drive.M(), false);
+    asking(L, steady->question.drive, [&](const motion::Monitor& monitor) {
         steady->motion = analysis::steady_motion(steady->question, monitor);
     });
     check_motion(options, steady->motion);
@@ -475,18 +475,16 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
     const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
     source::Task task{.system = asked.system,
-                      .excitation = asked.excitation,
-                      .initial = asked.initial,
+                      .drive = asked.drive,
                       .window = {},
                       .rows = motion::Grid::every(s.motion.period / rows),
-                      .integrator = {},
-                      .extras = asked.extras};
+                      .integrator = {}};
     if (s.motion.settled) {
         // What led there is a part of the run that is asked for again, and its rows are those of its last period.
         const motion::Trajectory& last = *s.motion.settled;
         task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.asked) {
-            task.integrator = motion::integrator_for(asked.system, asked.excitation, asked.extras);
+            task.integrator = motion::integrator_for(asked.system, asked.drive);
         } else {
             const auto times = last.column(motion::Column::t);
             task.rows = motion::Grid::at({times.begin(), times.end()});
@@ -494,13 +492,11 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
         return Run{.trajectory = last, .origin = source::origin_of(L, std::move(task))};
     }
     if (asked.is_timeless()) return {};
-    task.initial = s.motion.start;
     task.window = {.start = asked.repeats.start, .end = asked.repeats.start + s.motion.period};
-    task.extras = {};
+    task.drive = {asked.drive.M(), s.motion.start};
     Run made{.trajectory = {}, .origin = source::origin_of(L, task)};
     asking(L, [&](const motion::Monitor& monitor) {
-        auto result = motion::simulate(task.system, task.excitation, task.initial, task.window, task.rows,
-                                       task.integrator, monitor);
+        auto result = motion::simulate(task.system, task.drive, task.window, task.rows, task.integrator, monitor);
         if (result) made.trajectory = std::move(result).value();
     });
     return made;
@@ -553,8 +549,8 @@ std::optional<double> asked_period(const lua::Options& options) {
 
 /// Functions in M that repeat say so, as native terms or by themselves.
 void find_period(lua_State* L, analysis::SteadyQuestion& question) {
-    const auto terms = terms_alone(L, question.system, question.excitation, 0, model::never, question.extras);
-    question.excitation = terms ? *terms : with_periods(L, question.excitation);
+    const auto terms = terms_alone(L, question.system, question.drive, 0, model::never);
+    question.drive.loads = {terms ? *terms : with_periods(L, question.drive.M())};
 }
 
 int steady_of_system(lua_State* L) {
@@ -563,18 +559,10 @@ int steady_of_system(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     const std::optional<double> period = asked_period(options);
-    if (const auto& walls = system.walls()) {
-        if (const auto beyond = walls->crossed_by(asked.theta0)) options.fail(*beyond);
-    }
-    options.push("M");
     analysis::SteadyQuestion question{.system = system,
-                                      .excitation = to_excitation(L, -1, "sys:steady: M", "M"),
+                                      .drive = asked_drive(L, options, motion::engine::assembly_of(system)),
                                       .repeats = {},
-                                      .periods = asked.periods.value_or(0),
-                                      .initial = {asked.theta0, asked.velocity0},
-                                      .extras = read_extras(L, options)};
-    lua_pop(L, 1);
-    check_relays(options, question.excitation, seen_by_relays(question.extras));
+                                      .periods = asked.periods.value_or(0)};
     find_period(L, question);
     question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
     return push_steady(L, options, std::move(question));
@@ -607,20 +595,17 @@ int steady_of_run(lua_State* L) {
     if (run->whole) return push_motion_after(L, options, *run->whole, asked.periods.value_or(0), period);
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
     const source::Task& task = *run->origin;
-    analysis::SteadyQuestion question{.system = task.system,
-                                      .excitation = task.excitation,
-                                      .repeats = {},
-                                      .periods = asked.periods.value_or(0),
-                                      .initial = run->trajectory.state_at_stop,
-                                      .extras = task.extras};
+    analysis::SteadyQuestion question{
+        .system = task.system, .drive = task.drive, .repeats = {}, .periods = asked.periods.value_or(0)};
+    question.drive.start_at(run->trajectory.state_at_stop);
     const motion::Trajectory& ended = run->trajectory;
-    for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
+    for (std::size_t i = 0; i < ended.state_count(); ++i) question.drive.states[i].start = ended.carried->states[i];
     find_period(L, question);
     question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
-    if (question.extras.any()) {
+    if (question.drive.has_more()) {
         question.repeats.start = std::max(question.repeats.start, ended.t_stop);
     } else if (!question.is_timeless()) {
-        asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(ended, question.repeats); });
+        asking(L, [&](const motion::Monitor&) { question.drive.start_at(state_at_period(ended, question.repeats)); });
     }
     return push_steady(L, options, std::move(question));
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/bind_simulate.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/run.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
@@ -46,7 +46,7 @@ inline constexpr text::Option bodies_drive_rows[] = {
      .otherwise = "0",
      .meaning = "velocities of the surface under a body or link, by name: numbers, functions of t or excitations",
      .wanted = by_body_wanted},
-    extras_options[3],
+    more_drive_options[3],
     {.name = "states",
      .meaning =
          "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, "
@@ -80,14 +80,17 @@ enum class Names { bodies, links, both };
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
                     Names which, const std::function<void(std::size_t)>& f);
 /// Those of the call, by the names of the bodies.
-motion::engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system);
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system);
+/// The same from rest at 0.
+model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::Assembly& system);
+std::vector<std::string> names_of_states(const model::Drive& drive);
 /// What users' functions get as theta, velocity and z.
-void name_functions(lua::CallState& call, const model::Assembly& system, const motion::engine::Drive& drive);
+void name_functions(lua::CallState& call, const model::Assembly& system, const model::Drive& drive);
 
 /// A run of several bodies.
 struct BodiesRun {
     AssemblyHandle system;
-    motion::engine::Drive drive;
+    model::Drive drive;
     motion::engine::AssemblyRun run;
     double dt = 0;
     double t_end = 0;    ///< that was asked for
@@ -116,10 +119,10 @@ std::size_t joint_named(lua_State* L, std::string_view name, const model::Assemb
 
 /// Whether no pulse of a function that acts can have been missed: all were read as formulas, whose changes were
 /// `located` if they depend on the motion.
-[[nodiscard]] bool sees_all(const model::Assembly& system, const motion::engine::Drive& drive, bool located);
+[[nodiscard]] bool sees_all(const model::Assembly& system, const model::Drive& drive, bool located);
 
 /// Sentences that say of each function of M, belt and base how it was evaluated; `native`: M as a sum of native terms.
-[[nodiscard]] std::string readings_of(const model::Assembly& system, const motion::engine::Drive& drive, bool located,
+[[nodiscard]] std::string readings_of(const model::Assembly& system, const model::Drive& drive, bool located,
                                       bool native);
 
 /// Pushes the body or link as a system of its own.

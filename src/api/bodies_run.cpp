@@ -96,7 +96,7 @@ engine::Cut cut_of(const motion::Integrator& integrator) {
 
 /// The integrator asked for, which suits each mode of the bodies. Contacts that hold make none of them faster.
 motion::Integrator asked_integrator(const lua::Options& options, const model::Assembly& system,
-                                    const engine::Drive& drive, const motion::Window& window) {
+                                    const model::Drive& drive, const motion::Window& window) {
     const auto* asked = options.object<motion::Integrator>("integrator");
     if (asked == nullptr) return motion::Spectral{};
     const motion::MethodView method = *asked;

@@ -1,11 +1,11 @@
-// What drives a run of bodies and links, and from where it starts: options to engine::Drive.
+// What drives a run of bodies and links, and from where it starts: options to model::Drive.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
@@ -16,8 +16,13 @@ namespace engine = motion::engine;
 
 namespace {
 
+/// The option, or the part of it that is for this body or link.
+std::string part_of_option(const model::Assembly& system, const char* option, std::size_t joint) {
+    return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
+}
+
 /// What relays can look at: theta.load, velocity.load and the states.
-std::vector<std::string> names_for_relays(const model::Assembly& system, const engine::Drive& drive) {
+std::vector<std::string> names_for_relays(const model::Assembly& system, const model::Drive& drive) {
     std::vector<std::string> known;
     if (!system.named) known = {"theta", "velocity"};
     for (const char* kind : {"theta.", "velocity."}) {
@@ -31,16 +36,10 @@ std::vector<std::string> names_for_relays(const model::Assembly& system, const e
 
 }  // namespace
 
-engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
-    engine::Drive drive;
-    const std::size_t n = system.bodies.size();
-    drive.loads.resize(n), drive.belts.resize(system.joints.size());
-    drive.theta0.assign(n, 0), drive.velocity0.assign(n, 0);
-    const auto part = [&](const char* option, std::size_t joint) {
-        return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
-    };
+model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+    model::Drive drive = model::Drive::at_rest(system.bodies.size(), system.joints.size());
     const auto named = [&](const char* option, std::size_t joint) {
-        return fmt::format("{}: {}", options.call(), part(option, joint));
+        return fmt::format("{}: {}", options.call(), part_of_option(system, option, joint));
     };
     for_each_named(L, options, "M", system, Names::bodies,
                    [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
@@ -50,12 +49,22 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
             options.fail("belt", "belt must be a number, an excitation or a function of t alone");
         }
     });
+    drive.base = read_motion(L, options, "base");
+    drive.states = read_states(L, options);
+    drive.events = read_events(L, options);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i)
+        check_relays(options, drive.loads[i], names_for_relays(system, drive), part_of_option(system, "M", i));
+    return drive;
+}
+
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+    model::Drive drive = asked_acting(L, options, system);
     for (const auto& [option, values] :
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
         for_each_named(L, options, option, system, Names::bodies, [&, name = option, to = values](std::size_t i) {
             if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
-                options.fail(name,
-                             fmt::format("{} must be a finite number, got {}", part(name, i), lua::describe(L, -1)));
+                options.fail(name, fmt::format("{} must be a finite number, got {}", part_of_option(system, name, i),
+                                               lua::describe(L, -1)));
             }
             (*to)[i] = lua_tonumber(L, -1);
         });
@@ -76,19 +85,18 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
             options.fail(*wrong);
         }
     }
-    drive.base = read_motion(L, options, "base");
-    drive.states = read_states(L, options);
-    drive.events = read_events(L, options);
-    for (std::size_t i = 0; i < n; ++i)
-        check_relays(options, drive.loads[i], names_for_relays(system, drive), part("M", i));
     return drive;
 }
 
-void name_functions(lua::CallState& call, const model::Assembly& system, const engine::Drive& drive) {
-    if (system.named) call.name_bodies(body_names(system));
+std::vector<std::string> names_of_states(const model::Drive& drive) {
     std::vector<std::string> names;
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
-    if (!names.empty()) call.name_states(names);
+    return names;
+}
+
+void name_functions(lua::CallState& call, const model::Assembly& system, const model::Drive& drive) {
+    if (system.named) call.name_bodies(body_names(system));
+    if (!drive.states.empty()) call.name_states(names_of_states(drive));
 }
 
 }  // namespace dinal::api

@@ -10,7 +10,7 @@
 #include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/run.hpp"
 #include "api/system_options.hpp"
 #include "lua/lua_text.hpp"

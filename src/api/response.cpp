@@ -216,7 +216,7 @@ inline constexpr text::Option system_at_option[] = {
     {.name = "system", .meaning = "the system at this point", .object = "system", .wanted = "a system"},
 };
 inline constexpr auto at_options =
-    text::joined(drive_options, period_options, start_options, extras_options, system_at_option);
+    text::joined(drive_options, period_options, start_options, more_drive_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
 inline constexpr auto rig_at_options = text::joined(bodies_drive_rows, period_options, system_at_option);
 inline constexpr text::Call rig_at_call{"rig:response: at", "at = function(p) return { belt = { load = p.speed } } end",
@@ -237,7 +237,7 @@ public:
         if (several_ && !function_) options.missing("at");
         if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
-        if (!several_) extras_ = question(values_.front()).extras;
+        if (!several_) drive_ = question(values_.front()).drive;
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 
@@ -253,7 +253,7 @@ public:
     void set_beside(double value) { beside_ = value; }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    [[nodiscard]] const model::Extras& extras() const { return extras_; }
+    [[nodiscard]] const model::Drive& drive() const { return drive_; }
     /// Rows for the values only.
     [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] bool doubled() const { return asked_.doubled; }
@@ -291,11 +291,11 @@ public:
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
         if (several_) return question_of_bodies(x);
-        analysis::SteadyQuestion question{.system = system_, .excitation = {}, .repeats = {}, .initial = start()};
+        analysis::SteadyQuestion question{.system = system_, .drive = {{}, start()}, .repeats = {}};
         if (!function_) {
             const double frequency = frequency_at(x);
-            question.excitation = options_.value_or_fail(model::Excitation::make(
-                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
+            question.drive.loads = {options_.value_or_fail(model::Excitation::make(
+                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}))};
             question.repeats = {0, 1 / frequency};
             return question;
         }
@@ -305,13 +305,9 @@ public:
         own.fill(asked);
         const std::optional<double> period = asked_period(own);
         if (const auto* system = own.object<model::Oscillator>("system")) question.system = *system;
-        own.push("M");
-        question.excitation = to_excitation(L_, -1, "sys:response: at: M", "M");
-        lua_pop(L_, 1);
-        question.initial = {asked.theta0, asked.velocity0};
+        question.drive = asked_acting(L_, own, motion::engine::assembly_of(question.system));
+        question.drive.start_at({asked.theta0, asked.velocity0});
         question.periods = asked.periods.value_or(0);
-        question.extras = read_extras(L_, own);
-        check_relays(own, question.excitation, seen_by_relays(question.extras));
         question.repeats = repetition_at(x, own, as_assembly(question), period);
         lua_pop(L_, 1);
         return question;
@@ -449,7 +445,7 @@ private:
     std::string varied_;                  // the last of them
     std::vector<double> values_;          // its values
     double beside_ = 0;                   // the present value of the first of two
-    model::Extras extras_;
+    model::Drive drive_;
     bool function_ = false;
     int place_ = 0;
 };
@@ -565,7 +561,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call, co
     if (several) {
         asking_bodies(L, *call.question(call.values().front()).whole, work);
     } else {
-        asking(L, call.extras(), work);
+        asking(L, call.drive(), work);
     }
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();

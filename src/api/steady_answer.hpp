@@ -10,7 +10,7 @@
 #include "analysis/returns.hpp"
 #include "analysis/steady.hpp"
 #include "api/bodies.hpp"
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "api/system_options.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
@@ -82,7 +82,7 @@ inline constexpr text::Option drive_options[] = {
      .meaning = "the excitation: a number, a function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
 };
-inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options, extras_options);
+inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options, more_drive_options);
 inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
@@ -121,18 +121,18 @@ inline double greatest_angle(const analysis::SteadyMotion& motion) {
     return std::max(std::fabs(motion.low), std::fabs(motion.high));
 }
 
-/// Calls the work, which may evaluate functions of a run with these extras, and raises their errors.
+/// Calls the work, which may evaluate functions of a run with this drive, and raises their errors.
 template <class Work>
-void asking(lua_State* L, const model::Extras& extras, Work work) {
+void asking(lua_State* L, const model::Drive& drive, Work work) {
     lua::CallState call(L);
-    if (!extras.states.empty()) call.name_states(names_of(extras));
+    if (!drive.states.empty()) call.name_states(names_of_states(drive));
     work([](double) { return !lua::interrupt_requested(); });
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
 }
 template <class Work>
 void asking(lua_State* L, Work work) {
-    asking(L, model::Extras{}, std::move(work));
+    asking(L, model::Drive(), std::move(work));
 }
 
 /// The same of functions of bodies.

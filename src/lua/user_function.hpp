@@ -9,7 +9,7 @@
 
 #include "lua/bind.hpp"
 #include "lua/formula_reader.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 
 namespace dinal::lua {
 

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "model/drive.hpp"
 #include "model/excitation.hpp"
-#include "model/extras.hpp"
 #include "model/friction.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/spring.hpp"

@@ -2,10 +2,10 @@
 
 namespace dinal::motion {
 
-Integrator integrator_for(const model::Oscillator& system, const model::Excitation& excitation,
-                          const model::Extras& extras) {
+Integrator integrator_for(const model::Oscillator& system, const model::Drive& drive) {
     constexpr Exact exact;
-    if (!extras.any() && !exact.wrong_for(system, excitation) && !Exact::goes_slowly(system, excitation)) return exact;
+    if (!drive.has_more() && !exact.wrong_for(system, drive.M()) && !Exact::goes_slowly(system, drive.M()))
+        return exact;
     return Spectral{};
 }
 

@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "motion/dinal1989/dinal1989.hpp"
 #include "motion/exact/exact.hpp"
 #include "motion/rk4/rk4.hpp"
@@ -23,8 +23,7 @@ using Integrator = std::variant<Spectral,  //
                                 Dinal1989>;
 
 /// What a run takes that names none: exact where it applies, else spectral, which takes everything.
-Integrator integrator_for(const model::Oscillator& system, const model::Excitation& excitation,
-                          const model::Extras& extras = {});
+Integrator integrator_for(const model::Oscillator& system, const model::Drive& drive);
 /// The same in words, and the Lua text of the first of them.
 inline constexpr text::FixedText<64> usual_integrator{Exact::about.call.name, "{}"};
 inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " if it supports M, otherwise ",

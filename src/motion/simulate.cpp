@@ -198,10 +198,10 @@ struct Past {
     const Carried* carried = nullptr;
 };
 
-text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& system,
-                                    const model::Excitation& excitation, const model::State& initial,
+text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& system, const model::Drive& drive,
                                     const Window& window, const Grid& rows, MethodView method, const Monitor& monitor,
-                                    const Limits& limits, const model::Extras& extras) {
+                                    const Limits& limits) {
+    const model::State initial = drive.start();
     if (!std::isfinite(initial.theta))
         return text::Error{.sentence = fmt::format("theta0 = {} must be a finite number", initial.theta),
                            .option = "theta0"};
@@ -215,24 +215,23 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     auto grid = rows.within(window);
     if (!grid) return grid.error();
     if (auto wrong = wrong_rows(*grid, column_count, limits)) return *wrong;
-    for (const model::Excitation* terms : {&excitation, &extras.belt, &extras.base}) {
+    for (const model::Excitation* terms : {&drive.M(), &drive.belt(), &drive.base}) {
         if (auto lost = lost_term(*terms, window)) return *lost;
     }
-    if (auto wrong = wrong_method(method, system, excitation, window)) return *wrong;
+    if (auto wrong = wrong_method(method, system, drive.M(), window)) return *wrong;
 
     const std::size_t course_bytes = limits.memory / share_of_course;
     std::optional<UnderOath> oath;
-    if (!method.asks_in_order() && has_functions(system, excitation, extras)) oath.emplace(system, excitation, extras);
+    if (!method.asks_in_order() && has_functions(system, drive)) oath.emplace(system, drive);
     Problem problem{oath ? oath->system() : system,
-                    oath ? oath->excitation() : excitation,
-                    initial,
+                    oath ? oath->drive() : drive,
                     window,
                     *grid,
                     monitor,
                     limits,
                     past.motion,
                     course_bytes - std::min(course_bytes, past.course_bytes)};
-    const bool more = extras.any() || system.walls() || model::has_memory(excitation);
+    const bool more = drive.has_more() || system.walls() || model::has_memory(drive.M());
     if (more && !method.knows_more()) {
         return text::Error{
             .sentence = fmt::format("{} does not support states, events, belts, bases and controllers with memory: use "
@@ -240,15 +239,14 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                                     method.about().call.name),
             .option = "integrator"};
     }
-    problem.extras = oath ? &oath->extras() : &extras;
     problem.carried = past.carried;
     problem.more = more;
     Trajectory trajectory = method.run(problem);
     trajectory.initial = initial;
     // A native M is a number at all times: then the spring had none, as the motion went beyond all bounds.
     const bool own_spring = system.spring().as<model::springs::PolynomialSpring>() != nullptr;
-    if (trajectory.outcome == model::Outcome::excitation_not_finite && own_spring && !excitation.has_script() &&
-        std::isfinite(excitation.most())) {
+    if (trajectory.outcome == model::Outcome::excitation_not_finite && own_spring && !drive.M().has_script() &&
+        std::isfinite(drive.M().most())) {
         trajectory.outcome = model::Outcome::state_not_finite;
     }
     if (oath) {
@@ -305,18 +303,16 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
 
 }  // namespace
 
-text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
-                                    const model::State& initial, const Window& window, const Grid& rows,
-                                    MethodView method, const Monitor& monitor, const Limits& limits,
-                                    const model::Extras& extras) {
-    auto result = run_from({}, system, excitation, initial, window, rows, method, monitor, limits, extras);
-    if (result) settle(result.value(), system, excitation, extras);
+text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
+                                    const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
+    auto result = run_from({}, system, drive, window, rows, method, monitor, limits);
+    if (result) settle(result.value(), system, drive);
     return result;
 }
 
-text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
-                                  const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                  const Monitor& monitor, const Limits& limits, const model::Extras& extras) {
+text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
+                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor,
+                                  const Limits& limits) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
         return text::Error{
@@ -339,11 +335,12 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
         if (there || grid->time(i) >= window.start) times.push_back(std::max(grid->time(i), window.start));
     }
     const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0, so_far.carried.get()};
-    auto second = run_from(past, system, excitation, so_far.state_at_stop, window, Grid::at(std::move(times)), method,
-                           monitor, limits, extras);
+    model::Drive from_there = drive;
+    from_there.start_at(so_far.state_at_stop);
+    auto second = run_from(past, system, from_there, window, Grid::at(std::move(times)), method, monitor, limits);
     if (!second) return second.error();
     Trajectory whole = joined(so_far, kept, std::move(second).value(), limits);
-    settle(whole, system, excitation, extras);
+    settle(whole, system, drive);
     return whole;
 }
 

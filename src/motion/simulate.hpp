@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "model/drive.hpp"
 #include "model/excitation.hpp"
-#include "model/extras.hpp"
 #include "model/oscillator.hpp"
 #include "motion/growing.hpp"
 #include "motion/method.hpp"
@@ -82,32 +82,29 @@ struct Limits {
 /// One run as its integrator sees it: all of it checked.
 struct Problem {
     const model::Oscillator& system;
-    const model::Excitation& excitation;
-    model::State initial;
+    const model::Drive& drive;
     Window window;
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
     std::optional<model::Motion> before = {};  ///< of a run that goes on: what the mass did until now
     std::size_t course_bytes = 0;              ///< what the course may take
-    const model::Extras* extras = nullptr;
-    bool more = false;                 ///< the extras have something, or there are walls or controllers with a memory
+    bool more = false;                 ///< the drive has more than M, or there are walls or controllers with a memory
     const Carried* carried = nullptr;  ///< of a run that goes on: what its integrator left
 };
 
-/// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
-/// options are wrong or the rows would not fit; whatever happens later is told by the outcome of the trajectory.
-text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
-                                    const model::State& initial, const Window& window, const Grid& rows,
-                                    MethodView method, const Monitor& monitor = {}, const Limits& limits = {},
-                                    const model::Extras& extras = {});
+/// Runs from where the drive has its start, at window.start. Fails (before the first step) when the window, the grid or
+/// the integrator's options are wrong or the rows would not fit; whatever happens later is told by the outcome of the
+/// trajectory.
+text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
+                                    const Grid& rows, MethodView method, const Monitor& monitor = {},
+                                    const Limits& limits = {});
 
 /// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both, which shares
 /// with `so_far` what that has. `rows` are those of all of it; `so_far` has the first of them, and perhaps one at its
 /// end. Fails like simulate().
-text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
-                                  const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                  const Monitor& monitor = {}, const Limits& limits = {},
-                                  const model::Extras& extras = {});
+text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
+                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
+                                  const Limits& limits = {});
 
 }  // namespace dinal::motion

@@ -24,20 +24,20 @@ constexpr double hair = std::numeric_limits<double>::min();
 
 Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events, double at_once)
     : system_(problem.system),
-      excitation_(problem.excitation),
-      feedback_(problem.excitation.has_feedback()),
-      constant_from_(problem.excitation.constant_from()),
-      most_M_(problem.excitation.most()),
+      excitation_(problem.drive.M()),
+      feedback_(problem.drive.M().has_feedback()),
+      constant_from_(problem.drive.M().constant_from()),
+      most_M_(problem.drive.M().most()),
       start_(problem.before ? -model::never : problem.window.start),
       at_once_(at_once),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       events_(events),
-      motion_(problem.before.value_or(model::motion_of(problem.initial.velocity))),
-      torques_before_(std::fabs(system_.pull_back(problem.initial.theta))) {
+      motion_(problem.before.value_or(model::motion_of(problem.drive.start().velocity))),
+      torques_before_(std::fabs(system_.pull_back(problem.drive.start().theta))) {
     if (passes()) return;
     if (problem.before == model::Motion::stuck) {
         phase_ = Phase::stuck;
-    } else if (problem.initial.velocity == 0) {
+    } else if (problem.drive.start().velocity == 0) {
         // The law was asked at the end of the part before.
         phase_ = problem.before ? Phase::leaving : Phase::arrived;
     }

@@ -25,9 +25,9 @@ std::size_t last_stop(const Growing<model::Event>& events) {
 }
 
 /// Something besides M may move the mass.
-bool moved_by_others(const model::Extras& extras) {
+bool moved_by_others(const model::Drive& drive) {
     const auto acts = [](const model::WantedEvent& event) { return event.act != nullptr; };
-    return !extras.belt.components().empty() || std::any_of(extras.events.begin(), extras.events.end(), acts);
+    return !drive.belt().components().empty() || std::any_of(drive.events.begin(), drive.events.end(), acts);
 }
 
 /// M may have jumped at the very end, where no integrator has asked the law any more.
@@ -39,13 +39,12 @@ bool stays(const Trajectory& run, const model::Lowered& system, const std::optio
     return way == model::Motion::stuck || leans;
 }
 
-bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Excitation& M,
-              const model::Excitation& base, double since) {
+bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Drive& drive, double since) {
     const model::Lowered system(oscillator);
     const bool creeps = run.motion_at_stop != model::Motion::stuck;
     std::optional<model::Excitation> with_base;
-    if (!base.components().empty()) with_base = M + base.scaled(-oscillator.inertia());
-    const model::Excitation& loads = with_base ? *with_base : M;
+    if (!drive.base.components().empty()) with_base = drive.M() + drive.base.scaled(-oscillator.inertia());
+    const model::Excitation& loads = with_base ? *with_base : drive.M();
     if (const double constant = loads.constant_from(); constant <= run.t_stop) {
         return creeps ? constant < run.t_stop : stays(run, system, oscillator.walls(), loads.value(run.t_stop));
     }
@@ -57,12 +56,11 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
 
 }  // namespace
 
-void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-            const model::Extras& extras) {
-    if (trajectory.outcome != model::Outcome::stuck_at_end || moved_by_others(extras)) return;
+void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive) {
+    if (trajectory.outcome != model::Outcome::stuck_at_end || moved_by_others(drive)) return;
     const std::size_t stop = last_stop(trajectory.events);
     const double since = stop == no_stop ? trajectory.t_start : trajectory.events[stop].t;
-    if (!for_good(trajectory, system, excitation, extras.base, since)) return;
+    if (!for_good(trajectory, system, drive, since)) return;
     trajectory.outcome = model::Outcome::at_rest;
     if (stop == no_stop) return;
     const auto events = trajectory.events.column(0);

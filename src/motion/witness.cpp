@@ -158,20 +158,21 @@ model::Excitation Witnesses::heard(const model::Excitation& excitation, const st
     });
 }
 
-UnderOath::UnderOath(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras)
-    : witnesses_(extras.states.size()),
+model::Drive Witnesses::heard(model::Drive drive, const Called& called) {
+    for (std::size_t i = 0; i < drive.loads.size(); ++i) drive.loads[i] = heard(drive.loads[i], called("M", i));
+    for (std::size_t j = 0; j < drive.belts.size(); ++j) drive.belts[j] = heard(drive.belts[j], called("belt", j));
+    drive.base = heard(drive.base, "base");
+    for (model::OwnState& state : drive.states) state.rate = heard(state.rate, "states." + state.name + ".rate");
+    for (model::WantedEvent& event : drive.events) {
+        event.when = heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
+    }
+    return drive;
+}
+
+UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
+    : witnesses_(drive.states.size()),
       system_(system),
-      excitation_(witnesses_.heard(excitation, "M")),
-      extras_{.states = extras.states,
-              .events = extras.events,
-              .belt = witnesses_.heard(extras.belt, "belt"),
-              .base = witnesses_.heard(extras.base, "base")} {
-    for (model::OwnState& state : extras_.states) {
-        state.rate = witnesses_.heard(state.rate, "states." + state.name + ".rate");
-    }
-    for (model::WantedEvent& event : extras_.events) {
-        event.when = witnesses_.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
-    }
+      drive_(witnesses_.heard(drive, [](const char* what, std::size_t) { return std::string(what); })) {
     model::OscillatorParameters parameters = system.parameters();
     const auto heard = [this](const char* who, const char* argument) {
         return [=, this](const auto& function) { return witnesses_.heard(function, who, argument); };
@@ -191,9 +192,9 @@ std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     return testimony_->found;
 }
 
-bool has_functions(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras) {
-    return has_functions(system) || excitation.has_script() || !extras.states.empty() || !extras.events.empty() ||
-           extras.belt.has_script() || extras.base.has_script();
+bool has_functions(const model::Oscillator& system, const model::Drive& drive) {
+    return has_functions(system) || drive.M().has_script() || !drive.states.empty() || !drive.events.empty() ||
+           drive.belt().has_script() || drive.base.has_script();
 }
 
 }  // namespace dinal::motion

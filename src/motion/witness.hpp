@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,7 +18,7 @@
 #include <vector>
 
 #include "model/contradiction.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "model/oscillator.hpp"
 
 namespace dinal::motion {
@@ -95,6 +96,9 @@ public:
     std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
                                                const char* argument = "t", std::size_t more_states = 0);
     model::Excitation heard(const model::Excitation& excitation, const std::string& who);
+    /// `called` names what acts on a part of the system: "M" of its first body may be "M.motor".
+    using Called = std::function<std::string(const char* what, std::size_t part)>;
+    model::Drive heard(model::Drive drive, const Called& called);
     /// The run is over; `whole`: nothing had failed in it. What was found.
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
 
@@ -107,23 +111,20 @@ private:
 /// What a run asks, with a witness beside every function of the user.
 class UnderOath {
 public:
-    UnderOath(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras);
+    UnderOath(const model::Oscillator& system, const model::Drive& drive);
 
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
-    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
-    [[nodiscard]] const model::Extras& extras() const { return extras_; }
+    [[nodiscard]] const model::Drive& drive() const { return drive_; }
 
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole) { return witnesses_.verdict(whole); }
 
 private:
     Witnesses witnesses_;
     model::Oscillator system_;
-    model::Excitation excitation_;
-    model::Extras extras_;
+    model::Drive drive_;
 };
 
 /// Something in the run is a function that a user has written.
-[[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Excitation& excitation,
-                                 const model::Extras& extras);
+[[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Drive& drive);
 
 }  // namespace dinal::motion

@@ -53,7 +53,8 @@ std::string rows_text(const motion::Grid& rows) {
 }
 
 /// Appends "local states = { ... }" and "local events = { ... }" if the run has some.
-void append_extras(std::vector<std::string>& lines, lua_State* L, const engine::Drive& drive, ValueText& writer) {
+void append_states_and_events(std::vector<std::string>& lines, lua_State* L, const model::Drive& drive,
+                              ValueText& writer) {
     if (!drive.states.empty()) {
         std::string text;
         for (const model::OwnState& state : drive.states) {
@@ -113,21 +114,20 @@ bool acts(const std::vector<model::Excitation>& acting) {
 
 Origin origin_of(lua_State* L, Task task) {
     std::vector<std::string> set_up;
-    if (motion::has_functions(task.system, task.excitation, task.extras)) {
-        set_up = set_up_lines(L, engine::assembly_of(task.system),
-                              engine::drive_of(task.excitation, task.extras, task.initial));
+    if (motion::has_functions(task.system, task.drive)) {
+        set_up = set_up_lines(L, engine::assembly_of(task.system), task.drive);
     }
     return {std::move(task), std::move(set_up)};
 }
 
-std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const engine::Drive& drive) {
+std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const model::Drive& drive) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
     if (!system.units.usual()) lines.push_back(system.units.in_file());
     ValueText writer(L);
     std::vector<std::string> declarations;
     append_acting(declarations, L, "M", system, drive.loads, writer);
-    append_extras(declarations, L, drive, writer);
+    append_states_and_events(declarations, L, drive, writer);
     append_acting(declarations, L, "belt", system, drive.belts, writer);
     if (!drive.base.components().empty()) {
         declarations.push_back("local base = " + excitation_text(L, drive.base, writer));
@@ -140,8 +140,8 @@ std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& syste
 }
 
 std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const model::Assembly& system,
-                                      const engine::Drive& drive, const motion::Window& window,
-                                      const motion::Grid& rows, const motion::Integrator& integrator) {
+                                      const model::Drive& drive, const motion::Window& window, const motion::Grid& rows,
+                                      const motion::Integrator& integrator) {
     std::string options;
     for (const auto& [name, given] : {std::pair("M", acts(drive.loads)), std::pair("states", !drive.states.empty()),
                                       std::pair("events", !drive.events.empty()), std::pair("belt", acts(drive.belts)),
@@ -158,9 +158,8 @@ std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const mod
 
 std::vector<std::string> repeat_lines(const Origin& origin) {
     const model::Assembly system = engine::assembly_of(origin.system);
-    const engine::Drive drive = engine::drive_of(origin.excitation, origin.extras, origin.initial);
-    return repeat_lines(origin.set_up.empty() ? set_up_lines(nullptr, system, drive) : origin.set_up, system, drive,
-                        origin.window, origin.rows, origin.integrator);
+    return repeat_lines(origin.set_up.empty() ? set_up_lines(nullptr, system, origin.drive) : origin.set_up, system,
+                        origin.drive, origin.window, origin.rows, origin.integrator);
 }
 
 }  // namespace dinal::source

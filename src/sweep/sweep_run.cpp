@@ -23,7 +23,7 @@
 #include <thread>
 #include <vector>
 
-#include "api/extras_options.hpp"
+#include "api/drive_options.hpp"
 #include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "lua/foreign.hpp"

@@ -41,7 +41,7 @@ void steady_plane(benchmark::State& state) {
             for (int j = 0; j < side; ++j) {
                 const double r = 0.2 + 2.8 * j / (side - 1);
                 const auto M = model::Excitation::make(model::Harmonic{.amplitude = 1, .omega = r * omega0});
-                sum += analysis::steady_motion({.system = system, .excitation = *M, .repeats = {0, 1 / r}}).amplitude;
+                sum += analysis::steady_motion({.system = system, .drive = *M, .repeats = {0, 1 / r}}).amplitude;
             }
         }
         benchmark::DoNotOptimize(sum);
@@ -51,9 +51,9 @@ void steady_plane(benchmark::State& state) {
 void free_decay(benchmark::State& state) {
     const auto system =
         model::Oscillator::make({.inertia = 1, .stiffness = 40, .damping = 0.3, .kinetic_friction = 0.8});
-    const auto run = good(
-        motion::simulate(*system, model::Excitation(), {1, 0}, {0, 8}, motion::Grid::every(8. / 999), motion::Exact{}),
-        state);
+    const auto run = good(motion::simulate(*system, {model::Excitation(), {1, 0}}, {0, 8},
+                                           motion::Grid::every(8. / 999), motion::Exact{}),
+                          state);
     std::mt19937_64 random(1);
     std::normal_distribution<double> noise(0, 0.01);
     analysis::IdentifyQuestion question;

@@ -47,7 +47,7 @@ model::Excitation series(int harmonics) {
 void run_exact(benchmark::State& state, const model::Excitation& M, double periods) {
     const model::Oscillator system = oscillator(workloads[3]);
     for ([[maybe_unused]] auto iteration : state) {
-        const auto run = motion::simulate(system, M, {1, 0}, {0, periods}, motion::Grid::none(), motion::Exact{}, {},
+        const auto run = motion::simulate(system, {M, {1, 0}}, {0, periods}, motion::Grid::none(), motion::Exact{}, {},
                                           {.dense = false});
         if (!run) {
             state.SkipWithError(run.error().sentence.c_str());

@@ -39,7 +39,7 @@ Oscillator oscillator(const Workload& work) {
 }
 
 Trajectory trajectory(const Workload& work, const Integrator& integrator, const Grid& rows) {
-    return need(simulate(oscillator(work), excitation(work), {work.u0, work.v0}, {0, work.length}, rows, integrator));
+    return need(simulate(oscillator(work), {excitation(work), {work.u0, work.v0}}, {0, work.length}, rows, integrator));
 }
 
 namespace {

@@ -76,7 +76,7 @@ long allocations_of(const Oscillator& system, const Excitation& excitation, cons
                     double t_end) {
     column_names();  // made once, at first use
     const long before = allocations;
-    const auto run = simulate(system, excitation, {1, 0}, {0, t_end}, Grid::none(), integrator);
+    const auto run = simulate(system, {excitation, {1, 0}}, {0, t_end}, Grid::none(), integrator);
     const long made = allocations - before;
     REQUIRE(run);
     return made;
@@ -134,7 +134,7 @@ TEST_CASE("a user's function costs no allocations either, with or without feedba
 TEST_CASE("a short run that is kept takes a few kilobytes", "[allocation]") {
     const Oscillator system = nondimensional(0.05, 0.1);
     const std::size_t before = bytes_held;
-    const auto run = simulate(system, {}, {1, 0}, {0, 1}, Grid::every(0.5), Spectral{});
+    const auto run = simulate(system, {{}, {1, 0}}, {0, 1}, Grid::every(0.5), Spectral{});
     const std::size_t taken = bytes_held - before;
     REQUIRE(run);
     REQUIRE(run->size() == 3);

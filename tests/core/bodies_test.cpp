@@ -20,7 +20,7 @@ namespace {
 
 struct Rig {
     Assembly system;
-    engine::Drive drive;
+    model::Drive drive;
 };
 
 class Lot {
@@ -57,6 +57,7 @@ Rig random_chain(unsigned seed, bool sticky) {
         return made;
     };
     for (int i = 0; i < n; ++i) rig.system.bodies.push_back({"b" + std::to_string(i), lot.between(0.3, 3)});
+    rig.drive = model::Drive::at_rest(0, 0);
     for (int i = 0; i < n; ++i) {
         rig.system.joints.push_back(joint(i, Joint::ground, 0.7));
         const bool driven = lot.chance(0.7);

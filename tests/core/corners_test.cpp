@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/energy.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "model/laws/tabulated.hpp"
 #include "support/catch.hpp"
 #include "support/kinds.hpp"
@@ -28,12 +28,11 @@ Tabulated bump(double at, double width) {
 void check(const Tabulated& law, const State& initial, double belt, double wall, double t_end) {
     constexpr double tolerance = 1e-10, restitution = 0.7;
     CAPTURE(law.lua_text(), belt, wall);
-    Extras extras;
-    extras.belt = Excitation::make(Constant{belt}).value();
+    model::Drive drive{harmonic(0.8, 0.3, 0.4), initial};
+    drive.belts = {Excitation::make(Constant{belt}).value()};
     const Oscillator system = system_of(
         {.inertia = 1, .stiffness = 1, .damping = 0.02, .friction = law, .walls = Walls{-never, wall, restitution}});
-    const auto run =
-        simulate(system, harmonic(0.8, 0.3, 0.4), initial, {0, t_end}, Grid::every(0.83), Spectral{}, {}, {}, extras);
+    const auto run = simulate(system, drive, {0, t_end}, Grid::every(0.83), Spectral{});
     REQUIRE(run);
 
     MixedSystem same;

@@ -22,11 +22,11 @@ struct Creeper {
     [[nodiscard]] Excitation M() const { return Excitation::make(Ramp{.slope = slope, .at = at}).value(); }
     /// `watched`: with an event of a user that never comes, so that the engine takes the steps of rk4.
     [[nodiscard]] Trajectory run(double end, const Integrator& method, bool watched = false) const {
-        Extras extras;
+        model::Drive drive{M(), {1.5, 0}};
         if (watched) {
-            extras.events.push_back(
+            drive.events.push_back(
                 {.name = "never", .when = written([](double t, const State&, auto) { return t + 1; })});
-            return run_more(system(), M(), {1.5, 0}, end, 0.25, method, extras);
+            return run_more(system(), drive, end, 0.25, method);
         }
         return must_run(system(), M(), {1.5, 0}, {0, end}, Grid::every(0.25), method);
     }

@@ -29,7 +29,7 @@ struct Crest {
 /// mass is no farther than M - Re can have drawn it.
 void check_pairs(const Crest& crest, const Excitation& M, const Integrator& method) {
     CAPTURE(method.index());
-    const auto run = simulate(crest.system(), M, {}, {0, crest.end()}, Grid::none(), method,
+    const auto run = simulate(crest.system(), {M, {}}, {0, crest.end()}, Grid::none(), method,
                               [asked = 0](double) mutable { return ++asked < 20000; });  // or it leads nowhere
     REQUIRE(run);
     CHECK(model::is_whole(run->outcome));

@@ -173,7 +173,7 @@ TEST_CASE("a step far beyond stability is a result of dinal1989, not an error", 
     CHECK(run.outcome == Outcome::state_not_finite);
     CHECK(run.size() > 10);
     CHECK(run.rows.matrix().allFinite());
-    CHECK_FALSE(simulate(nondimensional(0, 0), {}, {1, 0}, {0, 50}, Grid::every(1), Rk4{1}));
+    CHECK_FALSE(simulate(nondimensional(0, 0), {{}, {1, 0}}, {0, 50}, Grid::every(1), Rk4{1}));
 }
 
 }  // namespace dinal::dinal1989_test

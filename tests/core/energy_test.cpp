@@ -166,7 +166,7 @@ TEST_CASE("a run that went on after its panels were full says up to when they re
     const Oscillator system = nondimensional(0.05, 0);
     const Excitation M = harmonic(1, 5);
     const Limits little{.memory = 100000};
-    const auto first = simulate(system, M, {1, 0}, {0, 500}, Grid::none(), Spectral{}, {}, little);
+    const auto first = simulate(system, {M, {1, 0}}, {0, 500}, Grid::none(), Spectral{}, {}, little);
     REQUIRE(first);
     const auto all = resume(system, M, *first, 600, Grid::none(), Spectral{}, {}, little);
     REQUIRE(all);
@@ -189,7 +189,7 @@ TEST_CASE("what acts with a delay knows its past where the memory for the motion
     delayed->function = written([](double t, const State& y, auto) { return std::sin(5 * t) + 0.3 * y.velocity; });
     const Excitation M = native(Scripted{.function = delayed});
     const auto run = [&](const Limits& limits) {
-        const auto first = simulate(system, M, {1, 0}, {0, 200}, Grid::none(), Spectral{}, {}, limits);
+        const auto first = simulate(system, {M, {1, 0}}, {0, 200}, Grid::none(), Spectral{}, {}, limits);
         REQUIRE(first);
         return *resume(system, M, *first, 210, Grid::none(), Spectral{}, {}, limits);
     };

@@ -25,7 +25,7 @@ TEST_CASE("exact says what it does not take, and what takes it", "[exact]") {
     };
     const Oscillator system = nondimensional(0.1, 0.2);
     const auto refusal = [](const Oscillator& s, const Excitation& M) {
-        const auto run = simulate(s, M, {1, 0}, {0, 1}, Grid::none(), Exact{});
+        const auto run = simulate(s, {M, {1, 0}}, {0, 1}, Grid::none(), Exact{});
         return run ? std::string() : run.error().sentence;
     };
     const auto made = [](Term term) { return Excitation::make(std::move(term)).value(); };
@@ -105,7 +105,7 @@ TEST_CASE("who may stop a run is asked often, also where M turns a million times
     const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1e6}).value();
     int asked = 0;
-    const auto run = simulate(system, M, {1, 0}, {0, 20}, Grid::none(), Exact{}, [&](double) { return ++asked < 4; });
+    const auto run = simulate(system, {M, {1, 0}}, {0, 20}, Grid::none(), Exact{}, [&](double) { return ++asked < 4; });
     REQUIRE(run);
     CHECK(run->outcome == Outcome::interrupted);  // 2e7 radians were one arc, between two questions
 }
@@ -121,7 +121,7 @@ TEST_CASE("along a record the angle does not lose what the sum of its ways round
         record.M.push_back(Rd + v * record.t.back());
     }
     const Excitation M = Excitation::make(Polyline(std::make_shared<const Samples>(record))).value();
-    const auto run = simulate(system, M, {0, v}, {0, length}, Grid::none(), Exact{});
+    const auto run = simulate(system, {M, {0, v}}, {0, length}, Grid::none(), Exact{});
     REQUIRE(run);
     CHECK(run->events.empty());
     // Pulls of up to 300 are rounded to 2.8e-14, 128000 times, by chance: 1e-13 in theta. So are ways if nothing keeps

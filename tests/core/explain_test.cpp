@@ -170,7 +170,7 @@ TEST_CASE("a limit cycle of a feedback repeats itself", "[explain]") {
 
 TEST_CASE("a run that broke off says so, and when", "[explain]") {
     const Oscillator system = nondimensional(0, 0.1);
-    const auto interrupted = simulate(system, harmonic(1, 5), {1, 0}, {0, 100}, Grid::every(0.01), Spectral{},
+    const auto interrupted = simulate(system, {harmonic(1, 5), {1, 0}}, {0, 100}, Grid::every(0.01), Spectral{},
                                       [](double t) { return t < 10; });
     REQUIRE(interrupted);
     CHECK_THAT(told(*interrupted, system, harmonic(1, 5), Spectral{}), Contains("The run was interrupted at t = 1"));
@@ -209,7 +209,7 @@ TEST_CASE("viscous damping alone ends a motion that breakaway can hold", "[expla
 TEST_CASE("the story does not need dense output, rows, or units of a certain size", "[explain]") {
     const Oscillator system = nondimensional(0, 0.836);
     const auto bare =
-        simulate(system, harmonic(1, 2 * pi), {1, 0}, {0, 1000.2}, Grid::none(), Spectral{}, {}, {.dense = false});
+        simulate(system, {harmonic(1, 2 * pi), {1, 0}}, {0, 1000.2}, Grid::none(), Spectral{}, {}, {.dense = false});
     REQUIRE(bare);
     const std::string text = told(*bare, system, harmonic(1, 2 * pi), Spectral{});
     CHECK_THAT(text, Contains("The amplitude is 0.12917 about theta = 0. It stops twice"));

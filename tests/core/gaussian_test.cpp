@@ -23,7 +23,7 @@ Oscillator oscillator(double Rd, double Re) {
 }
 
 std::string refusal(const Excitation& M, const Window& window, const Integrator& integrator) {
-    const auto run = simulate(oscillator(0, 0), M, {}, window, Grid::none(), integrator);
+    const auto run = simulate(oscillator(0, 0), {M, {}}, window, Grid::none(), integrator);
     return run ? "" : run.error().sentence;
 }
 

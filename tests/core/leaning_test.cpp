@@ -45,13 +45,13 @@ const std::vector<std::pair<Integrator, double>> methods_at_walls = {{motion::Sp
 
 TEST_CASE("a belt carries the mass against the wall and slides along it", "[walls][belt]") {
     const double vb = 0.5, Rd = 0.3, Re = 0.4;
-    Extras extras;
-    extras.belt = constant(vb);
+    model::Drive drive{ramp(-0.1, 20), {0, vb}};
+    drive.belts = {constant(vb)};
     for (const double e : {0.0, 0.6}) {
         for (const auto& [integrator, tolerance] : methods_at_walls) {
             CAPTURE(e);
-            const auto result = simulate(walled({-none, 1, e}, 0, Rd, Re), ramp(-0.1, 20), {0, vb}, {0, 30},
-                                         Grid::every(0.5), integrator, {}, {}, extras);
+            const auto result =
+                simulate(walled({-none, 1, e}, 0, Rd, Re), drive, {0, 30}, Grid::every(0.5), integrator);
             REQUIRE(result);
             const Trajectory& run = *result;
             REQUIRE(run.events.size() > 2);
@@ -83,10 +83,9 @@ TEST_CASE("a belt carries the mass against the wall and slides along it", "[wall
 
 TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
     // Pressed with 0.1; the belt holds it with 0.3 on the way in, and takes it off on the way back.
-    Extras extras;
-    extras.belt = harmonic(0.5, 1);
-    const auto run = simulate(walled({-none, 0, 0}, 0, 0.3, 0.3), constant(0.1), {0, 0}, {0, 5}, Grid::none(),
-                              Spectral{}, {}, {}, extras);
+    model::Drive drive{constant(0.1)};
+    drive.belts = {harmonic(0.5, 1)};
+    const auto run = simulate(walled({-none, 0, 0}, 0, 0.3, 0.3), drive, {0, 5}, Grid::none(), Spectral{});
     REQUIRE(run);
     REQUIRE_FALSE(run->events.empty());
     CHECK(run->events[0].kind == EventKind::slip);
@@ -94,15 +93,16 @@ TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
 }
 
 TEST_CASE("states go on while the mass leans, and events of the user see impacts", "[walls][states]") {
-    Extras extras;
-    extras.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
-    extras.events.push_back(
+    model::Drive drive{{}, {0, 1}};
+    drive.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
+    drive.events.push_back(
         {.name = "down", .when = written([](double, const State& y, std::span<const double>) { return y.velocity; })});
-    const Trajectory run = run_more(walled({-none, 0.5, 0}), {}, {0, 1}, 4, 0.5, Spectral{}, extras);
+    const Trajectory run = run_more(walled({-none, 0.5, 0}), drive, 4, 0.5, Spectral{});
     CHECK(run.rows(8, 6) == within(0.125 + 0.5 * 3.5, 1e-12));
     // An M that is the state lets the mass go when it says so.
     const Excitation M = feedback([](double, const State&, std::span<const double> z) { return 1 - z[0]; });
-    const Trajectory off = run_more(walled({-none, 0.5, 0}), M, {0.5, 0}, 5, 0.5, Spectral{}, extras);
+    drive.loads = {M}, drive.start_at({0.5, 0});
+    const Trajectory off = run_more(walled({-none, 0.5, 0}), drive, 5, 0.5, Spectral{});
     REQUIRE(of_kind(off, EventKind::slip).size() == 1);
     CHECK(of_kind(off, EventKind::slip)[0].t == within(2, 1e-12));
 }

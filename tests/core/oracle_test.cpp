@@ -65,7 +65,7 @@ Finding compare(const RandomCase& c, MethodView method) {
     for (std::size_t i = 0; i < c.times.size(); i += 2) rows.push_back(c.times[i]);
     // Whatever happens ends within this many questions, each of sixteen panels.
     const Monitor patience = [asked = 0](double) mutable { return ++asked < 10000; };
-    const auto run = simulate(c.system, c.excitation, c.initial, c.window, Grid::at(rows), method, patience);
+    const auto run = simulate(c.system, {c.excitation, c.initial}, c.window, Grid::at(rows), method, patience);
     if (!run) return {Verdict::wrong, run.error().sentence};
     if (run->outcome == Outcome::interrupted) return {Verdict::wrong, "it does not come to an end"};
     if (!run->rows.matrix().allFinite()) return {Verdict::wrong, "a row is not finite"};
@@ -122,7 +122,7 @@ Load load_of(const ReferenceSystem& s) {
     load.torque = [drives](real t, real inside, const truth::Motion&) {
         const auto next =
             std::find_if(drives.begin() + 1, drives.end(), [&](const Piece& piece) { return piece.from > inside; });
-        const Drive& d = (next - 1)->drive;
+        const truth::Drive& d = (next - 1)->drive;
         return d.level + d.slope * t + d.amplitude * std::sin(d.omega * t + d.phase);
     };
     for (std::size_t i = 1; i < drives.size(); ++i) load.breaks.push_back(static_cast<double>(drives[i].from));

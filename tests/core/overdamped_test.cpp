@@ -136,7 +136,7 @@ TEST_CASE("a mass at its limit under a load that decays for ever waits without l
     const Excitation load = Excitation::make(Exponential{.amplitude = 1.09492, .tau = 0.18127, .at = -17.8864}).value();
     int looks = 0;
     const auto run =
-        simulate(system, load, {1e6, 0}, {0, 1e12}, Grid::none(), Exact{}, [&](double) { return ++looks < 100; });
+        simulate(system, {load, {1e6, 0}}, {0, 1e12}, Grid::none(), Exact{}, [&](double) { return ++looks < 100; });
     REQUIRE(run);
     CHECK(run->outcome == Outcome::stuck_at_end);
     CHECK(looks < 100);

@@ -31,7 +31,7 @@ Oscillator duffing(double C, double Rd, double Re) {
                              .spring = springs::PolynomialSpring{{{3, 0.5}}}});
 }
 SteadyQuestion at_frequency(const Oscillator& system, double f, double M0 = 0.5) {
-    return {.system = system, .excitation = truth::harmonic(M0, 2 * pi * f), .repeats = {0, 1 / f}};
+    return {.system = system, .drive = truth::harmonic(M0, 2 * pi * f), .repeats = {0, 1 / f}};
 }
 std::vector<double> evenly(double from, double to, int n) {
     std::vector<double> values;
@@ -162,7 +162,7 @@ TEST_CASE("with Re > Rd a mass breaks away where M passes Re, and comes to rest 
             CHECK(jump.landed.status == SteadyStatus::adheres);
             // Just above it goes on moving, just below it does not.
             SteadyQuestion question = family(jump.parameter + 2e-3);
-            question.initial = {jump.from, 0};
+            question.drive.start_at({jump.from, 0});
             const SteadyMotion above = steady_motion(question);
             CHECK((above.status == SteadyStatus::steady && above.amplitude > 0.8 * jump.from));
         }

@@ -62,7 +62,7 @@ TEST_CASE("a run in three parts is the run in one, for every reference system", 
 TEST_CASE("a run that is stopped among many rows between two events goes on as if it had not been", "[resume]") {
     const Oscillator system = nondimensional(0.01, 0);
     const Grid rows = Grid::every(1e-5);
-    const auto first = simulate(system, {}, {1, 0}, {0, 2.5}, rows, Exact{}, [](double t) { return t < 0.9; });
+    const auto first = simulate(system, {{}, {1, 0}}, {0, 2.5}, rows, Exact{}, [](double t) { return t < 0.9; });
     REQUIRE(first);
     CHECK(first->outcome == Outcome::interrupted);
     // Some 65536 rows lie between two questions.
@@ -86,7 +86,7 @@ TEST_CASE("a run goes on from wherever it was stopped, also from the very moment
     for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}}) {
         int slips = 0;
         for (double stop = 20; stop < 400; stop += 3.1) {
-            auto first = simulate(system, M, {0, 0}, {0, 400}, Grid::every(1), integrator,
+            auto first = simulate(system, {M, {0, 0}}, {0, 400}, Grid::every(1), integrator,
                                   [stop](double t) { return t < stop; });
             REQUIRE(first);
             if (first->outcome != Outcome::interrupted) continue;
@@ -104,7 +104,7 @@ TEST_CASE("a mass that is stuck and goes on into a load slips as if there had be
     const Oscillator system = nondimensional(0, 0.2, 0.3);
     const Excitation late = Excitation::make(Step{.amplitude = 0.9, .at = 5}).value();
     for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
-        auto first = simulate(system, late, {1, 0}, {0, split}, Grid::every(0.5), Spectral{});
+        auto first = simulate(system, {late, {1, 0}}, {0, split}, Grid::every(0.5), Spectral{});
         REQUIRE(first);
         CHECK(first->events.back().kind == EventKind::stick);
         auto both = resume(system, late, *first, 6, Grid::every(0.5), Spectral{});
@@ -138,7 +138,7 @@ TEST_CASE("a run with very many rows at rest stops when it is told to, and goes 
     const Oscillator system = nondimensional(0, 0.5);
     const Excitation load = harmonic(0.3, 1);  // cannot move it
     const auto part =
-        simulate(system, load, {0.1, 0}, {0, 2500}, Grid::every(0.01), Spectral{}, [](double t) { return t < 1000; });
+        simulate(system, {load, {0.1, 0}}, {0, 2500}, Grid::every(0.01), Spectral{}, [](double t) { return t < 1000; });
     REQUIRE(part);
     CHECK(part->outcome == Outcome::interrupted);
     CHECK(part->t_stop >= 1000);
@@ -156,7 +156,7 @@ TEST_CASE("a run that goes on from what is a row of all but for its rounding has
     const Grid rows = Grid::every(0.03);
     const double middle = 0.1 * 3;
     REQUIRE(middle != 10 * 0.03);
-    const auto part = simulate(s.oscillator, s.excitation, s.initial, {0, middle}, rows, Spectral{});
+    const auto part = simulate(s.oscillator, {s.excitation, s.initial}, {0, middle}, rows, Spectral{});
     REQUIRE(part);
     const auto all = resume(s.oscillator, s.excitation, *part, 0.6, rows, Spectral{});
     REQUIRE(all);
@@ -175,7 +175,7 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
     std::vector<Trajectory> runs;
     std::size_t bytes = 0, event_bytes = 0;
     for (int i = 0; i < parts; ++i) {
-        auto run = i == 0 ? simulate(s.oscillator, s.excitation, s.initial, {0, end_of(0)}, rows, Spectral{})
+        auto run = i == 0 ? simulate(s.oscillator, {s.excitation, s.initial}, {0, end_of(0)}, rows, Spectral{})
                           : resume(s.oscillator, s.excitation, runs.back(), end_of(i), rows, Spectral{});
         REQUIRE(run);
         runs.push_back(std::move(run).value());

@@ -25,7 +25,7 @@ std::vector<double> times_of(const Grid& grid, const Window& window) {
 }
 
 std::string refusal(const Window& window, const Grid& grid, const Limits& limits = {}, const State& initial = {1, 0}) {
-    const auto run = simulate(nondimensional(0.1, 0), {}, initial, window, grid, Rk4{0.001}, {}, limits);
+    const auto run = simulate(nondimensional(0.1, 0), {{}, initial}, window, grid, Rk4{0.001}, {}, limits);
     return run ? "" : run.error().sentence;
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("a spacing that the times themselves cannot show is refused", "[rows]"
 
 TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]") {
     for (const Integrator& integrator : std::vector<Integrator>{Rk4{0.001}, Dinal1989{.h = 0.001}}) {
-        const auto run = simulate(nondimensional(0.01, 0), {}, {1, 0}, {0, 1000}, Grid::every(0.1), integrator,
+        const auto run = simulate(nondimensional(0.01, 0), {{}, {1, 0}}, {0, 1000}, Grid::every(0.1), integrator,
                                   [](double t) { return t < 10; });
         REQUIRE(run);
         CHECK(run->outcome == Outcome::interrupted);

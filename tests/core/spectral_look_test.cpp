@@ -34,7 +34,7 @@ struct Seen {
 Seen look(const Oscillator& system, std::function<double(double)> f, const State& initial, const Spectral& method = {},
           double end = length) {
     const auto function = probe(std::move(f));
-    auto run = simulate(system, made(Scripted{.function = function}), initial, {0, end}, Grid::none(), method);
+    auto run = simulate(system, {made(Scripted{.function = function}), initial}, {0, end}, Grid::none(), method);
     if (!run) FAIL(run.error().sentence);
     return {std::move(run).value(), function->calls};
 }
@@ -104,7 +104,7 @@ TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look]
         REQUIRE(differs(one.run, nothing.run));
         REQUIRE(one.run.gap <= width);
         // And where it is: a native pulse says so itself.
-        auto native = simulate(system, made(Pulse{50, at, width}), initial, {0, length}, Grid::none(), method);
+        auto native = simulate(system, {made(Pulse{50, at, width}), initial}, {0, length}, Grid::none(), method);
         REQUIRE(native);
         REQUIRE(!differs(one.run, *native));
     }
@@ -114,7 +114,7 @@ TEST_CASE("a run knows the longest time between two looks at a function, and onl
     const Oscillator system = nondimensional(0.05, 0.02);
     const Excitation opaque = made(Scripted{.function = probe(smooth)});
     const auto gap = [&](const Excitation& M, const Integrator& integrator) {
-        return simulate(system, M, {1, 0}, {0, length}, Grid::none(), integrator)->gap;
+        return simulate(system, {M, {1, 0}}, {0, length}, Grid::none(), integrator)->gap;
     };
     CHECK(gap(opaque, Rk4{0.01}) == 0.005);
     CHECK(gap(opaque, Dinal1989{0.01}) == 0.005);
@@ -132,7 +132,7 @@ TEST_CASE("a jump that is not announced costs at most 70 values of M more than o
     const Oscillator system = nondimensional(0.05, 0.05);
     const auto calls = [&](double at, const std::vector<double>& breaks) {
         const auto function = probe([at](double t) { return smooth(t) + (t >= at ? 10.0 : 0.0); });
-        REQUIRE(simulate(system, made(Scripted{.function = function, .breaks = breaks}), {1, 0}, {0, length},
+        REQUIRE(simulate(system, {made(Scripted{.function = function, .breaks = breaks}), {1, 0}}, {0, length},
                          Grid::none(), Spectral{}));
         return function->calls;
     };
@@ -177,7 +177,7 @@ TEST_CASE("even jumps that are not announced are foreseen: at most 40 values of 
         const auto run = [&](const std::vector<double>& breaks) {
             const auto function = probe(c.M);
             const auto made_of = made(Scripted{.function = function, .breaks = breaks});
-            const auto result = simulate(system, made_of, {0.1, 0}, {0, length}, Grid::none(), Spectral{});
+            const auto result = simulate(system, {made_of, {0.1, 0}}, {0, length}, Grid::none(), Spectral{});
             REQUIRE(result);
             return std::pair{*result, function->calls};
         };
@@ -197,7 +197,7 @@ TEST_CASE("even jumps that are not announced are foreseen: at most 40 values of 
 TEST_CASE("an M that fails behind the end of the run is not asked there for its next jump", "[spectral][look]") {
     double last = 0;
     const auto function = probe([&](double t) { return last = std::max(last, t), 0.25 * std::floor(t / 0.25); });
-    REQUIRE(simulate(nondimensional(0.05, 0.05), made(Scripted{.function = function, .breaks = {}}), {1, 0}, {0, 2.5},
+    REQUIRE(simulate(nondimensional(0.05, 0.05), {made(Scripted{.function = function, .breaks = {}}), {1, 0}}, {0, 2.5},
                      Grid::none(), Spectral{}));
     CHECK(last == 2.5);
 }

@@ -253,7 +253,7 @@ TEST_CASE("a blow far shorter than times near it can be told apart gives all of 
         Polyline(table({at, at + width / 2, at + width}, {0, 1.5 / width, 0}, Interpolation::cubic))};
     for (const Term& blow : blows) {
         INFO(made(blow).components().front().term.index());
-        auto run = simulate(system, made(blow), {}, {0, end}, Grid::at({end}), Spectral{});
+        auto run = simulate(system, {made(blow), {}}, {0, end}, Grid::at({end}), Spectral{});
         REQUIRE(run);
         // It acts up to 40 widths late, in which the mass goes 40 rad per time unit.
         CHECK(run->state_at_stop.theta == within(static_cast<double>(after.at(end).theta), 1e-11));

@@ -23,14 +23,14 @@ constexpr double pi = std::numbers::pi;
 
 SteadyQuestion driven(double r, double gamma, double zeta = 0, double breakaway_factor = 1) {
     return {.system = truth::nondimensional(zeta, gamma, breakaway_factor * gamma),
-            .excitation = truth::harmonic(1, 2 * pi * r),
+            .drive = truth::harmonic(1, 2 * pi * r),
             .repeats = {0, 1 / r}};
 }
 
 /// The amplitude after `periods` of M, by rk4 with steps of a ten-thousandth: another integrator and no map.
 double waited_for(const SteadyQuestion& question, int periods) {
     const double T = question.repeats.period;
-    const auto run = truth::must_run(question.system, question.excitation, question.initial, {0, periods * T},
+    const auto run = truth::must_run(question.system, question.drive.M(), question.drive.start(), {0, periods * T},
                                      motion::Grid::none(), motion::Rk4{std::min(T, 1.0) / 2000});
     double low = 1e300, high = -1e300;
     for (const Event& event : run.events) {
@@ -95,7 +95,7 @@ TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
         SteadyQuestion question =
             driven(0.25 + unit(random), 0.2 + 0.6 * unit(random), 0.1 + 0.2 * unit(random), i % 2 == 0 ? 1 : 1.2);
         const double second = 0.5 * unit(random), T = question.repeats.period;
-        question.excitation = question.excitation + truth::harmonic(second, 4 * pi / T, 1);
+        question.drive.loads = {question.drive.M() + truth::harmonic(second, 4 * pi / T, 1)};
         const SteadyMotion found = steady_motion(question);
         if (found.status != SteadyStatus::steady) continue;
         INFO(i);
@@ -121,7 +121,7 @@ TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a p
         for (const bool in_two : {false, true}) {
             SteadyQuestion question = driven(truth.r, truth.gamma, truth.zeta);
             const auto half = truth::harmonic(0.5, 2 * pi * truth.r);
-            if (in_two) question.excitation = half + half;  // which has no closed form of its own
+            if (in_two) question.drive.loads = {half + half};  // which has no closed form of its own
             const SteadyMotion found = steady_motion(question);
             REQUIRE(found.status == SteadyStatus::steady);
             // What is found by runs is no better than a place at which torques of 1 hold each other.
@@ -139,10 +139,10 @@ TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a p
     const double amplitude = steady_motion(question).amplitude;
     for (const double phase : {pi / 2, -pi / 2, pi / 2 + 0.1, 3.0}) {
         INFO("phase " << phase);
-        question.excitation = truth::harmonic(1, 2 * pi * 0.7, phase);
+        question.drive = truth::harmonic(1, 2 * pi * 0.7, phase);
         const SteadyMotion found = steady_motion(question);
         CHECK(found.amplitude == within(amplitude, 1e-15));
-        const auto run = truth::must_run(question.system, question.excitation, found.start, {0, 1 / 0.7},
+        const auto run = truth::must_run(question.system, question.drive.M(), found.start, {0, 1 / 0.7},
                                          motion::Grid::none(), motion::Spectral{});
         CHECK(run.state_at_stop.theta == within(found.start.theta, 1e-13));
         CHECK(run.state_at_stop.velocity == within(found.start.velocity, 1e-12));
@@ -174,12 +174,12 @@ TEST_CASE("a load that friction can hold moves nothing, and the places of rest a
     CHECK(found.rest.first == within(-0.3, 1e-12));
     CHECK(found.rest.second == within(0.3, 1e-12));
     // From outside it slides in and stays at the edge or within.
-    question.initial = {2, 0};
+    question.drive.start_at({2, 0});
     found = steady_motion(question);
     REQUIRE(found.status == SteadyStatus::adheres);
     CHECK(std::fabs(found.start.theta) <= 0.3 + 1e-12);
     // A constant part moves the interval.
-    question.excitation = question.excitation + truth::harmonic(0.2, 0, pi / 2);
+    question.drive.loads = {question.drive.M() + truth::harmonic(0.2, 0, pi / 2)};
     CHECK(steady_motion(question).rest.second == within(0.5, 1e-12));
 }
 
@@ -187,12 +187,12 @@ TEST_CASE("what creeps up to the edge of where friction holds it comes to rest t
     // To the last bit: beside these numbers it may happen to stop in time.
     const double r = 0x1.dfcc813e9b56ep-2, gamma = 0x1.102878f76a40ap+0;
     SteadyQuestion question = driven(r, gamma, 0x1.913fb23b61405p-2);
-    question.excitation = truth::harmonic(0x1.b0504e1f838eap-1, 2 * pi * r, 0x1.5e7296df8d924p-1) +
-                          truth::harmonic(0x1.282f5bd1a3491p-2, 8 * pi * r, 0x1.0847c80951029p+0);
+    question.drive = truth::harmonic(0x1.b0504e1f838eap-1, 2 * pi * r, 0x1.5e7296df8d924p-1) +
+                     truth::harmonic(0x1.282f5bd1a3491p-2, 8 * pi * r, 0x1.0847c80951029p+0);
     const SteadyMotion rest = steady_motion(question);
     REQUIRE(rest.status == SteadyStatus::adheres);
     // It was pushed there from 0, by the least M: the upper edge.
-    const double least = extremes(question.excitation, question.repeats).low;
+    const double least = extremes(question.drive.M(), question.repeats).low;
     CHECK(rest.rest.second == within(least + gamma, 1e-12));
     CHECK(rest.start.theta == within(least + gamma, 1e-12));
 }
@@ -200,7 +200,7 @@ TEST_CASE("what creeps up to the edge of where friction holds it comes to rest t
 TEST_CASE("at resonance below gamma = pi/4 it grows by pi - 4 gamma a period, and above it does not", "[steady]") {
     for (const double gamma : {0.0, 0.167, 0.5, 0.78}) {
         SteadyQuestion question = driven(1, gamma);
-        question.initial = {1, 0};
+        question.drive.start_at({1, 0});
         const SteadyMotion found = steady_motion(question);
         REQUIRE(found.status == SteadyStatus::grows);
         CHECK(found.growth == within(pi - 4 * gamma, 1e-12));
@@ -213,7 +213,7 @@ TEST_CASE("a square wave whose parts differ by a thousandth of the period is not
     for (const double duty : {0.5, 0.499, 0.51}) {
         INFO("duty " << duty);
         SteadyQuestion question = driven(0.4, 0.2, 0.1);
-        question.excitation = *Excitation::make(Square{.amplitude = 1, .period = 2.5, .duty = duty});
+        question.drive.loads = {*Excitation::make(Square{.amplitude = 1, .period = 2.5, .duty = duty})};
         const SteadyMotion found = steady_motion(question);
         REQUIRE(found.status == SteadyStatus::steady);
         CHECK(found.symmetric == (duty == 0.5));

@@ -27,19 +27,20 @@ Excitation wave(double amplitude, double omega, double phase = 0) {
     return native(Harmonic{.amplitude = amplitude, .omega = omega, .phase = phase});
 }
 
-Trajectory run_of(const Excitation& M, double t_end, MethodView method, const Extras& extras = {}) {
-    return simulate(swinging, M, {1, 0}, {0, t_end}, Grid::none(), method, {}, {}, extras).value();
+Trajectory run_of(Drive drive, double t_end, MethodView method) {
+    drive.start_at({1, 0});
+    return simulate(swinging, drive, {0, t_end}, Grid::none(), method).value();
 }
 
 /// The outcome of a run until t_end, the same for all integrators that may run it; its last event agrees.
-Outcome outcome_of(const Excitation& M, double t_end, const Extras& extras = {}, bool more = false) {
-    const Trajectory first = run_of(M, t_end, Integrator(Spectral{}), extras);
+Outcome outcome_of(const Drive& drive, double t_end, bool more = false) {
+    const Trajectory first = run_of(drive, t_end, Integrator(Spectral{}));
     const bool rests = first.outcome == Outcome::at_rest;
     CHECK(first.events.back().kind == (rests ? EventKind::rest : EventKind::stick));
-    CHECK(run_of(M, t_end, Integrator(Rk4{0.01}), extras).outcome == first.outcome);
-    CHECK(run_of(M, t_end, Integrator(Rk4{0.01}), extras).events.back().kind == first.events.back().kind);
-    if (!more) CHECK(run_of(M, t_end, Integrator(Dinal1989{.h = 0.01}), extras).outcome == first.outcome);
-    if (!more && !M.has_script()) CHECK(run_of(M, t_end, Integrator(Exact{}), extras).outcome == first.outcome);
+    CHECK(run_of(drive, t_end, Integrator(Rk4{0.01})).outcome == first.outcome);
+    CHECK(run_of(drive, t_end, Integrator(Rk4{0.01})).events.back().kind == first.events.back().kind);
+    if (!more) CHECK(run_of(drive, t_end, Integrator(Dinal1989{.h = 0.01})).outcome == first.outcome);
+    if (!more && !drive.M().has_script()) CHECK(run_of(drive, t_end, Integrator(Exact{})).outcome == first.outcome);
     return first.outcome;
 }
 
@@ -67,20 +68,22 @@ TEST_CASE("a periodic M that did not move a mass in a whole period never will", 
     const double quarter = std::numbers::pi / 2, omega = quarter;
     const Excitation M = wave(-0.08, omega, quarter) + wave(0.08, 2 * omega, quarter);
     for (const double t_end : {3.9, 4.0, 12.0}) {
-        const auto run = simulate(swinging, M, {0.55, 0}, {0, t_end}, Grid::none(), Integrator()).value();
+        const auto run = simulate(swinging, {M, {0.55, 0}}, {0, t_end}, Grid::none(), Integrator()).value();
         CHECK(run.outcome == (t_end < 4 ? Outcome::stuck_at_end : Outcome::at_rest));
         CHECK(run.events.empty());
     }
 }
 
 TEST_CASE("a belt, a base and what a user does at an event may move what M cannot", "[outcome]") {
-    Extras shaken, carried;
-    carried.belt = wave(0.01, 0.6);
-    CHECK(outcome_of({}, 10, carried, true) == Outcome::stuck_at_end);
+    Drive shaken, carried;
+    carried.belts = {wave(0.01, 0.6)};
+    CHECK(outcome_of(carried, 10, true) == Outcome::stuck_at_end);
     // A support acts as a load of -I a; see above.
     shaken.base = wave(0.05, 0.06);
-    CHECK(outcome_of({}, 10, shaken, true) == Outcome::at_rest);
-    CHECK(outcome_of(wave(-0.1, 0.06), 10, {.belt = {}, .base = wave(0.1, 0.06)}, true) == Outcome::stuck_at_end);
+    CHECK(outcome_of(shaken, 10, true) == Outcome::at_rest);
+    Drive both{wave(-0.1, 0.06)};
+    both.base = wave(0.1, 0.06);
+    CHECK(outcome_of(both, 10, true) == Outcome::stuck_at_end);
 }
 
 TEST_CASE("going on from a stop that M may end, and from one that it cannot, is one run", "[outcome][resume]") {
@@ -100,16 +103,15 @@ TEST_CASE("the peak of a motion is that between the rows", "[outcome]") {
     const Trajectory run = run_of({}, 10, Integrator(Spectral{}));
     CHECK(peak(run) == 1);
     // Thrown from the middle: sqrt(v^2 + (Rd/k)^2) - Rd/k, at a time that is no row; without dry friction v/w0.
-    const Trajectory thrown = simulate(swinging, {}, {0, 3}, {0, 10}, Grid::every(5), Integrator()).value();
+    const Trajectory thrown = simulate(swinging, {{}, {0, 3}}, {0, 10}, Grid::every(5), Integrator()).value();
     CHECK(std::fabs(peak(thrown) - (std::sqrt(9 + 0.04) - 0.2)) <= 1e-12);
 }
 
 TEST_CASE("the peak on a belt is where the mass turns against the ground, which is no event", "[outcome]") {
     // Friction from a belt that is always faster is the constant 0.2: it swings by 3 about 0.2.
-    Extras extras;
-    extras.belt = native(Constant{.amplitude = 50});
-    const Trajectory run =
-        simulate(swinging, {}, {0.2, 3}, {0, 10}, Grid::none(), Integrator(Spectral{}), {}, {}, extras).value();
+    Drive drive{{}, {0.2, 3}};
+    drive.belts = {native(Constant{.amplitude = 50})};
+    const Trajectory run = simulate(swinging, drive, {0, 10}, Grid::none(), Integrator(Spectral{})).value();
     CHECK(run.events.empty());
     CHECK(std::fabs(peak(run) - 3.2) <= 1e-9);
 }

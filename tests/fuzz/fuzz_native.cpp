@@ -169,7 +169,7 @@ void print(const Case& c) {
 std::optional<motion::Trajectory> run(const Case& c, motion::MethodView method) {
     if (std::getenv("DINAL_FUZZ_PRINT") != nullptr) print(c);
     int looks = 0;
-    auto run = motion::simulate(c.system, c.M, c.initial, c.window, motion::Grid::every(c.dt), method,
+    auto run = motion::simulate(c.system, {c.M, c.initial}, c.window, motion::Grid::every(c.dt), method,
                                 [&looks](double) { return ++looks < 5; });
     if (!run) {
         if (run.error().sentence.empty()) wrong("a run refused without a sentence");

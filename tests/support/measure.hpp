@@ -17,7 +17,7 @@ namespace dinal::truth {
 inline motion::Trajectory must_run(const model::Oscillator& oscillator, const model::Excitation& excitation,
                                    const model::State& initial, const motion::Window& window, const motion::Grid& rows,
                                    motion::MethodView method) {
-    auto run = motion::simulate(oscillator, excitation, initial, window, rows, method);
+    auto run = motion::simulate(oscillator, {excitation, initial}, window, rows, method);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();
 }

@@ -27,10 +27,8 @@ constexpr double mixed_nudge = 1e-8;
 struct MixedCase {
     std::string story;
     model::OscillatorParameters parameters;
-    model::Excitation M;
-    model::Extras extras;
+    model::Drive drive;
     MixedSystem truth;
-    model::State initial;
     double z0 = 0, t_end = 0;
     bool untold = false, remembers = false, corners = false;  ///< jumps of M; a controller; of the law
     std::vector<double> times;
@@ -146,7 +144,7 @@ void draw_system(Lot& lot, MixedCase& c) {
         p.walls = walls;
         c.truth.walls = true;
         c.truth.lower = walls.lower, c.truth.upper = walls.upper, c.truth.restitution = walls.restitution;
-        c.initial.theta = lot.between(std::max(walls.lower, -1.0), walls.upper);
+        c.drive.theta0 = {lot.between(std::max(walls.lower, -1.0), walls.upper)};
         c.say("walls {}", walls.lua_text());
     }
 }
@@ -158,8 +156,8 @@ void draw_course(Lot& lot, MixedCase& c) {
     const auto sine = [=](real t) { return a * std::sin(static_cast<real>(w) * t + static_cast<real>(phase)); };
     const int kind = lot.of(5);
     const bool in_window = kind == 2;
-    c.M = in_window ? harmonic(a, w, phase).windowed(from, from + length) : harmonic(a, w, phase);
-    c.M = c.M + native(model::Constant{level});
+    c.drive.loads = {in_window ? harmonic(a, w, phase).windowed(from, from + length) : harmonic(a, w, phase)};
+    c.drive.loads = {c.drive.M() + native(model::Constant{level})};
     c.truth.M = [=](real t, const MixedPoint&) -> real { return static_cast<real>(level) + (in_window ? 0 : sine(t)); };
     if (in_window) {
         c.truth.breaks = {from, static_cast<real>(from + length)};
@@ -172,7 +170,7 @@ void draw_course(Lot& lot, MixedCase& c) {
         for (double t = from; t < 40; t += lot.between(0.05, 1.5)) {
             record->t.push_back(t), record->M.push_back(lot.between(-1, 1));
         }
-        c.M = c.M + native(std::shared_ptr<const model::Samples>(record));
+        c.drive.loads = {c.drive.M() + native(std::shared_ptr<const model::Samples>(record))};
         c.truth.breaks.assign(record->t.begin(), record->t.end());
         c.truth.broken = [record](real t, real inside) -> real {
             const auto& at = record->t;
@@ -191,12 +189,13 @@ void draw_course(Lot& lot, MixedCase& c) {
         if (announced) {
             for (double t = from, before = -level; t < 40; t += length / 2) {
                 const double now = high(t + length / 4);
-                c.M = c.M + native(model::Step{now - before, t});
+                c.drive.loads = {c.drive.M() + native(model::Step{now - before, t})};
                 before = now;
             }
-            c.M = c.M + native(model::Constant{-level});
+            c.drive.loads = {c.drive.M() + native(model::Constant{-level})};
         } else {
-            c.M = c.M + driven(written([=](double t, const model::State&, auto) { return high(t); }), false);
+            c.drive.loads = {c.drive.M() +
+                             driven(written([=](double t, const model::State&, auto) { return high(t); }), false)};
             c.untold = true;
         }
         for (int i = 0; from + i * length / 2 < 40; ++i)
@@ -217,7 +216,7 @@ void draw_load(Lot& lot, MixedCase& c) {
     const auto feedback_part = [=](auto, auto theta, auto velocity, auto z) {
         return Z * z - P * theta - D * velocity;
     };
-    if (loop || has_state) c.M = c.M + driven(ours(feedback_part));
+    if (loop || has_state) c.drive.loads = {c.drive.M() + driven(ours(feedback_part))};
     c.truth.M = [=, course = c.truth.M](real t, const MixedPoint& y) -> real {
         return course(t, y) + feedback_part(t, y.theta, y.velocity, y.z);
     };
@@ -227,7 +226,7 @@ void draw_load(Lot& lot, MixedCase& c) {
         return of_theta * theta + 0.2 * velocity - own * z + 0.3 * std::cos(t);
     };
     c.z0 = lot.between(-0.5, 0.5);
-    c.extras.states.push_back({.name = "z", .start = c.z0, .rate = ours(rate)});
+    c.drive.states.push_back({.name = "z", .start = c.z0, .rate = ours(rate)});
     c.truth.rate = theirs(rate);
     c.say("z' = {:.17g} theta + .2 velocity - {:.17g} z + .3 cos t from {:.17g}", of_theta, own, c.z0);
 }
@@ -248,7 +247,7 @@ void draw_controller(Lot& lot, MixedCase& c) {
             c.truth.sampled = theirs(law), c.truth.every = controller->every, c.truth.delay = controller->delay;
             c.say("sampled every {:.17g} delay {:.17g} P {:.17g} D {:.17g}", controller->every, controller->delay, P,
                   D);
-            c.M = c.M + driven(controller);
+            c.drive.loads = {c.drive.M() + driven(controller)};
             return;
         }
         case 1: {
@@ -257,7 +256,7 @@ void draw_controller(Lot& lot, MixedCase& c) {
             if (lot.once_in(2)) std::swap(relay->on, relay->off);
             relay->levels = {lot.between(-0.6, 0.6), lot.between(-0.6, 0.6)};
             const auto mixed = [](auto, auto theta, auto velocity, auto) { return theta + 0.3 * velocity; };
-            const bool state = !c.extras.states.empty();
+            const bool state = !c.drive.states.empty();
             switch (lot.of(state ? 4 : 3)) {
                 case 0:
                     c.truth.relay_of = [](real, const MixedPoint& y) { return y.theta; };
@@ -278,7 +277,7 @@ void draw_controller(Lot& lot, MixedCase& c) {
             c.truth.levels = {relay->levels[0], relay->levels[1]};
             c.say("relay of {} on {:.17g} off {:.17g} levels {:.17g} {:.17g}", static_cast<int>(relay->of), relay->on,
                   relay->off, relay->levels[0], relay->levels[1]);
-            c.M = c.M + driven(relay);
+            c.drive.loads = {c.drive.M() + driven(relay)};
             return;
         }
         case 2: {
@@ -288,7 +287,7 @@ void draw_controller(Lot& lot, MixedCase& c) {
             delayed->by = lot.once_in(3) ? lot.between(0.02, 0.1) : lot.between(0.1, 9);
             c.truth.delayed = theirs(back), c.truth.by = delayed->by;
             c.say("delayed by {:.17g} P {:.17g} D {:.17g}", delayed->by, P, D);
-            c.M = c.M + driven(delayed);
+            c.drive.loads = {c.drive.M() + driven(delayed)};
             return;
         }
         default:
@@ -300,7 +299,7 @@ void draw_surroundings(Lot& lot, MixedCase& c) {
     const double a = lot.between(-0.4, 0.4), w = lot.between(0.3, 2), mean = lot.between(-0.4, 0.4);
     switch (lot.of(6)) {
         case 0:
-            c.extras.belt = model::Excitation::make(model::Constant{mean}).value();
+            c.drive.belts = {model::Excitation::make(model::Constant{mean}).value()};
             c.truth.belt = [=](real) -> real { return mean; };
             c.truth.belt_rate = [](real) -> real { return 0; };
             c.say("belt {:.17g}", mean);
@@ -308,8 +307,8 @@ void draw_surroundings(Lot& lot, MixedCase& c) {
         case 1:
         case 2: {
             const auto velocity = [=](auto t, auto, auto, auto) { return mean + a * std::sin(w * t); };
-            c.extras.belt = lot.once_in(2) ? model::Excitation::make(model::Constant{mean}).value() + harmonic(a, w)
-                                           : driven(ours(velocity), false);
+            c.drive.belts = {lot.once_in(2) ? model::Excitation::make(model::Constant{mean}).value() + harmonic(a, w)
+                                            : driven(ours(velocity), false)};
             c.truth.belt = [=](real t) -> real { return velocity(t, 0, 0, 0); };
             c.truth.belt_rate = [=](real t) -> real { return a * w * std::cos(w * t); };
             c.say("belt {:.17g} + {:.17g} sin({:.17g} t)", mean, a, w);
@@ -319,7 +318,7 @@ void draw_surroundings(Lot& lot, MixedCase& c) {
             break;
     }
     if (lot.once_in(5)) {
-        c.extras.base = harmonic(a, w);
+        c.drive.base = harmonic(a, w);
         c.truth.base = [=](real t) -> real { return a * std::sin(static_cast<real>(w) * t); };
         c.say("base {:.17g} sin({:.17g} t)", a, w);
     }
@@ -342,7 +341,7 @@ void draw_event(Lot& lot, MixedCase& c) {
     const auto passes = [=](auto, auto theta, auto, auto) { return theta - level; };
     model::WantedEvent event{.name = "level", .when = ours(passes), .direction = model::Crossing::up};
     if (part != 1) event.act = std::make_shared<Bounce>(part);
-    c.extras.events.push_back(event);
+    c.drive.events.push_back(event);
     c.truth.when = theirs(passes), c.truth.kept_velocity = part;
     c.say("event theta up past {:.17g} leaves {:.17g} of the velocity", level, part);
 }
@@ -350,14 +349,14 @@ void draw_event(Lot& lot, MixedCase& c) {
 MixedCase mixed_case(std::uint64_t number) {
     Lot lot(number * 0x2545f4914f6cdd1dU + 17);
     MixedCase c;
-    c.initial = {lot.between(-1, 1), lot.once_in(3) ? 0 : lot.between(-1.2, 1.2)};
+    c.drive.start_at({lot.between(-1, 1), lot.once_in(3) ? 0 : lot.between(-1.2, 1.2)});
     draw_system(lot, c);
     draw_load(lot, c);
     draw_controller(lot, c);
     draw_surroundings(lot, c);
     draw_event(lot, c);
     c.t_end = lot.between(4, 16);
-    c.say("from {:.17g} {:.17g} to {:.17g}", c.initial.theta, c.initial.velocity, c.t_end);
+    c.say("from {:.17g} {:.17g} to {:.17g}", c.drive.start().theta, c.drive.start().velocity, c.t_end);
     constexpr int places = 10;
     for (int i = 0; i < places; ++i) c.times.push_back(c.t_end * (i + lot.between(0, 1)) / places);
     return c;
@@ -377,13 +376,13 @@ std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory
 std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
     MixedSystem pushed = c.truth;
     pushed.M = [f = c.truth.M](real t, const MixedPoint& y) { return f(t, y) + static_cast<real>(mixed_nudge); };
-    const MixedPoint start{c.initial.theta, c.initial.velocity, c.z0};
+    const MixedPoint start{c.drive.start().theta, c.drive.start().velocity, c.z0};
     const MixedTruth truth(c.truth, start, c.t_end, c.times), beside(pushed, start, c.t_end, c.times);
     const std::string expected = kinds_of_all(truth.events);
     if (truth.doubtful || beside.doubtful || expected != kinds_of_all(beside.events)) return "?";
     const auto run_by = [&](motion::MethodView method) {
-        return motion::simulate(system_of(c.parameters), c.M, c.initial, {0, c.t_end}, motion::Grid::at(c.times),
-                                method, {}, {}, c.extras);
+        return motion::simulate(system_of(c.parameters), c.drive, {0, c.t_end}, motion::Grid::at(c.times), method, {},
+                                {});
     };
     const std::string fault = fault_in(c, run_by(motion::Spectral{}), expected, truth, beside, accuracy);
     if (!fault.empty()) return fault;
@@ -426,7 +425,7 @@ std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory
         if (beside_event) continue;
         const auto row = static_cast<Eigen::Index>(i);
         const MixedPoint &e = truth.motions[i], &s = beside.motions[i];
-        const bool z = !c.extras.states.empty() && wrong(run->rows(row, 6), e.z, s.z);
+        const bool z = !c.drive.states.empty() && wrong(run->rows(row, 6), e.z, s.z);
         if (!z && !wrong(run->rows(row, 1), e.theta, s.theta) && !wrong(run->rows(row, 2), e.velocity, s.velocity)) {
             continue;
         }

@@ -4,7 +4,7 @@
 #include <functional>
 #include <utility>
 
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 
@@ -32,10 +32,9 @@ inline model::Excitation feedback(Body body) {
     return native(model::Scripted{.function = written(std::move(body)), .feedback = true});
 }
 
-inline motion::Trajectory run_more(const model::Oscillator& system, const model::Excitation& M,
-                                   const model::State& initial, double t_end, double dt, motion::MethodView method,
-                                   const model::Extras& extras) {
-    auto run = motion::simulate(system, M, initial, {0, t_end}, motion::Grid::every(dt), method, {}, {}, extras);
+inline motion::Trajectory run_more(const model::Oscillator& system, const model::Drive& drive, double t_end, double dt,
+                                   motion::MethodView method) {
+    auto run = motion::simulate(system, drive, {0, t_end}, motion::Grid::every(dt), method);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();
 }

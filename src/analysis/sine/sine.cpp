@@ -12,7 +12,7 @@
 namespace dinal::analysis::sine {
 
 std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
-    const auto components = question.excitation.components();
+    const auto components = question.drive.M().components();
     const model::Oscillator& system = question.system;
     if (components.size() != 1 || !system.has_linear_spring() || system.walls()) return {};
     const model::Component& only = components.front();

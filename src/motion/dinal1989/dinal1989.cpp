@@ -78,7 +78,7 @@ public:
     Replay(const Problem& problem, const Dinal1989& options, std::size_t steps)
         : Course(problem.system),
           checkpoints(steps),
-          excitation_(problem.excitation),
+          excitation_(problem.drive.M()),
           options_(options),
           t_start_(problem.window.start) {}
 
@@ -141,9 +141,9 @@ Trajectory Dinal1989::run(const Problem& problem) const {
     const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
     const auto replay = std::make_shared<Replay>(problem, *this, steps);
     std::vector<model::Event> events;
-    Dinal dinal(problem.system, problem.excitation, *this, problem.window.start);
+    Dinal dinal(problem.system, problem.drive.M(), *this, problem.window.start);
     const std::size_t steps_per_row = rows.steps_per_row(h);
-    Loop now = dinal.start(problem.initial);
+    Loop now = dinal.start(problem.drive.start());
     std::size_t block = 0, block_end = 0, sampled = 0;
     while (finite(now)) {
         if (on_step(rows, problem.window.start, h, now.step, steps_per_row))
@@ -184,7 +184,7 @@ Trajectory Dinal1989::run(const Problem& problem) const {
         if (now.frozen) trajectory.outcome = model::Outcome::stuck_at_end;
     }
     rows.finish();
-    if (problem.excitation.has_script()) trajectory.gap = h / 2;
+    if (problem.drive.M().has_script()) trajectory.gap = h / 2;
     trajectory.state_at_stop = dinal.state(now);
     trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
     trajectory.events = Growing<model::Event>(std::move(events));

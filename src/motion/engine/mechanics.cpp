@@ -174,7 +174,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
     return x.cwiseMax(low).cwiseMin(high);
 }
 
-Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking)
+Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, const Asking& asking)
     : system_(system), drive_(drive), base_(drive.base, &asking) {
     for (const model::Excitation& load : drive.loads) {
         loads_.emplace_back(load, &asking);

@@ -20,16 +20,6 @@ constexpr std::size_t index(int body) {
     return static_cast<std::size_t>(body);
 }
 
-/// What acts on an assembly in a run, and from where it starts.
-struct Drive {
-    std::vector<model::Excitation> loads;  ///< M of each body
-    std::vector<model::Excitation> belts;  ///< of each joint: the velocity of what its friction acts against
-    model::Excitation base;                ///< acceleration of the support
-    std::vector<model::OwnState> states;
-    std::vector<model::WantedEvent> events;
-    std::vector<double> theta0, velocity0;
-};
-
 /// How the friction of a joint acts.
 struct Slipping {
     model::Motion way = model::Motion::stuck;
@@ -88,7 +78,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 
 class Mechanics {
 public:
-    Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking);
+    Mechanics(const model::Assembly& system, const model::Drive& drive, const Asking& asking);
     Mechanics(const Mechanics&) = delete;
     Mechanics& operator=(const Mechanics&) = delete;
     ~Mechanics() = default;
@@ -249,7 +239,7 @@ private:
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
     const model::Assembly& system_;
-    const Drive& drive_;
+    const model::Drive& drive_;
     std::vector<Signal> loads_, belts_;
     Signal base_;
     std::vector<Contact> contacts_;

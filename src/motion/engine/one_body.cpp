@@ -13,20 +13,9 @@ model::Assembly assembly_of(const model::Oscillator& system) {
     return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = system.units()};
 }
 
-Drive drive_of(const model::Excitation& excitation, const model::Extras& extras, const model::State& initial) {
-    return {.loads = {excitation},
-            .belts = {extras.belt},
-            .base = extras.base,
-            .states = extras.states,
-            .events = extras.events,
-            .theta0 = {initial.theta},
-            .velocity0 = {initial.velocity}};
-}
-
 Trajectory run(const Problem& problem, const Cut& cut) {
     const model::Assembly system = assembly_of(problem.system);
-    const model::Extras& extras = *problem.extras;
-    const Drive drive = drive_of(problem.excitation, extras, problem.initial);
+    const model::Drive& drive = problem.drive;
     const auto* left = dynamic_cast<const Left*>(problem.carried);
     AssemblyRun run = run_plain({.system = system,
                                  .drive = drive,

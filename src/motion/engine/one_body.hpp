@@ -14,7 +14,6 @@ struct Cut {
 
 /// The smallest assembly: this body on the ground.
 model::Assembly assembly_of(const model::Oscillator& system);
-Drive drive_of(const model::Excitation& excitation, const model::Extras& extras, const model::State& initial);
 
 /// Runs the problem. The columns of its states stand behind the others.
 Trajectory run(const Problem& problem, const Cut& cut);

@@ -79,7 +79,7 @@ model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
 
 /// Whether every turn of the joint's angle is an event. None of a belt is, nor of a joint without dry friction whose
 /// bodies rub elsewhere; an impact at another joint may turn this one round.
-bool tells_turns(const model::Assembly& system, const Drive& drive, std::size_t joint) {
+bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::size_t joint) {
     const auto rubs = [](const model::Joint& j) { return !j.friction.none() && j.friction.bristle() == nullptr; };
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
@@ -107,7 +107,7 @@ text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std:
     return model::Oscillator::make(parameters);
 }
 
-Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+Trajectory part_of(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen) {
     const Place place(system, joint);
     Trajectory part;
@@ -147,8 +147,8 @@ Trajectory part_of(const model::Assembly& system, const Drive& drive, const Asse
     return part;
 }
 
-Trajectory part_with_rows(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
-                          const std::optional<model::Oscillator>& seen) {
+Trajectory part_with_rows(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run,
+                          std::size_t joint, const std::optional<model::Oscillator>& seen) {
     Trajectory part = part_of(system, drive, run, joint, seen);
     if (part.rough) part.rough->other_integrators = false;
     part.computed = !system.is_link(joint);

@@ -22,11 +22,11 @@ text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std:
 /// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
 /// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
 /// each joint.
-Trajectory part_of(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
+Trajectory part_of(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen);
 
 /// The same with its columns of a run that is not joined elsewhere.
-Trajectory part_with_rows(const model::Assembly& system, const Drive& drive, const AssemblyRun& run, std::size_t joint,
-                          const std::optional<model::Oscillator>& seen);
+Trajectory part_with_rows(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run,
+                          std::size_t joint, const std::optional<model::Oscillator>& seen);
 
 }  // namespace dinal::motion::engine

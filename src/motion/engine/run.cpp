@@ -2552,7 +2552,7 @@ double Engine::friction(std::size_t joint, const Moment& at, const Look& look) c
 
 }  // namespace
 
-std::vector<std::string> column_names_of(const model::Assembly& system, const Drive& drive) {
+std::vector<std::string> column_names_of(const model::Assembly& system, const model::Drive& drive) {
     std::vector<std::string> names{"t"};
     const auto add = [&](const std::string& joint, std::initializer_list<const char*> columns) {
         for (const char* column : columns) names.push_back(joint.empty() ? column : joint + "." + column);
@@ -2577,14 +2577,12 @@ AssemblyRun run(const AssemblyProblem& problem) {
     const std::size_t own = problem.drive.states.size();
     Witnesses witnesses(problem.system.named ? 2 * problem.system.bodies.size() + own : own);
     model::Assembly system = problem.system;
-    Drive drive = problem.drive;
     const auto of = [&](const char* what, std::size_t joint) {
         return system.named ? fmt::format("{}.{}", what, system.joints[joint].name) : std::string(what);
     };
-    for (std::size_t i = 0; i < drive.loads.size(); ++i) drive.loads[i] = witnesses.heard(drive.loads[i], of("M", i));
+    const model::Drive drive = witnesses.heard(problem.drive, of);
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         model::Joint& joint = system.joints[j];
-        drive.belts[j] = witnesses.heard(drive.belts[j], of("belt", j));
         for (auto& sliding : joint.friction.sliding) {
             if (sliding) sliding = witnesses.heard(*sliding, of("Rd", j));
         }
@@ -2598,12 +2596,6 @@ AssemblyRun run(const AssemblyProblem& problem) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) {
             joint.spring = model::springs::UserSpring{witnesses.heard(spring->function, of("spring", j), "theta")};
         }
-    }
-    drive.base = witnesses.heard(drive.base, "base");
-    for (model::OwnState& state : drive.states)
-        state.rate = witnesses.heard(state.rate, "states." + state.name + ".rate");
-    for (model::WantedEvent& event : drive.events) {
-        event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     const AssemblyProblem heard{.system = system,
                                 .drive = drive,

@@ -50,11 +50,11 @@ struct AssemblyRun {
 inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
 /// t; theta, velocity, M, friction, damping and acceleration of each body, theta, velocity, torque and friction of each
 /// link, as in "load.theta"; states.
-std::vector<std::string> column_names_of(const model::Assembly& system, const Drive& drive);
+std::vector<std::string> column_names_of(const model::Assembly& system, const model::Drive& drive);
 
 struct AssemblyProblem {
     const model::Assembly& system;
-    const Drive& drive;
+    const model::Drive& drive;
     Window window;
     const Grid& rows;
     const Monitor& monitor;

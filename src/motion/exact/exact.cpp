@@ -65,7 +65,7 @@ Trajectory Exact::run(const Problem& problem) const {
     RowWriter rows(problem.system, problem.rows, trajectory);
     std::shared_ptr<Arcs> arcs;
     if (problem.limits.dense) {
-        arcs = std::make_shared<Arcs>(problem.system, problem.excitation, problem.course_bytes);
+        arcs = std::make_shared<Arcs>(problem.system, problem.drive.M(), problem.course_bytes);
     }
     std::vector<model::Event> events;
     constexpr std::size_t few = 8;

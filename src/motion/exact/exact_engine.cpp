@@ -26,13 +26,13 @@ Band inside(model::Motion motion) {
 
 ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<model::Event>& events, Arcs* arcs)
     : system_(problem.system),
-      excitation_(problem.excitation),
+      excitation_(problem.drive.M()),
       monitor_(problem.monitor),
       window_(problem.window),
       rows_(rows),
       arcs_(arcs),
       clock_{problem.window.start, 0},
-      y_(problem.initial),
+      y_(problem.drive.start()),
       piece_end_(problem.window.start),
       standstill_(problem, &events, -model::never),
       arc_(system_),

@@ -15,20 +15,15 @@ namespace {
 class Replay final : public Course {
 public:
     Replay(const Problem& problem, const Rk4& method)
-        : Course(problem.system),
-          excitation_(problem.excitation),
-          method_(method),
-          initial_(problem.initial),
-          window_(problem.window) {}
+        : Course(problem.system), drive_(problem.drive), method_(method), window_(problem.window) {}
 
     [[nodiscard]] text::Expected<model::State> at(double t) const override;
 
     Checkpoints<Rk4Checkpoint> checkpoints{0};
 
 private:
-    model::Excitation excitation_;
+    model::Drive drive_;
     Rk4 method_;
-    model::State initial_;
     Window window_;
 };
 
@@ -38,7 +33,7 @@ text::Expected<model::State> Replay::at(double t) const {
     if (!grid) return grid.error();
     const Monitor monitor;
     const Limits limits;
-    const Problem problem{system(), excitation_, initial_, window_, *grid, monitor, limits};
+    const Problem problem{system(), drive_, window_, *grid, monitor, limits};
     Trajectory trajectory;
     RowWriter rows(system(), *grid, trajectory);
     Rk4Engine engine(problem, method_, rows, nullptr, nullptr);

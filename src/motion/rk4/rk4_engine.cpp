@@ -20,7 +20,7 @@ std::size_t step_count(const Window& window, double h) {
 double at_once(const Problem& problem, double h) {
     constexpr double a_piece = 1.0 / 256;  // of a step with more events than anyone can tell
     const bool is_short = h * h * (problem.system.stiffness() / problem.system.inertia()) < 0.01;
-    return problem.excitation.has_feedback() && is_short ? 2 * h : a_piece * h;
+    return problem.drive.M().has_feedback() && is_short ? 2 * h : a_piece * h;
 }
 
 }  // namespace
@@ -28,9 +28,9 @@ double at_once(const Problem& problem, double h) {
 Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<model::Event>* events,
                      Checkpoints<Rk4Checkpoint>* checkpoints)
     : system_(problem.system),
-      excitation_(problem.excitation),
+      excitation_(problem.drive.M()),
       monitor_(problem.monitor),
-      initial_(problem.initial),
+      initial_(problem.drive.start()),
       window_(problem.window),
       rows_(rows),
       checkpoints_(checkpoints),
@@ -38,7 +38,7 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       steps_(step_count(problem.window, options.h)),
       steps_per_row_(rows.steps_per_row(options.h)),
       inverse_inertia_(1 / problem.system.inertia()),
-      feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
+      feedback_(problem.drive.M().has_feedback() || system_.has_remainder()),
       standstill_(problem, events, at_once(problem, options.h)) {}
 
 model::Outcome Rk4Engine::run() {

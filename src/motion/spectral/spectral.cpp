@@ -24,7 +24,7 @@ double Spectral::widest_looks() const {
 
 double Spectral::longest(const Problem& problem) const {
     const model::Oscillator& system = problem.system;
-    const double most = problem.excitation.has_script() ? std::min(max_panel, widest_looks()) : max_panel;
+    const double most = problem.drive.M().has_script() ? std::min(max_panel, widest_looks()) : max_panel;
     return std::min(most, system.has_spring() ? longest_panel * system.natural_period()
                                               : part_of_run * (problem.window.end - problem.window.start));
 }

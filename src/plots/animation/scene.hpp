@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 #include "plots/canvas.hpp"
 #include "plots/figure.hpp"
 #include "plots/run_figure.hpp"

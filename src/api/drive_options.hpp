@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lua/options.hpp"
-#include "model/extras.hpp"
+#include "model/drive.hpp"
 
 namespace dinal::api {
 
@@ -38,7 +38,7 @@ inline constexpr text::Option event_options[] = {
 inline constexpr text::Call event_call{
     "events[1]", "{ when = function(t, theta, velocity, z) return theta - 1 end, name = \"limit\" }", event_options};
 
-inline constexpr text::Option extras_options[] = {
+inline constexpr text::Option more_drive_options[] = {
     {.name = "states",
      .meaning = "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, "
                 "theta, velocity, z) ... end } }; z.NAME has their values, the fourth argument of M, rates "
@@ -69,13 +69,6 @@ std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& optio
 std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options);
 /// A function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name);
-
-/// What the options say. Raises what is wrong with them.
-model::Extras read_extras(lua_State* L, const lua::Options& options);
-
-std::vector<std::string> names_of(const model::Extras& extras);
-/// What a relay can look at in a run of one body.
-std::vector<std::string> seen_by_relays(const model::Extras& extras);
 
 /// Raises when a relay in M looks at something else than these; `M` is how the excitation is called.
 void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,

@@ -1,0 +1,82 @@
+// What acts on a system in a run, and from where it starts: M, surfaces that move, a support that shakes, states of its
+// own, and events that a user wants located.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/controller.hpp"
+#include "model/excitation.hpp"
+
+namespace dinal::model {
+
+/// A variable that is integrated with the motion: d/dt = rate(t, theta, velocity, states).
+struct OwnState {
+    std::string name;
+    double start = 0;
+    std::shared_ptr<terms::UserFunction> rate;
+};
+
+/// What a user does at one of his events.
+class EventAction {
+public:
+    EventAction() = default;
+    EventAction(const EventAction&) = delete;
+    EventAction& operator=(const EventAction&) = delete;
+    virtual ~EventAction() = default;
+    /// Changes the state, and the states; false when it failed (and its owner knows why).
+    virtual bool act(double t, State& state, std::span<double> states) = 0;
+};
+
+enum class Crossing { up, down, both };
+
+/// Told where `when` passes zero.
+struct WantedEvent {
+    std::string name;
+    std::shared_ptr<terms::UserFunction> when;
+    Crossing direction = Crossing::both;
+    bool stop = false;
+    std::shared_ptr<EventAction> act = {};
+};
+
+/// What acts on a system in a run, and from where it starts.
+struct Drive {
+    /// What acts on one body.
+    Drive(Excitation M = {}, const State& start = {})  // NOLINT(google-explicit-constructor): M alone is a drive
+        : loads{std::move(M)}, belts(1), theta0{start.theta}, velocity0{start.velocity} {}
+
+    /// Of several, from rest, on which nothing acts.
+    [[nodiscard]] static Drive at_rest(std::size_t bodies, std::size_t joints) {
+        Drive drive;
+        drive.loads.resize(bodies), drive.belts.resize(joints);
+        drive.theta0.resize(bodies), drive.velocity0.resize(bodies);
+        return drive;
+    }
+
+    std::vector<Excitation> loads;  ///< M of each body
+    /// Of each body and link: the velocity of the surface that its dry friction acts against, rad per time unit.
+    std::vector<Excitation> belts;
+    Excitation base = {};  ///< acceleration of the support, rad per time unit^2; angles are relative to it
+    std::vector<OwnState> states = {};
+    std::vector<WantedEvent> events = {};
+    std::vector<double> theta0, velocity0;  ///< of each body
+
+    // Of one body, or the first.
+    [[nodiscard]] const Excitation& M() const { return loads.front(); }
+    [[nodiscard]] const Excitation& belt() const { return belts.front(); }
+    [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }
+    void start_at(const State& state) { theta0.front() = state.theta, velocity0.front() = state.velocity; }
+
+    /// More than loads acts, or is asked for.
+    [[nodiscard]] bool has_more() const {
+        return !states.empty() || !events.empty() || !base.components().empty() ||
+               std::any_of(belts.begin(), belts.end(),
+                           [](const Excitation& belt) { return !belt.components().empty(); });
+    }
+};
+
+}  // namespace dinal::model
