@@ -13,9 +13,12 @@ namespace dinal::motion::engine {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int many_iterations = 4;       // slopes that need so many no longer serve, and are asked anew
-constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
-constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
+constexpr int many_iterations = 4;         // slopes that need so many no longer serve, and are asked anew
+constexpr double most_left_over = 1e-6;    // of the equation; a stiff rate multiplies the rounding of its steps
+constexpr double clear_of_noise = 1e4;     // differences over so much motion tell a slope
+constexpr double of_tail = 8;              // noise at single nodes is up to so many times its last coefficients
+constexpr double most_noise_of_rate = 64;  // times the tolerance; of what is noisier than that the run says so
+constexpr double gross = 1e3;              // not resolved by more than this factor: it may be a break
 constexpr std::size_t most_factors = 24;
 constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
 /// The widest gaps between nodes, by the node before. Users' functions are asked in the middle of these, too.
@@ -100,13 +103,22 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       fastest_belt_(mechanics.joints()),
       fastest_rate_(m_),
       allowed_(n_),
-      noise_(n_),
-      stalled_(n_),
+      floor_{std::vector<double>(n_ + m_), std::vector<double>(n_ + m_)},
+      stalled_(n_ + m_),
+      may_be_rough_(n_ + m_, 1),
       offset_(n_),
       offset_rate_(n_),
       offset_way_(n_),
       rate_(m_) {
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
+    for (std::size_t i = 0; i < n_; ++i) may_be_rough_[i] = mechanics.loads()[i].asks_functions() ? 1 : 0;
+    for (const model::Joint& joint : mechanics.system().joints) {
+        if (joint.spring.none() && joint.friction.function == nullptr && !joint.friction.law.depends_on_speed())
+            continue;
+        for (const int body : {joint.first, joint.second}) {
+            if (body >= 0) may_be_rough_[index(body)] = 1;
+        }
+    }
 }
 
 void Collocation::make_room(Segment& s) const {
@@ -393,7 +405,10 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
             const double rate = k < n_ ? s.y[n_ + k][node] : s.f[k][node];
             spread = std::max(spread, std::fabs(y[k]) + s.h * std::fabs(rate));
         }
-        const double d = spread > 0 ? 1e-4 * spread : 1e-9;
+        const double rough =
+            c < 2 * groups ? s.h * noise() / frame.inertia[c % groups] : s.h * floor_.noise[n_ + (c - 2 * groups)];
+        const double d =
+            spread > 0 ? std::max(1e-4 * spread, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
         const std::vector<double> kept = y;
         for (const std::size_t k : moved) y[k] = kept[k] + d;
         if (!torques(above)) return false;
@@ -580,7 +595,8 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
                 }
                 scales_[k] = moves + smallest;
-                if (k < groups) stalls = std::max(stalls, s.h / frame.inertia[k] * noise() / scales_[k]);
+                const double rough = k < groups ? noise() / frame.inertia[k] : floor_.noise[n_ + (k - groups)];
+                stalls = std::max(stalls, of_tail * s.h * rough / scales_[k]);
                 for (std::size_t j = 1; j < node_count; ++j) {
                     const double rest = found_[k][j] - unknown_[k][j];
                     residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
@@ -609,7 +625,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
             const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                    (i >= 2 && change <= stalls && rate > 0.3);
-            if (converged && left <= most_left_over) {
+            if (converged && left <= std::max(most_left_over, stalls)) {
                 if (i >= many_iterations) slopes_known_ = false;
                 return Attempt::resolved;
             }
@@ -712,6 +728,9 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
+    for (std::size_t k = 0; k < n_ + m_ && unresolved_ <= 1; ++k) {
+        if (may_be_rough_[k] != 0) floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
+    }
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
@@ -767,6 +786,24 @@ double longer_by(const Series& series, double allowed) {
 
 }  // namespace
 
+/// The noise of what moves a value makes all rough that this value acts on: of each group and state, how much by h.
+/// Nothing where there is no noise.
+std::vector<double> Collocation::passed_on(const Segment& s, const Frame& frame) const {
+    const std::size_t groups = frame.groups(), count = groups + m_;
+    const bool known = slopes_of_ == frame.group && slopes_.rows() == static_cast<Eigen::Index>(count);
+    if (!known || std::all_of(floor_.noise.begin(), floor_.noise.end(), [](double x) { return x == 0; })) return {};
+    std::vector<double> rough(count);
+    Eigen::VectorXd off(static_cast<Eigen::Index>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+        off(static_cast<Eigen::Index>(k)) =
+            s.h * (k < groups ? noise() / frame.inertia[k] : floor_.noise[n_ + (k - groups)]);
+    }
+    const Eigen::MatrixXd by = slopes_.rightCols(static_cast<Eigen::Index>(count)).cwiseAbs();
+    const Eigen::VectorXd once = by * off, twice = once + s.h * (by * once);
+    for (std::size_t k = 0; k < count; ++k) rough[k] = s.h * twice(static_cast<Eigen::Index>(k));
+    return rough;
+}
+
 /// The last coefficients of what drives each value, against what that value is and how it changes.
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     unresolved_ = 0, growth_ = model::never;
@@ -776,6 +813,8 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     };
     allowed_.assign(n_, 0);
     find_sizes(s);
+    const std::vector<double> by_others = passed_on(s, frame);
+    const auto from_others = [&](std::size_t k) { return by_others.empty() ? 0 : by_others[k]; };
     const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
     lost_by_belts_ = 0;
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
@@ -793,7 +832,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
-            allowed += per_torque * noise();
+            allowed += per_torque * noise() + from_others(index(frame.group[i]));
             note(series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
@@ -827,14 +866,17 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         note(belt, 1, allowed);
     }
     double rough = 0;  // what noise in M may be of what it moves
-    for (std::size_t i = 0; i < n_; ++i) rough = std::max(rough, noise_[i] / (sizes_[i] + smallest));
+    for (std::size_t i = 0; i < n_; ++i) {
+        rough = std::max(rough, floor_.noise[i] / (std::max(sizes_[i], floor_.greatest[i]) + smallest));
+    }
     for (std::size_t k = 0; k < m_; ++k) {
         Series series = s.rates[2 * n_ + k];
         for (double& c : series) c *= h;
         fastest_rate_[k] = std::max(fastest_rate_[k], greatest(s.f[2 * n_ + k]));
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
-            64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]);
+            64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]) +
+            h * floor_.noise[n_ + k] + from_others(frame.groups() + k);
         note(series, 1, allowed + smallest);
     }
 }
@@ -912,7 +954,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         for (std::size_t i = 0; i < n_; ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
             const double lost = lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
-            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + noise_[i] + lost + smallest;
+            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + floor_.noise[i] + lost + smallest;
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             seen_ = t;
             return false;
@@ -936,32 +978,50 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     return true;
 }
 
-bool Collocation::found_noise(const Segment& s) {
+bool Collocation::found_noise(const Segment& s, const Mode& mode) {
     constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
     bool found = false;
-    std::vector<double> y, loads;
-    for (std::size_t i = 0; i < n_; ++i) {
-        const Signal& load = mechanics_.loads()[i];
-        if (!load.asks_functions()) continue;
-        const double tail = cheb::tail(cheb::fit(s.driven[i]));
+    std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m_);
+    for (std::size_t i = 0; i < n_ + m_; ++i) {
+        if (may_be_rough_[i] == 0) continue;
+        const double of_all = cheb::tail(cheb::fit(acting(s, i)));
+        const bool of_time = i < n_ && mechanics_.loads()[i].asks_functions() &&
+                             !mechanics_.loads()[i].asks_the_motion() &&
+                             2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
+        const Nodes& values = of_time ? s.driven[i] : acting(s, i);
+        const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
         const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
-        const double most =
-            load.asks_the_motion() ? most_noise_of_motion * greatest(s.driven[i]) : most_noise * sizes_[i];
-        if (!(tail > tolerance_ * sizes_[i]) || !(tail <= most)) continue;
-        if (noise_[i] > 0 && tail <= varies * noise_[i]) {
-            found = found || 2 * tail > noise_[i];
-            noise_[i] = std::max(noise_[i], 2 * tail);
+        const double size = i < n_ ? sizes_[i] : greatest(values);
+        // A motion dies out, but the rounding of the terms that make its torques does not.
+        const double ever = std::max(greatest(values), floor_.greatest[i]);
+        const double most = of_time  ? most_noise * size
+                            : i < n_ ? most_noise_of_motion * ever
+                                     : most_noise_of_rate * tolerance_ * ever;
+        double& noise = floor_.noise[i];
+        if (!(tail > tolerance_ * size) || !(tail <= most)) continue;
+        if (noise > 0 && tail <= varies * noise) {
+            found = found || 2 * tail > noise;
+            noise = std::max(noise, 2 * tail);
             continue;
         }
         if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
         const auto here = [&](double t) {
             s.state(s.start.until(t) / s.h - 1, y);
+            const Moment at{t, Side::at, y};
+            if (i >= n_) {
+                mechanics_.rates(at, rates.data());
+                return rates[i - n_];
+            }
             mechanics_.loads_of_time(t, Side::at, loads);
-            return loads[i] + load.of_motion({t, Side::at, y});
+            if (of_time) return loads[i];
+            for (std::size_t joint = 0; joint < belts.size(); ++joint)
+                belts[joint] = mechanics_.belt(joint, t, Side::at);
+            mechanics_.torques(at, mode, belts, loads, torques);
+            return torques[i];
         };
         const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
         if (!(rough.usual > alike * tail)) continue;
-        noise_[i] = above * std::max(tail, rough.most);
+        noise = above * std::max(tail, rough.most);
         found = true;
     }
     return found;

@@ -68,15 +68,30 @@ public:
     [[nodiscard]] double unresolved() const { return unresolved_; }
     /// The factor by which the next stretch may be longer than the last one, which was resolved.
     [[nodiscard]] double growth() const { return growth_; }
-    /// The last one was not resolved, nor a longer one, and the load of a body is as rough on far shorter stretches, at
-    /// one place as at another. From now on it need not be smoother than that.
-    bool found_noise(const Segment& segment);
+    /// The last one was not resolved, nor a longer one, and what acts on a body, or the rate of a state, is as rough on
+    /// far shorter stretches, at one place as at another. From now on it need not be smoother than that.
+    bool found_noise(const Segment& segment, const Mode& mode);
     /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
     [[nodiscard]] bool tells_rests() const {
         return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
     /// That of the body where it is greatest, torque.
-    [[nodiscard]] double noise() const { return *std::max_element(noise_.begin(), noise_.end()); }
+    [[nodiscard]] double noise() const {
+        return *std::max_element(floor_.noise.begin(), floor_.noise.begin() + static_cast<std::ptrdiff_t>(n_));
+    }
+    /// noise(), where it is more than the tolerance would allow beside what has acted.
+    [[nodiscard]] double clear_noise() const {
+        double most = 0;
+        for (std::size_t i = 0; i < n_; ++i) {
+            if (floor_.noise[i] > tolerance_ * floor_.greatest[i]) most = std::max(most, floor_.noise[i]);
+        }
+        return most;
+    }
+    [[nodiscard]] const Floor& floor() const { return floor_; }
+    /// What an earlier run of the same system has found.
+    void know(const Floor& floor) {
+        if (floor.noise.size() == floor_.noise.size()) floor_ = floor;
+    }
     /// What the velocity of a body may be off by on a stretch that was resolved.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
@@ -132,6 +147,11 @@ private:
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     void find_sizes(const Segment& segment);
+    /// What acts on a body, or the rate of a state.
+    [[nodiscard]] const Nodes& acting(const Segment& segment, std::size_t of) const {
+        return of < n_ ? segment.torques[of] : segment.f[n_ + of];
+    }
+    [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
 
     const Mechanics& mechanics_;
     double tolerance_, longest_, step_length_;
@@ -141,12 +161,13 @@ private:
     double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration
-    std::vector<double> noise_;    ///< of each body's load
+    Floor floor_;
     struct Stalled {
         double from = -model::never, h = 0, tail = 0;
     };
-    std::vector<Stalled> stalled_;  ///< of each body: the last stretch that its load made too long
-    double seen_ = -model::never;   ///< where a load did what its series does not: looked at until it is behind
+    std::vector<Stalled> stalled_;    ///< of each body and state: the last stretch that it made too long
+    std::vector<char> may_be_rough_;  ///< of the same: a function acts
+    double seen_ = -model::never;     ///< where a load did what its series does not: looked at until it is behind
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
     std::array<std::vector<double>, node_count> points_;    ///< all of y at a node

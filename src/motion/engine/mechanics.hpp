@@ -20,6 +20,12 @@ constexpr std::size_t index(int body) {
     return static_cast<std::size_t>(body);
 }
 
+/// What rounding may do to a run: of the torques on each body, and of the rate of each state.
+struct Floor {
+    std::vector<double> noise;     ///< how rough it was found to be
+    std::vector<double> greatest;  ///< so far; no more than a small part of it is taken for noise
+};
+
 /// How the friction of a joint acts.
 struct Slipping {
     model::Motion way = model::Motion::stuck;

@@ -350,6 +350,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
+    if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
     result_.table = Growing<double>(problem.rows.count(), columns);
@@ -1089,7 +1090,7 @@ void Engine::run() {
     result_.outcome = outcome_;
     result_.located = has_pieces_;
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
-    result_.noise = lost ? 0 : solver_->noise();
+    result_.noise = lost ? 0 : solver_->clear_noise();
     if (outcome_ == Outcome::chattering) forget_chatter();
     keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
@@ -1099,7 +1100,7 @@ void Engine::run() {
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
     carry->y = y_, carry->low = low_, carry->mode = mode_, carry->watches = watches_, carry->echoes = echoes_,
-    carry->heading = heading_, carry->born = born_;
+    carry->heading = heading_, carry->born = born_, carry->floor = solver_->floor();
     if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
@@ -1211,7 +1212,7 @@ void Engine::again(Collocation::Attempt attempt) {
         h_ = segment_.h / 2;
         return;
     }
-    if (solver_->found_noise(segment_)) return;
+    if (solver_->found_noise(segment_, mode_)) return;
     const bool searched = searched_from_ == now_.hi && segment_.h > 0.1 * searched_h_;
     if (!searched && breaks_.size() < most_found_breaks) {
         searched_from_ = now_.hi, searched_h_ = segment_.h;
@@ -2188,7 +2189,8 @@ void Engine::record_turns(double until) {
         const double moving = greatest(v);
         const auto exact = [&](double x) { return segment_.at(n() + i, x); };
         const double torques = torque_size(i);
-        const double nothing = 100 * rounding * segment_.h / problem_.system.bodies[i].inertia * torques;
+        const double nothing =
+            segment_.h / problem_.system.bodies[i].inertia * std::max(100 * rounding * torques, solver_->noise());
         constexpr double underflow = 1e-280;  // numbers so small lose their digits
         if (!(moving > std::max(nothing, underflow))) continue;
         Half half = static_cast<int>(heading_[i]);

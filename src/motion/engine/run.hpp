@@ -27,7 +27,8 @@ struct Carry {
     std::vector<std::pair<double, int>> echoes;            ///< breaks that delays bring back
     std::vector<model::Motion> heading;                    ///< of bodies without dry friction; may be left out
     std::shared_ptr<const History> past;
-    double born = 0;  ///< when the first of these runs began
+    double born = 0;   ///< when the first of these runs began
+    Floor floor = {};  ///< may be left out
 };
 
 struct AssemblyRun {

@@ -1,0 +1,93 @@
+-- Smooth motions that die out until nothing but rounding is left of them: that is no noise, no jump and no error.
+dofile "tests/lua/support.lua"
+
+-- The same function, which cannot be read.
+local function unread(f)
+    return function(...)
+        select("#")
+        return f(...)
+    end
+end
+
+-- Numbers between 0 and 1 that are the same every time.
+local seed = 7
+local function random()
+    seed = seed * 16807 % 2147483647
+    return seed / 2147483647
+end
+local function between(low, high) return low * (high / low) ^ random() end
+local function one_of(list) return list[math.floor(random() * #list) + 1] end
+
+-- Smooth functions of slope 1 at 0 that fall short of their digits there, as differences do, or do not.
+local shapes = {
+    function(x) return math.exp(x) - 1 end,
+    function(x) return (1 - (1 + x) ^ -1.4) / 1.4 end,
+    function(x) return math.log(1 + x) end,
+    function(x) return ((1 + x) ^ 2 - 1) / 2 end,
+    function(x) return 1 / (1 - x) - 1 end,
+    function(x) return x / math.sqrt(1 + x * x) end,
+    math.sin,
+    function(x) return x + x ^ 3 end,
+}
+
+-- k, damping c and the options of a run: a spring, a drag and the rate of a state may have any of these shapes.
+local kinds = {
+    function(k, c, spring, drag)
+        local function law(x) return k * spring(x) end
+        return system { I = 1, k = 0, spring = law }, { M = function(_, _, v) return -c * drag(v) end }
+    end,
+    function(k, c, spring)
+        local function law(x) return k * spring(x) end
+        return system { I = 1, k = 0, C = c, spring = law }, { M = function(t) return 0.01 * math.exp(-c * t) end }
+    end,
+    function(k, c, _, drag)
+        return system { I = 1, k = k }, { M = unread(function(_, _, v) return -c * drag(v) end) }
+    end,
+    function(k, c, spring, drag)
+        local function rate(_, _, v, z) return spring(v / 2) - c * drag(z.q) end
+        return system { I = 1, k = k, C = c },
+            { M = function(_, _, _, z) return -0.2 * c * z.q end, states = { q = { start = 0, rate = rate } } }
+    end,
+    function(k, c, spring, drag)
+        local bodies = { a = { I = 1, k = k, spring = function(x) return k * spring(x) end }, b = { I = 2, k = k, C = c } }
+        local links = { rod = { "a", "b", k = k } }
+        return system { bodies = bodies, links = links }, { M = { a = unread(function(_, _, v) return -c * drag(v.a) end) } }
+    end,
+}
+
+test("motions of smooth springs, drags and states without dry friction die out to rounding", function()
+    for i = 1, 100 do
+        local k, damping, size = between(0.3, 30), between(0.1, 1.5), between(1e-4, 0.2)
+        local rate = damping * math.sqrt(k)
+        local sys, task = kinds[i % #kinds + 1](k, rate, one_of(shapes), one_of(shapes))
+        task.theta0, task.t_end, task.times = type(task.M) == "table" and { a = size } or size, 200 * 2 / rate, { 0 }
+        local run = sys:simulate(task)
+        local what = ("system %d: %s"):format(i, run.outcome)
+        equal(run.t_end, task.t_end, what)
+        equal(run.status, "end", what)
+    end
+end)
+
+test("a smooth motion that dies out follows its closed form down to rounding, and goes on from there", function()
+    -- v' = 1 - (1 + v)^2 is solved by 1 + v = (1 + a exp(-2 t)) / (1 - a exp(-2 t)) with a = v0 / (2 + v0).
+    local v0 = 0.5
+    local a = v0 / (2 + v0)
+    local function velocity(t) return 2 * a * math.exp(-2 * t) / (1 - a * math.exp(-2 * t)) end
+    for _, M in ipairs { function(_, _, v) return 1 - (1 + v) ^ 2 end, unread(function(_, _, v) return 1 - (1 + v) ^ 2 end) } do
+        local run = system { I = 1, k = 0 }:simulate { velocity0 = v0, M = M, t_end = 100, dt = 0.25 }
+        equal(run.outcome, "reached the end")
+        for i = 1, #run do near(run.velocity[i], velocity(run.t[i]), 1e-12 * velocity(run.t[i]) + 1e-15) end
+        equal(run:continue(200).outcome, "reached the end")
+    end
+end)
+
+test("an M of few digits is followed within its noise when the motion has died out", function()
+    local function rounded(x) return math.floor(x * 1e10 + 0.5) / 1e10 end
+    local M = unread(function(_, _, v) return rounded(1 - (1 + v) ^ 2) end)
+    local run = system { I = 1, k = 1 }:simulate { theta0 = 0.001, t_end = 50, times = { 0, 50 }, M = M }
+    local said = tonumber(run.outcome:match("^reached the end, within the noise of M, (%S+)$"))
+    assert(said and said > 1e-12 and said < 1e-9, run.outcome)
+    near(run.theta[2], 0, 1e-9)
+end)
+
+finish()
