@@ -182,7 +182,7 @@ Runs::Run Runs::run(const Moment& from, double start, double end, const motion::
     if (from.mode) {
         before = std::make_shared<engine::Carry>();
         before->y.assign(from.y.data(), from.y.data() + from.y.size());
-        before->mode = from.mode->mode, before->controllers = from.mode->controllers;
+        before->mode = from.mode->mode, before->controllers = from.mode->controllers, before->floor = floor_;
     }
     return run(drive, start, end, rows, dense, before);
 }
@@ -218,6 +218,7 @@ Runs::Run Runs::run(const model::Drive& drive, double start, double end, const m
                               .longest = question_.longest,
                               .keeps_torques = grid.count() > 0});  // a user sees those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
+    floor_ = result.carry->floor;
     return result;
 }
 

@@ -70,6 +70,7 @@ private:
     const RigQuestion& question_;
     const motion::Monitor& monitor_;
     std::optional<model::Contradiction> contradiction_;
+    motion::engine::Floor floor_;  ///< what the last run found, for those that begin where hardly anything moves
 };
 
 /// How the state is measured where the motion returns: angles of bodies that go round are those from another body.

@@ -90,4 +90,22 @@ test("an M of few digits is followed within its noise when the motion has died o
     near(run.theta[2], 0, 1e-9)
 end)
 
+test("steady finds the rest to which a smooth motion dies out, whatever other starts fail", function()
+    -- A slider with rate and state friction (Erickson, Birnir and Lavallee 2008): by Routh and Hurwitz its rest is stable
+    -- up to eps = 0.4975.
+    local function slider(eps)
+        local function rate(_, _, w, z) return -(1 + w) * (z.s + (1 + eps) * math.log(1 + w)) end
+        local function M(_, _, w, z) return -2 * (z.s + math.log(1 + w)) end
+        return system { I = 0.01, k = 1 }:steady { theta0 = 0.001, M = M, states = { s = { start = 0, rate = rate } } }
+    end
+    equal(slider(0.3).status, "rest")
+    equal(slider(0.6).status, "steady")
+    -- Starts farther out have no number to begin with.
+    local function M(_, x, v) return math.sqrt(0.5) - math.sqrt(x + 0.5) - math.log(1 + v) end
+    for _, f in ipairs { M, unread(M) } do
+        local found = system { I = 1, k = 1 }:steady { theta0 = 0.3, M = f }
+        equal(found.status, "rest")
+    end
+end)
+
 finish()
