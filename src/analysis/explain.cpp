@@ -95,6 +95,7 @@ public:
         tell_setting();
         tell_start();
         tell_counts();
+        tell_open();
         tell_turns();
         tell_stops();
         tell_end();
@@ -354,6 +355,16 @@ private:
         tell_impacts();
     }
 
+    /// A contact on which nothing presses.
+    void tell_open() {
+        const double open = time_open(run_), all = run_.t_stop - run_.t_start;
+        if (open >= all && all > 0) {
+            say("It was open all the time.");
+        } else if (open > 0) {
+            say("It was open for {} of the time.", text::percent(open / all));
+        }
+    }
+
     void tell_turns() {
         if (!undisturbed_) {
             tell_reach();
@@ -453,6 +464,7 @@ private:
 
     /// Why it slipped and which way; after a sentence about |M - k theta| it is "this torque".
     [[nodiscard]] std::string slip(const model::Event& event, bool told) const {
+        if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
         if (!has_reasons()) return "it slipped";
         if (on_belt_) {

@@ -70,7 +70,7 @@ void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMo
     const bool moves = motion.high > motion.low;
     motion.status = moves ? SteadyStatus::steady : SteadyStatus::adheres;
     motion.amplitude = (motion.high - motion.low) / 2 + 0.0;
-    motion.stuck = moves ? std::min(1.0, stuck / length) : 1;
+    motion.stuck = moves || time_open(run) > 0 ? std::min(1.0, stuck / length) : 1;
     if (!moves) motion.rest = rest_of(question, motion.start.theta);
 }
 
@@ -91,7 +91,8 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
         // The difference of two angles that are held together is their rounding.
         if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
             facts.status = SteadyStatus::adheres;
-            facts.amplitude = 0, facts.stuck = 1;
+            facts.amplitude = 0;
+            if (time_open(*run) == 0) facts.stuck = 1;
         }
         if (!alone) facts.rest = {facts.low, facts.low};
         if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);

@@ -11,7 +11,8 @@ std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     list.reserve(trajectory.events.size() + 1);
     Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = trajectory.began_stuck};
     for (const model::Event& event : trajectory.events) {
-        if (event.kind > model::EventKind::impact) continue;
+        const bool lets_go = event.kind == model::EventKind::opened && now.stuck;
+        if (event.kind > model::EventKind::impact && !lets_go) continue;
         now.to = event.t;
         now.end = {event.theta, event.velocity};
         now.ended_by = event;
@@ -24,6 +25,17 @@ std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     now.end = now.stuck && trajectory.carried == nullptr ? now.begin : trajectory.state_at_stop;
     list.push_back(now);
     return list;
+}
+
+double time_open(const motion::Trajectory& trajectory) {
+    bool open = trajectory.began_open;
+    double since = trajectory.t_start, time = 0;
+    for (const model::Event& event : trajectory.events) {
+        if (event.kind != model::EventKind::opened && event.kind != model::EventKind::closed) continue;
+        if (open) time += event.t - since;
+        open = event.kind == model::EventKind::opened, since = event.t;
+    }
+    return open ? time + (trajectory.t_stop - since) : time;
 }
 
 std::vector<Stretch> half_cycles(const motion::Trajectory& trajectory) {

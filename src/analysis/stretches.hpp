@@ -1,5 +1,5 @@
 // A run cut at its events: stretches of motion one way, half cycles, and stretches of standing still. Impacts turn the
-// mass round, too.
+// mass round, too, and a contact that opens lets go what stuck.
 #pragma once
 
 #include <optional>
@@ -20,6 +20,9 @@ struct Stretch {
 
 /// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only.
 std::vector<Stretch> stretches(const motion::Trajectory& trajectory);
+
+/// For how long nothing pressed on the contact.
+double time_open(const motion::Trajectory& trajectory);
 
 /// The half cycles of theta, and where it stands: the same but on a belt, where they run from one extreme to the next.
 std::vector<Stretch> half_cycles(const motion::Trajectory& trajectory);

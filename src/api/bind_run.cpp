@@ -670,7 +670,8 @@ constexpr lua::Member run_members[] = {
      {"run.events -> data",
       "The events in order of time: the columns t, kind, theta, M and velocity, and by number { t, kind, theta, M, "
       "velocity }. kind is \"turn\" (the motion reverses), \"stick\", \"slip\" (the mass breaks away), \"rest\" "
-      "(nothing can move it any more), \"impact\" (at a wall; velocity is that before it), \"switch\" (of a relay) "
+      "(nothing can move it any more), \"impact\" (at a wall; velocity is that before it), \"switch\" (of a relay), "
+      "\"open\" and \"close\" (of a contact whose normal load falls to 0, and rises again) "
       "or \"user\" (of the option `events`, which adds a column name). Of several bodies the third column is where: the "
       "body or link; M acts on its first body. At t_start only an impact is recorded. Empty in a run read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"

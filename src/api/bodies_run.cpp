@@ -203,7 +203,7 @@ int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHa
     run->run.table =
         first->run.table.followed_by(kept, run->run.table, limits.memory / (columns_of_run(*run) * sizeof(double)));
     run->run.events.insert(run->run.events.begin(), first->run.events.begin(), first->run.events.end());
-    run->run.t_start = start;
+    run->run.t_start = start, run->run.begun = first->run.begun;
     lua_pop(L, 1);  // it was made of the second part
     push_bodies_run(L, run);
     return 1;

@@ -1,5 +1,5 @@
-// What can happen to a mass, or between two: at velocity zero, at a wall, by a controller that switches, or as a user
-// has said.
+// What can happen to a mass, or between two: at velocity zero, at a wall, by a controller that switches, where a
+// contact opens or closes, or as a user has said.
 #pragma once
 
 #include <string_view>
@@ -14,8 +14,10 @@ enum class EventKind {
     impact,    ///< a wall turned it back
     switched,  ///< a relay took its other level
     user,      ///< what a user asked for, by its name
+    opened,    ///< nothing presses on the contact any more
+    closed,    ///< something presses on it again
 };
-inline constexpr int event_kind_count = 7;
+inline constexpr int event_kind_count = 9;
 
 constexpr std::string_view name(EventKind kind) {
     switch (kind) {
@@ -33,6 +35,10 @@ constexpr std::string_view name(EventKind kind) {
             return "switch";
         case EventKind::user:
             return "user";
+        case EventKind::opened:
+            return "open";
+        case EventKind::closed:
+            return "close";
     }
     return "";
 }

@@ -293,7 +293,7 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
     second.events = joined(first, second);
     second.course = joined(first.course, second.t_start, std::move(second.course));
     second.initial = first.initial;
-    second.began_stuck = first.began_stuck;
+    second.began_stuck = first.began_stuck, second.began_open = first.began_open;
     second.t_start = first.t_start;
     second.gap = std::max(first.gap, second.gap);
     second.noise = std::max(first.noise, second.noise);

@@ -80,6 +80,7 @@ struct Trajectory {
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
     bool began_stuck = false;  ///< until something moved it
+    bool began_open = false;   ///< nothing pressed on the contact until it closed
     bool on_belt = false;      ///< where a turn of theta is no event
     double restitution = 1;    ///< of the walls: what an impact left of the velocity
     bool computed = true;      ///< false when it was read from a file

@@ -241,11 +241,11 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
 
 namespace {
 
-/// The curve of rows over theta with the corners between the rows: impacts, and where a relay switched. `by` divides
-/// velocities.
+/// The curve of rows over theta with the corners between the rows: impacts, and where a relay switched or a contact
+/// opened or closed. `by` divides velocities.
 void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) {
     const auto is_corner = [](const model::Event& e) {
-        return e.kind == model::EventKind::impact || e.kind == model::EventKind::switched;
+        return e.kind > model::EventKind::rest && e.kind != model::EventKind::user;
     };
     const auto times = trajectory.find("t");
     if (!times || std::none_of(trajectory.events.begin(), trajectory.events.end(), is_corner)) {

@@ -208,6 +208,9 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
         contact.native = friction.is_constant() && !contact.law;
+        const auto varies = [](const Signal& limit) { return !limit.none(); };
+        contact.may_open =
+            !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
         all_linear_ = all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none();
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
@@ -298,6 +301,18 @@ double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const
         torque = friction.law.holding(way);
     }
     return contact.normal.none() ? torque : torque * std::max(0.0, contact.normal.value(at));
+}
+
+double Mechanics::pressing(std::size_t joint, const Moment& at) const {
+    const Contact& contact = contacts_[joint];
+    if (!contact.normal.none()) return contact.normal.value(at);
+    double most = 0;
+    for (const auto* limits : {&contact.sliding, &contact.holding}) {
+        for (const Signal& limit : *limits) {
+            if (!limit.none()) most = std::max(most, std::fabs(limit.value(at)));
+        }
+    }
+    return most;
 }
 
 std::size_t Mechanics::range_of(std::size_t joint, double speed) const {

@@ -46,7 +46,7 @@ struct Mode {
     [[nodiscard]] bool holds(std::size_t joint) const {
         return leans[joint] != 0 || (friction[joint].way == model::Motion::stuck && rubs[joint]);
     }
-    std::vector<char> rubs;  ///< of each joint: it has dry friction
+    std::vector<char> rubs;  ///< of each joint: it has dry friction, and something presses on it
 };
 
 /// The bodies that move together in a mode, and the joints that hold them together.
@@ -168,10 +168,13 @@ public:
     [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
     /// The joint sticks, and its limits may change along a stretch.
     [[nodiscard]] bool limits_change(std::size_t joint, const Mode& mode) const {
-        return varies(joint) && rubs(joint) && mode.friction[joint].way == model::Motion::stuck;
+        return varies(joint) && mode.rubs[joint] != 0 && mode.friction[joint].way == model::Motion::stuck;
     }
     [[nodiscard]] bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
-    [[nodiscard]] double normal(std::size_t joint, const Moment& at) const { return contacts_[joint].normal.value(at); }
+    /// The contact may be open for a while: its normal load, or all of its limits, change.
+    [[nodiscard]] bool may_open(std::size_t joint) const { return rubs(joint) && contacts_[joint].may_open; }
+    /// What presses on a contact: its normal load, or else the greatest of its limits. Up to 0 the contact is open.
+    [[nodiscard]] double pressing(std::size_t joint, const Moment& at) const;
     /// How great torques are at a joint: of its springs and its friction.
     [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
 
@@ -238,7 +241,7 @@ private:
         Signal normal;
         const model::laws::Bristle* bristle = nullptr;
         std::optional<Piecewise> law = {};  ///< the user's function
-        bool varies = false, native = false;
+        bool varies = false, native = false, may_open = false;
     };
 
     /// Calls it with each function of the user's.

@@ -77,10 +77,13 @@ model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
     return mode.rubs[joint] != 0 ? mode.friction[joint].way : model::Motion::forward;
 }
 
+bool rubs(const model::Joint& joint) {
+    return !joint.friction.none() && joint.friction.bristle() == nullptr;
+}
+
 /// Whether every turn of the joint's angle is an event. None of a belt is, nor of a joint without dry friction whose
 /// bodies rub elsewhere; an impact at another joint may turn this one round.
 bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::size_t joint) {
-    const auto rubs = [](const model::Joint& j) { return !j.friction.none() && j.friction.bristle() == nullptr; };
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
     return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
@@ -138,9 +141,8 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     part.initial = {place.difference(drive.theta0, 0), place.difference(drive.velocity0, 0)};
     part.state_at_stop = place.state(run.carry->y);
     part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
-    part.began_stuck = joint == 0                ? run.began_stuck
-                       : part.events.size() == 0 ? part.motion_at_stop == model::Motion::stuck
-                                                 : part.events[0].kind == model::EventKind::slip;
+    part.began_stuck = run.begun.holds(joint);
+    part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
     part.on_belt = !tells_turns(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);

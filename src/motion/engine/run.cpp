@@ -151,6 +151,10 @@ private:
     [[nodiscard]] BeltSlope belt_slope(std::size_t joint) const { return slopes_[joint]; }
     [[nodiscard]] bool belt_sets_off(std::size_t joint) const;
     void find_belt_slopes(std::optional<double> x);
+    /// It has dry friction, and is not open.
+    [[nodiscard]] bool rubs(std::size_t joint) const { return mode_.rubs[joint] != 0; }
+    [[nodiscard]] bool nothing_presses(std::size_t joint) const;
+    bool open_and_close();
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
 
@@ -475,7 +479,7 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
     const double pull = -look.holding[joint] * known();  // what only touches a limit holds
     if (const int wall = mode.leans[joint]; wall != 0) {
         towards = wall > 0 ? Motion::backward : Motion::forward;
-        const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == Motion::stuck;
+        const bool sticks = mode.rubs[joint] != 0 && mode.friction[joint].way == Motion::stuck;
         return -wall * pull - (sticks ? mechanics_.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
     }
     if (const Slipping& how = mode.friction[joint]; how.creeps != Motion::stuck) {
@@ -564,7 +568,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     asked_.assign(joints, {});
     for (std::size_t j = 0; j < joints; ++j) {
         asked_[j].leant = mode_.leans[j];
-        if (!mechanics_.rubs(j)) continue;
+        if (!rubs(j)) continue;
         Slipping& how = mode_.friction[j];
         if (mode_.leans[j] != 0 && how.leaving) continue;
         if (const double heading = belt_heading(j); mode_.leans[j] != 0 && heading != 0) {
@@ -617,7 +621,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const bool together = moves_as_one(j, present);
             if (how.riding && !together) slide(j, how.way, true);
             // What others hold together stands at slip 0 with them.
-            const bool slides = mechanics_.rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
+            const bool slides = rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
             if (slides && together && how.leaving) how.riding = true, how.leaving = false;
             if (!slides || !together || how.riding || mechanics_.belt(j, now_.hi, side()) != 0) continue;
             asked_[j].slid = how.way, asked_[j].asked = true, grown = true;
@@ -666,9 +670,9 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (mode_.leans[worst] != 0) {
                 mode_.leans[worst] = 0, at_wall_[worst] = 1;
                 const Motion slides = mode_.friction[worst].way;
-                if (mechanics_.rubs(worst) && slides == Motion::stuck) {
+                if (rubs(worst) && slides == Motion::stuck) {
                     slide(worst, way, true);
-                } else if (mechanics_.rubs(worst) && belt_sets_off(worst)) {
+                } else if (rubs(worst) && belt_sets_off(worst)) {
                     mode_.friction[worst].way = Motion::stuck;  // it may go with the belt
                 }
             } else {
@@ -809,7 +813,7 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
         const Joint& joint = problem_.system.joints[j];
         D(joint.first, c) = 1;
         if (joint.second >= 0) D(joint.second, c) = -1;
-        const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
+        const bool sticks = rubs(j) && mode_.friction[j].way == Motion::stuck;
         box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
         box.high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
@@ -854,7 +858,7 @@ bool Engine::decide_together(std::size_t full) {
         for (Eigen::Index c = 0; c < torque.size(); ++c) {
             const std::size_t k = static_cast<std::size_t>(c), j = held[k];
             const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
-            if (slips[k] != 0 || !at_limit || !mechanics_.rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+            if (slips[k] != 0 || !at_limit || !rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
             if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * torque_size(j))) continue;  // others hold it, too
             slips[k] = 1, grown = true;
             if (mode_.leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here());
@@ -867,7 +871,7 @@ bool Engine::decide_together(std::size_t full) {
         const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
         if (!at_low && !at_high) continue;
         if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
-        if (!mechanics_.rubs(j)) continue;
+        if (!rubs(j)) continue;
         if (mode_.friction[j].way == Motion::stuck) {
             // What can hold nothing is at both of its limits.
             slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
@@ -914,7 +918,7 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
         const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
         if (!at_low && !at_high) continue;
         if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
-        if (!mechanics_.rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+        if (!rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
         slide(j, at_low ? Motion::forward : Motion::backward, false);
         mode_.friction[j].riding = true;
     }
@@ -957,10 +961,52 @@ void Engine::project(Side when) {
     }
 }
 
+/// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
+bool Engine::nothing_presses(std::size_t joint) const {
+    constexpr double later = 1e-9;
+    // Where the load was found to fall below zero it may still be its rounding.
+    if (normal_half_[joint] >= 0 && !(mechanics_.pressing(joint, here()) <= 0)) return false;
+    std::vector<double> y = y_;
+    const double h = later * pace_;
+    for (std::size_t i = 0; i < n(); ++i) y[i] += h * y[n() + i];
+    return mechanics_.pressing(joint, {now_.hi + h, Side::at, y}) <= 0;
+}
+
+/// A contact on which nothing presses is open: it neither sticks nor slips. True when one has opened or closed.
+bool Engine::open_and_close() {
+    bool changed = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mechanics_.may_open(j)) continue;
+        const bool opens = nothing_presses(j);
+        if (opens != rubs(j)) continue;
+        changed = true;
+        mode_.rubs[j] = opens ? 0 : 1;
+        mode_.friction[j] = {};
+        arrived_[j] = Motion::stuck;
+        normal_half_[j] = opens ? -1 : 1;
+        const Joint& joint = problem_.system.joints[j];
+        double fastest = std::fabs(mechanics_.belt(j, now_.hi, side()));
+        for (const int body : {joint.first, joint.second}) {
+            if (body < 0) continue;
+            const double v = y_[n() + index(body)];
+            fastest = std::max(fastest, std::fabs(v));
+            if (opens) heading_[index(body)] = model::motion_of(v);
+        }
+        if (!opens && std::fabs(slip(j)) > 16 * rounding * fastest) {
+            slide(j, model::motion_of(slip(j)), false);
+        } else if (!opens && mode_.leans[j] == 0) {
+            slide(j, Motion::forward, true);  // if it sticks from now on, that is told
+        }
+        if (begun()) tell(opens ? EventKind::opened : EventKind::closed, static_cast<int>(j));
+    }
+    return changed;
+}
+
 /// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
 bool Engine::restart_contacts(Because why, std::size_t at) {
+    open_and_close();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!mechanics_.rubs(j) || mode_.leans[j] != 0) continue;
+        if (!rubs(j) || mode_.leans[j] != 0) continue;
         Slipping& how = mode_.friction[j];
         const double s = slip(j);
         const double belt = mechanics_.belt(j, now_.hi, side());
@@ -1017,8 +1063,9 @@ void Engine::begin() {
         mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
         if (!good) fail(Outcome::excitation_not_finite);
         echo(now_.hi, 1);
+        open_and_close();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (!mechanics_.rubs(j)) continue;
+            if (!rubs(j)) continue;
             const double s = slip(j);
             if (s != 0) {
                 slide(j, model::motion_of(s), false);
@@ -1037,7 +1084,7 @@ void Engine::begin() {
         }
         if (after_break_) ask_after_break();
     }
-    result_.began_stuck = mode_.holds(0);
+    result_.begun = mode_;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
 }
 
@@ -1085,7 +1132,7 @@ void Engine::run() {
         }
     }
     if (mode_.friction[0].way != Motion::stuck && !mode_.holds(0)) result_.motion_at_stop = mode_.friction[0].way;
-    if (!mechanics_.rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
+    if (!rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
     if (mode_.friction[0].creeps != Motion::stuck) result_.motion_at_stop = mode_.friction[0].creeps;
     result_.outcome = outcome_;
     result_.located = has_pieces_;
@@ -1462,7 +1509,9 @@ bool Engine::end_at(double x) {
     bool good = true;
     mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
     if (!good) return fail(Outcome::excitation_not_finite);
-    return !after_break_ || ask_after_break();
+    const bool changed = open_and_close();
+    if (after_break_) return ask_after_break();
+    return !changed || (decide(true) && (!too_often() || fail(Outcome::chattering)));
 }
 
 /// Loads, limits and belts may have jumped: what holds is asked again.
@@ -1524,15 +1573,15 @@ std::vector<Kept::Acting> Engine::acting() {
                 all[j].M[node] -= push;
             }
         }
-        all[j].holds = mechanics_.rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
+        all[j].holds = rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
         if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
-        } else if (mechanics_.is_native(j) && mechanics_.rubs(j) && mode_.leans[j] == 0) {
+        } else if (mechanics_.is_native(j) && rubs(j) && mode_.leans[j] == 0) {
             const Nodes slips = mechanics_.slips(j, segment_.y, segment_.belts[j]);
             mechanics_.add_native_friction(j, mode_, slips, 0, node_count, all[j].friction);
             for (double& torque : all[j].friction) torque = -torque;
-        } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
+        } else if (rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 const Moment at = segment_.moment(node, point_);
                 all[j].friction[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
@@ -1568,7 +1617,7 @@ bool Engine::handle(const Ending& ending) {
             }
             for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
                 const Slipping& how = mode_.friction[i];
-                if (!mechanics_.rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
+                if (!rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
                 double size = fastest;
                 const Joint& joint = problem_.system.joints[i];
                 size = std::max(size, greatest(segment_.y[n() + index(joint.first)]));
@@ -1661,12 +1710,12 @@ void Engine::watch(Ending& ending) {
     std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (mode_.holds(j)) watch_release(j, ending);
-        if (mechanics_.rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
+        if (rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
             watch_slip(j, ending);
             watch_corner(j, ending);
         }
         if (problem_.system.joints[j].walls && mode_.leans[j] == 0) watch_walls(j, ending);
-        if (mechanics_.has_normal(j)) watch_normal(j, ending);
+        if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !rubs(j))) watch_normal(j, ending);
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
     watch_relays(ending);
@@ -1764,7 +1813,7 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
         if (wall * sign > 0) continue;
-        const bool rubs = mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck;
+        const bool sticks = rubs(joint) && mode_.friction[joint].way == Motion::stuck;
         Nodes limit{};
         if (mechanics_.limits_change(joint, mode_)) {
             limit = segment_.limits[joint][side == Motion::forward ? 1 : 0];
@@ -1773,7 +1822,7 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
                 return;
             }
         } else {
-            limit.fill(rubs ? mechanics_.holding(joint, side, here()) : 0);
+            limit.fill(sticks ? mechanics_.holding(joint, side, here()) : 0);
         }
         if (const Slipping& how = mode_.friction[joint]; how.creeps != Motion::stuck) {
             const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, here());
@@ -1884,13 +1933,22 @@ void Engine::watch_bristles(std::size_t joint, Ending& ending) {
 void Engine::watch_normal(std::size_t joint, Ending& ending) {
     Nodes values{};
     for (std::size_t j = 0; j < node_count; ++j) {
-        values[j] = mechanics_.normal(joint, segment_.moment(j, point_));
+        values[j] = mechanics_.pressing(joint, segment_.moment(j, point_));
     }
     std::vector<double> y;
     const auto exact = [&](double x) {
         segment_.state(x, y);
-        return mechanics_.normal(joint, {segment_.time(x), Side::at, y});
+        return mechanics_.pressing(joint, {segment_.time(x), Side::at, y});
     };
+    if (mechanics_.rubs(joint) && !rubs(joint)) {
+        // Nothing presses at the start, where the load may be its rounding, or 0 for long.
+        const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
+        if (presses == values.end()) return;
+        const double x = first_true([&](double at) { return exact(at) > 0; },
+                                    cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
+        if (x < ending.x) ending = {x, By::kink, joint};
+        return;
+    }
     Half half = normal_half_[joint];
     const Watched watched(values, exact);
     const auto x = watched.leaves(half, -1);
@@ -1934,7 +1992,7 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
     standing_.resize(n());
     for (std::size_t i = 0; i < n(); ++i) {
         const Slipping& how = mode.friction[i];
-        const bool leaves = mechanics_.rubs(i) && how.leaving && mode.leans[i] == 0;
+        const bool leaves = mode.rubs[i] != 0 && how.leaving && mode.leans[i] == 0;
         const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
         const std::size_t bit = problem_.system.named ? n() + i : 1;
         if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
@@ -2175,7 +2233,7 @@ bool Engine::rubs_somewhere(std::size_t body) const {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         const bool its = joint.first == static_cast<int>(body) || joint.second == static_cast<int>(body);
-        if (its && mechanics_.rubs(j)) return true;
+        if (its && rubs(j)) return true;
     }
     return false;
 }
@@ -2242,7 +2300,7 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
     const auto back_in = [&](bool out) {
         Mode thrown = mode_;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (!mechanics_.rubs(j)) continue;
+            if (!rubs(j)) continue;
             if (slip(j) != 0) thrown.friction[j].way = model::motion_of(slip(j));
             // Friction acts against the sliding: out and back again, or, on a belt, the same way all the time.
             const bool turns = j == joint && mechanics_.belt(j, now_.hi, side()) == 0;
@@ -2328,7 +2386,7 @@ bool Engine::hit(std::size_t joint, int wall) {
             now_ = now_.later(rest);
         }
         mode_.leans[joint] = wall;
-        if (mechanics_.rubs(joint)) {
+        if (rubs(joint)) {
             Slipping& how = mode_.friction[joint];
             if (how.way != Motion::stuck) arrived_[joint] = how.way;
             how.leaving = false;
@@ -2545,7 +2603,7 @@ bool Engine::put_row(double t, double x) {
 /// The torque of a joint's friction on its first body.
 double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
     // The wall carries what presses against it, friction what pulls away from it.
-    if (mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck) {
+    if (rubs(joint) && mode_.friction[joint].way == Motion::stuck) {
         const double held = look.holding[joint];
         return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
     }

@@ -39,7 +39,7 @@ struct AssemblyRun {
     double t_start = 0, t_stop = 0;
     double gap = 0;  ///< the longest between two looks at a user's function of the time
     model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
-    bool began_stuck = false;                             ///< the first body
+    Mode begun = {};                                      ///< how the contacts stood at the start
     bool located = false;                                 ///< conditions of the motion, all that there were
     std::size_t jumps = 0;                                ///< at these conditions
     double noise = 0;                                     ///< of the load that is roughest, torque

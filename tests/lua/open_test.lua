@@ -1,0 +1,111 @@
+-- Contacts that open, where nothing presses on them or their limits are 0, and close again.
+dofile "tests/lua/support.lua"
+
+local function unread(f)
+    return function(...)
+        select("#")
+        return f(...)
+    end
+end
+local both = { function(f) return f end, unread }
+
+-- Kinds and times, and where, are what they should be.
+local function happens(run, wanted)
+    equal(#run.events, #wanted, tostring(run))
+    for i, event in ipairs(run.events) do
+        equal(event.kind, wanted[i][1])
+        near(event.t, wanted[i][2], 1e-12)
+        if event.where then equal(event.where, wanted[i][3]) end
+    end
+end
+
+test("an open clutch has no events, and no story of slipping or sticking", function()
+    local M = { a = function(t, _, v) return t - v.a end, b = function(t, _, v) return t - v.b end }
+    for _, normal in ipairs { 0, function() return 0 end, function(t) return -t end } do
+        local links = { clutch = { "a", "b", Rd = 1, normal = normal } }
+        local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = links }
+        local run = rig:simulate { M = M, t_end = 1 }
+        happens(run, {})
+        near(run.a.velocity[#run], math.exp(-1), 1e-12)
+        for _, each in ipairs { run, rig:simulate { t_end = 1 } } do
+            has_not(each:explain(), "slipped", "stuck")
+            if normal ~= 0 then says(each, "It was open all the time.") end -- a constant 0 is no contact
+        end
+    end
+end)
+
+test("a clutch that closes for a while takes the load along, and lets it go", function()
+    for _, as in ipairs(both) do
+        local normal = as(function(t) return t > 1 and t < 2 and 1 or 0 end)
+        local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 1, normal = normal } } }
+        local run = rig:simulate { M = { a = 0.3 }, t_end = 3 }
+        -- a comes with 0.3, loses 0.7 in a unit of time, b gains 1; together they gain 0.15, and alone a gains 0.3.
+        local meet = 1 + 0.3 / 1.7
+        happens(run, { { "close", 1, "clutch" }, { "stick", meet, "clutch" }, { "open", 2, "clutch" } })
+        local together = meet - 1 + 0.15 * (2 - meet)
+        near(run.b.velocity[#run], together, 1e-12)
+        near(run.a.velocity[#run], together + 0.3, 1e-12)
+        says(run, "It was open for 66.7 % of the time.", "it was stuck for 0.82353 of 3 time units (27.5 %)", "It locked at t = 1.1765", "until its contact opened.")
+        local half = rig:simulate { M = { a = 0.3 }, t_end = 0.5 }:continue(3)
+        near(half.a.velocity[#half], together + 0.3, 1e-12)
+        says(half, "It was open for 66.7 % of the time.")
+    end
+end)
+
+test("a contact opens and closes where its load passes zero, and where it stands at zero for long", function()
+    for _, as in ipairs(both) do
+        local loads = { as(math.sin), as(function(t) return math.max(0, math.sin(t)) end) }
+        for _, options in ipairs { { Rd = 1, normal = loads[1] }, { Rd = 1, normal = loads[2] }, { Rd = loads[2] } } do
+            options.I, options.k = 1, 0
+            local run = system(options):simulate { M = 0.5, t_end = 8 }
+            -- It sticks when 0.5 t has gone into 1 - cos t, and slips where sin t falls to 0.5.
+            local stop = run.events[1].t
+            near(0.5 * stop + math.cos(stop), 1, 1e-12)
+            happens(run, { { "stick", stop }, { "slip", math.pi * 5 / 6 }, { "open", math.pi }, { "close", 2 * math.pi } })
+            local from, back = math.pi * 5 / 6, 2 * math.pi
+            local wanted = 0.5 * (8 - from) + (math.cos(math.pi) - math.cos(from)) + (math.cos(8) - math.cos(back))
+            near(run.velocity[#run], wanted, 1e-11)
+        end
+        -- One that only touches zero does not open.
+        local run = system { I = 1, k = 1, Rd = 1, normal = as(function(t) return math.abs(math.sin(t)) end) }:simulate { theta0 = 0.5, t_end = 10 }
+        for _, event in ipairs(run.events) do assert(event.kind ~= "open" and event.kind ~= "close", event.kind) end
+    end
+end)
+
+test("what stuck goes when its contact opens, without a slip, and is stuck no more", function()
+    local sys = system { I = 1, k = 1, Rd = 1, normal = function(t) return 1 - t end }
+    local run = sys:simulate { t_end = 3 }
+    happens(run, { { "open", 1 } })
+    says(run, "It was open for 66.7 % of the time.")
+    run = system { I = 1, k = 1, Rd = 1, normal = function(t) return t < 1 and 1 or 0 end }:simulate { theta0 = 0.5, t_end = 5 }
+    happens(run, { { "open", 1 }, { "turn", 1 + math.pi } })
+    near(run.theta[#run], 0.5 * math.cos(4), 1e-12)
+    says(run, "stuck there until t = 1, when its contact opened.", "it was stuck for 1 of 5 time units (20 %)")
+end)
+
+test("a contact that closes at a wall holds there against what pulls away", function()
+    for _, as in ipairs(both) do
+        local normal = as(function(t) return t > 1.5 and 1 or 0 end)
+        local sys = system { I = 1, k = 0, Rd = 0.5, Re = 1, normal = normal, walls = { upper = 1, restitution = 0 } }
+        local run = sys:simulate { theta0 = 1, M = as(function(t) return 2 - t end), t_end = 4 }
+        happens(run, { { "close", 1.5 }, { "slip", 3 } })
+        near(run.velocity[#run], -0.5 - 0.5, 1e-12)
+        near(run.theta[#run], 1 - 0.25 - 1 / 6, 1e-12)
+    end
+end)
+
+test("a contact whose load depends on the angle repeats itself, and is stuck for none of the time", function()
+    local sys = system { I = 1, k = 1, Rd = 0.2, normal = function(_, theta) return theta end }
+    local run = sys:simulate { theta0 = 3, t_end = 7 }
+    -- With the friction the spring has 0.8 of its stiffness on the way down, and 1.2 on the way up.
+    local down, up = math.sqrt(0.8), math.sqrt(1.2)
+    local opens = math.pi / 2 / down
+    local closes = opens + math.pi
+    happens(run, { { "open", opens }, { "turn", opens + math.pi / 2 }, { "close", closes }, { "turn", closes + math.pi / 2 / up } })
+    near(run.events[4].theta, 3 * down / up, 1e-12)
+    local steady = sys:steady { M = function(t) return math.sin(1.3 * t) end, period = 2 * math.pi / 1.3 }
+    equal(steady.status, "steady")
+    equal(steady.stuck, 0)
+end)
+
+finish()
