@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "model/bounds.hpp"
+
 namespace dinal::model {
 namespace {
 
@@ -163,14 +165,6 @@ bool holds(Op op, double a, double b) {
 }
 
 constexpr double failure = std::numeric_limits<double>::quiet_NaN();
-
-bool is_comparison(Op op) {
-    return op >= Op::less && op <= Op::equal_whole;
-}
-bool is_fold(Op op) {
-    return op == Op::abs || op == Op::floor || op == Op::ceil || op == Op::modulo || op == Op::floor_divide ||
-           op == Op::fmod;
-}
 
 }  // namespace
 
@@ -420,23 +414,20 @@ double Formula::value_on(const terms::Piece& piece, double t, const State& state
 // ---- conditions of t
 
 /// The values that a register may have while t goes through an interval.
-struct Formula::Range {
-    double lo = 0, hi = 0;
-    bool is_anything = false;  ///< any value, or none
-    bool of_motion = false;    ///< it hangs on theta, velocity or a state
-    bool folds = false;        ///< it has a step or a kink within
-    std::uint64_t piece = 0;   ///< stands for the pieces, between folds, that it is made of
+struct Formula::Range : bounds::Interval {
+    bool of_motion = false;   ///< it hangs on theta, velocity or a state
+    bool folds = false;       ///< it has a step or a kink within
+    std::uint64_t piece = 0;  ///< stands for the pieces, between folds, that it is made of
 
-    [[nodiscard]] bool is_one() const { return !of_motion && !is_anything && bits(lo) == bits(hi); }
-    static Range anything() { return {.is_anything = true}; }
+    [[nodiscard]] bool is_known() const { return !of_motion && is_one(); }
 };
 
 /// One look at the program for all t of an interval: which way it goes, if that is the same way for all of them.
 class Formula::Look {
 public:
     explicit Look(const Formula& formula) : formula_(formula) {
-        for (const double x : formula.registers_) ranges_.push_back({x, x});
-        const Range unknown{.of_motion = true};
+        for (const double x : formula.registers_) ranges_.push_back({{x, x}});
+        const Range unknown{{}, true};
         if (formula.motion_) ranges_[1] = ranges_[2] = unknown;
         std::fill_n(ranges_.begin() + static_cast<std::ptrdiff_t>(formula.states_), formula.state_count_, unknown);
     }
@@ -448,7 +439,7 @@ public:
         part_ = std::numeric_limits<double>::quiet_NaN();
         // What a register has held before is written again before it is read.
         const auto motion = std::pair(ranges_[1], ranges_[2]);
-        ranges_[0] = {from, to};
+        ranges_[0] = {{from, to}};
         const bool same = follow(0, ranges_);
         if (formula_.motion_) std::tie(ranges_[1], ranges_[2]) = motion;
         return same ? std::optional(seen_) : std::nullopt;
@@ -503,86 +494,56 @@ private:
         }
     }
 
-    /// Of whole numbers the same as floats.
-    static Range as_floats(Range r) {
-        r.lo = static_cast<double>(to_whole(r.lo)), r.hi = static_cast<double>(to_whole(r.hi));
-        return r;
+    static bool takes_whole(Op op) {
+        return (op >= Op::add_whole && op <= Op::exact) || (op >= Op::less_whole && op <= Op::equal_whole);
     }
-    std::optional<bool> decide(Op op, Range a, Range b) {
-        if (a.is_one() && b.is_one()) return holds(op, a.lo, b.lo);
-        if (a.is_anything || b.is_anything) return std::nullopt;
-        if (op >= Op::less_whole) {
-            a = as_floats(a), b = as_floats(b);
-            op = op == Op::less_whole ? Op::less : op == Op::less_equal_whole ? Op::less_equal : Op::equal;
-        }
-        if (op == Op::equal ? a.hi < b.lo || a.lo > b.hi : op == Op::less ? a.lo >= b.hi : a.lo > b.hi) return false;
-        if (op == Op::less ? a.hi < b.lo : op == Op::less_equal && a.hi <= b.lo) return true;
+    /// Of whole numbers the same as floats.
+    static bounds::Interval as_floats(Op op, const Range& r) {
+        if (r.is_anything() || !takes_whole(op)) return r;
+        return {static_cast<double>(to_whole(r.lo)), static_cast<double>(to_whole(r.hi))};
+    }
+    std::optional<bool> decide(Op op, const Range& a, const Range& b) {
+        if (a.is_known() && b.is_known()) return holds(op, a.lo, b.lo);
+        const bounds::Interval x = as_floats(op, a), y = as_floats(op, b);
+        if (x.is_anything() || y.is_anything()) return std::nullopt;
+        if (const auto decision = bounds::decision_over(op, x, y)) return *decision != 0;
         if (!a.folds && !b.folds) {
-            const double least = a.lo - b.hi, part = -least / (a.hi - b.lo - least);
-            part_ = a.is_one() ? 1 - part : part;
+            const double least = x.lo - y.hi, part = -least / (x.hi - y.lo - least);
+            part_ = a.is_known() ? 1 - part : part;
         }
         return std::nullopt;
     }
 
-    /// Rounding keeps the order, so what the ends give holds what lies between.
-    Range of(Op op, Range a, Range b) {
+    Range of(Op op, const Range& a, const Range& b) {
         if (a.of_motion || b.of_motion) return {};
-        if (a.is_one() && b.is_one()) {
-            Range one;
-            fails_ = !operate(op, a.lo, b.lo, one.lo);
-            one.hi = one.lo;
-            if (is_fold(op)) one.piece = fold_of(op, a.lo, b.lo, one.lo) + 1;
-            return one;
+        Range r;
+        if (a.is_known() && b.is_known()) {
+            fails_ = !operate(op, a.lo, b.lo, r.lo);
+            r.hi = r.lo;
+            if (is_fold(op)) r.piece = piece_of(decision_of(op, a.lo, b.lo, r.lo));
+            return r;
         }
-        if (op == Op::move) return {.lo = a.lo, .hi = a.hi, .is_anything = a.is_anything};
-        if (a.is_anything || b.is_anything) return {.is_anything = true, .folds = is_fold(op)};
-        if (is_fold(op)) return fold(op, a, b);
-        if (op >= Op::add_whole && op <= Op::exact) return of_whole(op, as_floats(a), as_floats(b));
-        switch (op) {
-            case Op::add:
-                return checked({a.lo + b.lo, a.hi + b.hi});
-            case Op::subtract:
-                return checked({a.lo - b.hi, a.hi - b.lo});
-            case Op::divide:
-                if (b.lo <= 0 && b.hi >= 0) return Range::anything();
-                return corners(op, a, b);
-            case Op::multiply:
-                return corners(op, a, b);
-            case Op::power:
-                return power(a, b);
-            case Op::negate:
-                return Range{-a.hi, -a.lo};
-            case Op::sin:
-                return wave(op, a, -0.5);
-            case Op::cos:
-                return wave(op, a, 0);
-            case Op::exp:
-            case Op::sqrt:
-            case Op::log:
-            case Op::log2:
-            case Op::log10:
-            case Op::asin:
-                return wider(ends(op, a));  // NaN at an end: outside of where it is defined
-            case Op::acos:
-                return wider(ends(op, {a.hi, a.lo}));
-            case Op::atan2:
-                return b.is_one() && b.lo > 0 ? wider(corners(op, a, b)) : Range::anything();
-            default:
-                return Range::anything();
+        if (op == Op::move) return {{a.lo, a.hi}};
+        const bounds::Interval x = as_floats(op, a), y = as_floats(op, b);
+        static_cast<bounds::Interval&>(r) = bounds::image(op, x, y);
+        const bool gives_whole = op == Op::floor || op == Op::ceil || (takes_whole(op) && op < Op::to_float);
+        if (gives_whole && !r.is_anything()) {
+            r.lo = from_whole(static_cast<std::int64_t>(r.lo)), r.hi = from_whole(static_cast<std::int64_t>(r.hi));
         }
+        if (!is_fold(op)) return r;
+        if (const auto decision = bounds::decision_over(op, a, b)) {
+            r.piece = piece_of(*decision);
+            return r;
+        }
+        r.folds = true;
+        double first = 0;
+        const bool alone = op == Op::abs || op == Op::floor || op == Op::ceil;
+        if (!a.is_anything() && (alone || b.is_one()) && operate(op, a.lo, b.lo, first)) {
+            part_ = (next_fold(op, a.lo, b.lo, first) - a.lo) / (a.hi - a.lo);
+        }
+        return r;
     }
-    /// Which piece of a fold it is: what its result is made with.
-    static std::uint64_t fold_of(Op op, double a, double b, double result) {
-        switch (op) {
-            case Op::abs:
-                return a < 0 ? 1 : 0;
-            case Op::modulo:
-            case Op::fmod:
-                return bits(std::nearbyint((a - result) / b));
-            default:
-                return bits(result);
-        }
-    }
+    static std::uint64_t piece_of(double decision) { return bits(decision + 0.0) + 1; }
     /// Where the piece ends for rising values.
     static double next_fold(Op op, double a, double b, double result) {
         switch (op) {
@@ -599,111 +560,6 @@ private:
             default:
                 return std::floor(a) + 1;
         }
-    }
-    Range fold(Op op, Range a, Range b) {
-        const bool alone = op == Op::abs || op == Op::floor || op == Op::ceil;
-        Range r;
-        if (!(alone || b.is_one()) || !operate(op, a.lo, b.lo, r.lo) || !operate(op, a.hi, b.lo, r.hi)) {
-            return {.is_anything = true, .folds = true};
-        }
-        const std::uint64_t piece = fold_of(op, a.lo, b.lo, r.lo);
-        const bool whole = piece == fold_of(op, a.hi, b.lo, r.hi) && !(op == Op::fmod && (a.lo < 0) != (a.hi < 0));
-        if (whole) {
-            r.piece = piece + 1;
-        } else {
-            part_ = (next_fold(op, a.lo, b.lo, r.lo) - a.lo) / (a.hi - a.lo);
-            r.folds = true;
-            const double size = std::fabs(b.lo);
-            if (op == Op::modulo) r.lo = std::min(b.lo, 0.0), r.hi = std::max(b.lo, 0.0);
-            if (op == Op::fmod) r.lo = a.lo < 0 ? -size : 0, r.hi = size;
-            if (op == Op::abs) r.hi = std::max(r.lo, r.hi), r.lo = 0;
-        }
-        if ((op == Op::abs || op == Op::floor_divide) && r.lo > r.hi) std::swap(r.lo, r.hi);
-        return r;
-    }
-    /// Of whole numbers that differ within the interval, as floats. They come from steps, so a crude answer will do.
-    static Range of_whole(Op op, Range a, Range b) {
-        constexpr double exact = 0x1p53;
-        Range r;
-        switch (op) {
-            case Op::to_float:
-                return {a.lo, a.hi};
-            case Op::exact:
-                return std::max(std::fabs(a.lo), std::fabs(a.hi)) < exact ? Range{a.lo, a.hi} : Range::anything();
-            case Op::add_whole:
-                r = {a.lo + b.lo, a.hi + b.hi};
-                break;
-            case Op::subtract_whole:
-                r = {a.lo - b.hi, a.hi - b.lo};
-                break;
-            case Op::negate_whole:
-                r = {-a.hi, -a.lo};
-                break;
-            case Op::multiply_whole:
-                r = corners(Op::multiply, a, b);
-                break;
-            case Op::modulo_whole:
-                r = {std::min(b.lo, 0.0), std::max(b.hi, 0.0)};
-                if (b.lo == b.hi && std::floor(a.lo / b.lo) == std::floor(a.hi / b.lo)) {
-                    r = {float_modulo(a.lo, b.lo), float_modulo(a.hi, b.lo)};
-                }
-                break;
-            default:
-                return Range::anything();
-        }
-        if (r.is_anything || !(std::max(std::fabs(r.lo), std::fabs(r.hi)) < exact)) return Range::anything();
-        r.lo = from_whole(static_cast<std::int64_t>(r.lo)), r.hi = from_whole(static_cast<std::int64_t>(r.hi));
-        return r;
-    }
-    /// Beyond what floats hold anything may be.
-    static Range checked(Range r) { return std::isfinite(r.lo) && std::isfinite(r.hi) ? r : Range::anything(); }
-    static Range ends(Op op, Range a) {
-        Range r;
-        operate(op, a.lo, a.lo, r.lo);
-        operate(op, a.hi, a.hi, r.hi);
-        return r;
-    }
-    static Range corners(Op op, Range a, Range b) {
-        Range r{never, -never};
-        for (const double x : {a.lo, a.hi}) {
-            for (const double y : {b.lo, b.hi}) {
-                double value = 0;
-                operate(op, x, y, value);
-                if (!std::isfinite(value)) return Range::anything();
-                r.lo = std::min(r.lo, value), r.hi = std::max(r.hi, value);
-            }
-        }
-        return r;
-    }
-    /// By a few roundings, for functions of the C library are not quite monotonic; but they keep the sign.
-    static Range wider(Range r) {
-        constexpr double part = 1e-15;
-        r = checked(r);
-        if (r.is_anything) return r;
-        const double down = part * std::fabs(r.lo), up = part * std::fabs(r.hi);  // not across zero
-        r.lo -= r.lo > 0 ? std::min(down, r.lo) : down;
-        r.hi += r.hi < 0 ? std::min(up, -r.hi) : up;
-        return r;
-    }
-    static Range power(Range a, Range b) {
-        const bool whole = b.is_one() && b.lo == std::floor(b.lo);
-        if (!(a.lo > 0 || whole) || (b.lo < 0 && a.lo <= 0 && a.hi >= 0)) return Range::anything();
-        Range r = corners(Op::power, a, b);
-        if (a.lo < 0 && a.hi > 0 && !r.is_anything) r.lo = std::min(r.lo, 0.0), r.hi = std::max(r.hi, 0.0);
-        return wider(r);
-    }
-    /// Of a sine whose greatest and least values lie at half turns, from `shift` of one.
-    static Range wave(Op op, Range a, double shift) {
-        constexpr double far = 1e6, margin = 1e-9, half_turn = 3.14159265358979323846;
-        if (!(a.hi - a.lo < 2 * half_turn) || std::fabs(a.lo) > far || std::fabs(a.hi) > far) return {-1, 1};
-        Range r = ends(op, a);
-        if (r.lo > r.hi) std::swap(r.lo, r.hi);
-        r = wider(r);
-        const auto last = static_cast<std::int64_t>(std::floor(a.hi / half_turn + shift + margin));
-        for (auto n = static_cast<std::int64_t>(std::ceil(a.lo / half_turn + shift - margin)); n <= last; ++n) {
-            n % 2 == 0 ? r.hi = 1 : r.lo = -1;
-        }
-        return r;
     }
 
     const Formula& formula_;

@@ -75,6 +75,14 @@ bool apply(Op op, double a, double b, double& to);
 /// quotient.
 double decision_of(Op op, double a, double b, double result);
 
+inline bool is_comparison(Op op) {
+    return op >= Op::less && op <= Op::equal_whole;
+}
+inline bool is_fold(Op op) {
+    return op == Op::abs || op == Op::floor || op == Op::ceil || op == Op::modulo || op == Op::floor_divide ||
+           op == Op::fmod;
+}
+
 /// A register holds either; a whole number in its bits.
 inline double from_whole(std::int64_t whole) {
     return std::bit_cast<double>(whole);
@@ -120,6 +128,13 @@ public:
     [[nodiscard]] std::vector<Term> terms(double from, double inside) const;
     /// After which time it is proven to repeat; 0 when that is not known, or when it is constant.
     [[nodiscard]] double period() const;
+
+    // What it is made of, for those who run it on other numbers.
+    [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
+    [[nodiscard]] const std::vector<double>& registers() const { return registers_; }
+    [[nodiscard]] bool takes_motion() const { return motion_; }
+    [[nodiscard]] std::size_t first_state() const { return states_; }
+    [[nodiscard]] std::size_t state_count() const { return state_count_; }
 
     /// It compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }

@@ -1,0 +1,83 @@
+// What the program of a formula gives for many numbers at once: for all real ones of an interval, or for all complex
+// ones of a disc. Where a function is analytic and bounded on a disc about a stretch, its values at Chebyshev nodes
+// tell all of it, to an error that falls as a power of the radius.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "model/formula.hpp"
+
+namespace dinal::model::bounds {
+
+/// What a program computes from doubles between lo and hi lies between its bounds: rounding keeps the order.
+struct Interval {
+    double lo = 0, hi = 0;
+
+    [[nodiscard]] bool is_one() const { return std::bit_cast<std::uint64_t>(lo) == std::bit_cast<std::uint64_t>(hi); }
+    /// No number, too.
+    [[nodiscard]] bool is_anything() const { return lo == -never && hi == never; }
+};
+inline constexpr Interval anything{-never, never};
+
+/// The results of an operation, whole numbers as floats. A condition has none.
+Interval image(Op op, const Interval& a, const Interval& b);
+
+/// decision_of() this condition where it is the same for all; none where it is not, or where that is not known.
+std::optional<double> decision_over(Op op, const Interval& a, const Interval& b);
+
+/// All complex numbers that are no farther than r from a real one.
+struct Disc {
+    double c = 0, r = 0;
+};
+
+/// A few roundings more than r, and those of the centre c.
+inline double outward(double r, double c) {
+    constexpr double few = 16 * std::numeric_limits<double>::epsilon();
+    const double more = r * (1 + few) + few * std::fabs(c) + std::numeric_limits<double>::min();
+    return more == more ? more : never;
+}
+
+/// The results of an operation that gives c for the centres; not finite where it may not be analytic.
+Disc image(Op op, const Disc& a, const Disc& b, double c);
+
+/// Runs a program on discs. Its conditions are decided by intervals of the real numbers, or by a piece that the
+/// function is held to.
+class Walk {
+public:
+    /// Without `ranges` no condition is decided that is not held.
+    void begin(const Formula& formula, const terms::Piece* piece, bool ranges);
+    /// A register of what the function is given: the numbers near a stretch, and the real ones on it.
+    void set(std::size_t place, const Disc& disc, const Interval& range) { slots_[place] = {disc, range, false}; }
+
+    struct Result {
+        Disc disc;  ///< the centre is no number where some condition is not decided
+        Interval range;
+    };
+    /// What was set is gone then. With a `condition`, a step that is held: of the difference that it compares, or of
+    /// what it folds, in its periods.
+    Result run(std::optional<std::size_t> condition = {});
+    /// The greatest radius, as a part of the centre, of what decided conditions that are held.
+    [[nodiscard]] double loosest() const { return loosest_; }
+
+private:
+    struct Slot {
+        Disc disc;
+        Interval range;
+        bool constant = true;  ///< the bits of the centre, which may be those of a whole number
+    };
+    [[nodiscard]] static Slot number(double bits) { return {{bits, 0}, {bits, bits}, true}; }
+    [[nodiscard]] Slot combined(Op op, const Slot& a, const Slot& b) const;
+    [[nodiscard]] Slot on_piece(Op op, const Slot& a, const Slot& b, double decision) const;
+
+    const Formula* formula_ = nullptr;
+    const double* held_ = nullptr;
+    bool ranges_ = false;
+    double loosest_ = 0;
+    std::vector<Slot> slots_{};
+};
+
+}  // namespace dinal::model::bounds
