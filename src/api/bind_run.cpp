@@ -720,9 +720,10 @@ constexpr lua::Member run_members[] = {
                       return (run.trajectory.gap > 0) ? std::optional(run.trajectory.gap) : std::nullopt;
                   }>,
      {"run.gap -> number or nil",
-      "The longest time between two samples of M, if M is a Lua function that cannot be read: a pulse of this "
-      "length was seen, a shorter one may have been missed (see breaks of excitation.scripted and narrowest of "
-      "integrator.spectral). Otherwise nil.",
+      "In how long a time a pulse of a Lua function may have been missed. If all functions are read, it is the longest "
+      "stretch on which they were not proven to do nothing but what was seen; nil if there is none. Otherwise it is the "
+      "longest time between two samples: a longer pulse was seen (see breaks of excitation.scripted and narrowest of "
+      "integrator.spectral).",
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
     {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.names(); }>,

@@ -18,6 +18,8 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
+#include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
 #include "motion/engine/one_body.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
@@ -175,7 +177,7 @@ std::string readings_of(const model::Assembly& system, const model::Drive& drive
 }
 
 bool sees_all(const model::Assembly& system, const model::Drive& drive, bool located) {
-    bool all = drive.events.empty();  // of which only values are known to the integrator
+    bool all = true;
     const auto see = [&](const model::UserFunction& function) {
         const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
         const model::Formula* read = own == nullptr ? nullptr : own->formula();
@@ -187,7 +189,11 @@ bool sees_all(const model::Assembly& system, const model::Drive& drive, bool loc
     for (const auto* acting : {&drive.loads, &drive.belts}) std::for_each(acting->begin(), acting->end(), see_in);
     see_in(drive.base);
     for (const model::OwnState& state : drive.states) see(*state.rate);
+    for (const model::WantedEvent& event : drive.events) see(*event.when);
     for (const model::Joint& joint : system.joints) {
+        if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) see(*spring->function);
+        if (const auto* law = joint.friction.law.as<model::laws::UserLaw>()) see(*law->function);
+        if (joint.friction.function != nullptr) see(*joint.friction.function);
         see_in(joint.friction.normal);
         for (const auto* varying : {&joint.friction.sliding, &joint.friction.holding}) {
             std::for_each(varying->begin(), varying->end(), see_in);
@@ -238,7 +244,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     }
     const model::Assembly system = motion::engine::assembly_of(asked.system);
     run->readings = readings_of(system, asked.drive, run->trajectory.located, run->terms.has_value());
-    if (sees_all(system, asked.drive, run->trajectory.located)) run->trajectory.gap = 0;
+    if (sees_all(system, asked.drive, run->trajectory.located)) run->trajectory.gap = run->trajectory.unproven;
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());

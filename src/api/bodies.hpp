@@ -117,7 +117,7 @@ void push_bodies_run(lua_State* L, const BodiesRunHandle& run);
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of);
 
-/// Whether no pulse of a function that acts can have been missed: all were read as formulas, whose changes were
+/// Whether a pulse of a function can only hide where the engine says so: all were read as formulas, whose changes were
 /// `located` if they depend on the motion.
 [[nodiscard]] bool sees_all(const model::Assembly& system, const model::Drive& drive, bool located);
 

@@ -143,7 +143,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
                             .keeps_torques = true});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
     run->readings = readings_of(*run->system, run->drive, run->run.located, false);
-    if (sees_all(*run->system, run->drive, run->run.located)) run->run.gap = 0;
+    if (sees_all(*run->system, run->drive, run->run.located)) run->run.gap = run->run.unproven;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);
     note(run.get());

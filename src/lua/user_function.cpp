@@ -442,7 +442,7 @@ bool LuaFunction::is_allowed(double result) const {
 Arguments LuaFunction::arguments_in(const CallState& call) const {
     Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1,
                     .of_speed = role_.of_speed,
-                    .timeless = is_law() && !role_.of_speed};
+                    .timeless = role_.motion == FunctionRole::Motion::never};
     if (feedback_) given.bodies = call.body_names_, given.states = call.state_names_;
     return given;
 }
@@ -539,23 +539,24 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
 }
 
 std::string LuaFunction::obstacle() {
-    const bool is_read = current != nullptr && !current->failed_ && formula(*current, many) != nullptr;
-    return is_read || !reading_->obstacle.empty() ? reading_->obstacle : "a debug hook is set";
+    return read() != nullptr || !reading_->obstacle.empty() ? reading_->obstacle : "a debug hook is set";
+}
+
+model::Formula* LuaFunction::read() {
+    return current == nullptr || current->failed_ ? nullptr : formula(*current, many);
 }
 
 double LuaFunction::next_break(double t) {
-    if (current == nullptr || current->failed_) return model::never;
-    model::Formula* read = formula(*current, many);
-    if (read == nullptr) return model::never;
-    const double found = read->next_break(t);
-    if (read->gave_up()) reading_->obstacle = "its conditions change at too many times to find them";
+    model::Formula* formula = read();
+    if (formula == nullptr) return model::never;
+    const double found = formula->next_break(t);
+    if (formula->gave_up()) reading_->obstacle = "its conditions change at too many times to find them";
     return found;
 }
 
 bool LuaFunction::has_pieces() {
-    if (current == nullptr || current->failed_) return false;
-    const model::Formula* read = formula(*current, many);
-    return read != nullptr && (is_law() || read->has_conditions_of_motion()) && !read->gave_up();
+    const model::Formula* formula = read();
+    return formula != nullptr && (is_law() || formula->has_conditions_of_motion()) && !formula->gave_up();
 }
 
 void LuaFunction::decide(model::terms::Piece& piece, double t, const model::State& state,

@@ -111,6 +111,7 @@ public:
     double value(double t, const model::State& state) override { return value_with(t, state, {}); }
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
+    model::Formula* read() override;
     double next_break(double t) override;
     bool has_pieces() override;
     void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,

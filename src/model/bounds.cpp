@@ -301,12 +301,22 @@ void Walk::begin(const Formula& formula, const terms::Piece* piece, bool ranges)
 }
 
 Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
+    constexpr double worth = 1e-12;
+    const double c = at(op, a.disc.c, b.disc.c);
+    Slot result{image(op, a.disc, b.disc, c), {}, 0, false};
+    if (!ranges_) return result;
     const bool square = op == Op::multiply && &a == &b;  // which is never negative
-    return {image(op, a.disc, b.disc, at(op, a.disc.c, b.disc.c)),
-            !ranges_ ? Interval{}
-            : square ? image(Op::power, a.range, Interval{2, 2})
-                     : image(op, a.range, b.range),
-            false};
+    result.range = square ? image(Op::power, a.range, Interval{2, 2}) : image(op, a.range, b.range);
+    if (a.apart > 0 || b.apart > 0) {
+        const auto most = [](const Slot& s) { return std::max(std::fabs(s.range.lo), std::fabs(s.range.hi)); };
+        const bool adds = op == Op::add || op == Op::subtract || op == Op::negate;
+        result.apart = adds                 ? a.apart + (op == Op::negate ? 0 : b.apart)
+                       : op == Op::multiply ? most(a) * b.apart + a.apart * (most(b) + b.apart)
+                                            : never;
+    }
+    const double way = std::max(result.range.hi - c, c - result.range.lo);
+    if (!(result.disc.r * worth + result.apart <= way)) result.disc.r = 0, result.apart = way == way ? way : never;
+    return result;
 }
 
 /// The result there, and beyond the piece.
@@ -322,13 +332,14 @@ Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) 
 }
 
 Walk::Result Walk::run(std::optional<std::size_t> condition) {
-    constexpr Result undecided{{std::numeric_limits<double>::quiet_NaN(), never}, anything};
-    const auto told = [](const Slot& s) { return Result{s.disc, s.range}; };
+    constexpr Result undecided{{std::numeric_limits<double>::quiet_NaN(), never}, never, anything};
+    const auto told = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
     loosest_ = 0;
     for (std::size_t place = 0;;) {
         const Formula::Step& s = formula_->steps()[place];
         const Slot &a = slots_[s.a], &b = slots_[s.b];
-        const bool compares = is_comparison(s.op), fixed = a.constant && b.constant;
+        const bool compares = is_comparison(s.op), decides = compares || is_fold(s.op);
+        const double held = held_ == nullptr || !decides ? undecided.disc.c : held_[place];
         if (s.op == Op::jump) {
             place = s.yes;
         } else if (s.op == Op::give) {
@@ -341,34 +352,36 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
             const Slot moved = a;
             slots_[s.to] = moved;
             ++place;
-        } else if (fixed) {
-            double result = 0;
-            const bool good = apply(s.op, a.disc.c, b.disc.c, result);
-            if (compares) {
-                place = good ? s.yes : s.no;
-                continue;
-            }
-            if (!good) return undecided;
-            slots_[s.to] = number(result);
-            ++place;
-        } else if (compares || is_fold(s.op)) {
-            const double held = held_ == nullptr ? std::numeric_limits<double>::quiet_NaN() : held_[place];
-            std::optional<double> decision = held == held ? std::optional(held) : std::nullopt;
-            if (decision) {
+        } else if (held == held || (decides && !(a.constant && b.constant))) {
+            std::optional<double> decision = held;
+            if (held != held) {
+                double result = 0;
+                const bool good = apply(s.op, a.disc.c, b.disc.c, result) || compares;
+                decision = ranges_ ? decision_over(s.op, a.range, b.range)
+                           : good  ? std::optional(decision_of(s.op, a.disc.c, b.disc.c, result))
+                                   : std::nullopt;
+            } else {
                 const bool quotient = s.op == Op::modulo || s.op == Op::fmod || s.op == Op::floor_divide;
-                const Op decides = compares ? Op::subtract : quotient ? Op::divide : Op::move;
-                const Slot decider = decides == Op::move ? a : combined(decides, a, b);
+                const Slot decider = compares || quotient ? combined(compares ? Op::subtract : Op::divide, a, b) : a;
                 if (condition == place) return told(decider);
-                const double part = decider.disc.r / std::fabs(decider.disc.c);
+                const double part = decider.apart > 0 ? never : decider.disc.r / std::fabs(decider.disc.c);
                 loosest_ = std::max(loosest_, part == part ? part : never);
-            } else if (ranges_) {
-                decision = decision_over(s.op, a.range, b.range);
             }
             if (!decision) return undecided;
             if (compares) {
                 place = *decision != 0 ? s.yes : s.no;
             } else {
                 slots_[s.to] = on_piece(s.op, a, b, *decision);
+                ++place;
+            }
+        } else if (a.constant && b.constant) {
+            double result = 0;
+            const bool good = apply(s.op, a.disc.c, b.disc.c, result);
+            if (!good && !compares) return undecided;
+            if (compares) {
+                place = good ? s.yes : s.no;
+            } else {
+                slots_[s.to] = number(result);
                 ++place;
             }
         } else {

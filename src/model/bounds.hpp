@@ -45,16 +45,19 @@ inline double outward(double r, double c) {
 Disc image(Op op, const Disc& a, const Disc& b, double c);
 
 /// Runs a program on discs. Its conditions are decided by intervals of the real numbers, or by a piece that the
-/// function is held to.
+/// function is held to. What hardly changes on the stretch while its disc is huge, as the foot of a narrow pulse, is
+/// taken for a constant, and the rest of it stands apart.
 class Walk {
 public:
-    /// Without `ranges` no condition is decided that is not held.
+    /// Without `ranges` what is not held is decided as it is for the centres.
     void begin(const Formula& formula, const terms::Piece* piece, bool ranges);
     /// A register of what the function is given: the numbers near a stretch, and the real ones on it.
-    void set(std::size_t place, const Disc& disc, const Interval& range) { slots_[place] = {disc, range, false}; }
+    void set(std::size_t place, const Disc& disc, const Interval& range) { slots_[place] = {disc, range, 0, false}; }
+    void set(std::size_t place, double value) { slots_[place] = number(value); }
 
     struct Result {
-        Disc disc;  ///< the centre is no number where some condition is not decided
+        Disc disc;     ///< the centre is no number where some condition is not decided
+        double apart;  ///< on the stretch it is farther off what the disc holds by this at most
         Interval range;
     };
     /// What was set is gone then. With a `condition`, a step that is held: of the difference that it compares, or of
@@ -67,9 +70,10 @@ private:
     struct Slot {
         Disc disc;
         Interval range;
+        double apart = 0;
         bool constant = true;  ///< the bits of the centre, which may be those of a whole number
     };
-    [[nodiscard]] static Slot number(double bits) { return {{bits, 0}, {bits, bits}, true}; }
+    [[nodiscard]] static Slot number(double bits) { return {{bits, 0}, {bits, bits}}; }
     [[nodiscard]] Slot combined(Op op, const Slot& a, const Slot& b) const;
     [[nodiscard]] Slot on_piece(Op op, const Slot& a, const Slot& b, double decision) const;
 

@@ -296,6 +296,7 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
     second.began_stuck = first.began_stuck, second.began_open = first.began_open;
     second.t_start = first.t_start;
     second.gap = std::max(first.gap, second.gap);
+    second.unproven = std::max(first.unproven, second.unproven);
     second.noise = std::max(first.noise, second.noise);
     second.jumps += first.jumps;
     return second;

@@ -84,13 +84,14 @@ struct Trajectory {
     bool on_belt = false;      ///< where a turn of theta is no event
     double restitution = 1;    ///< of the walls: what an impact left of the velocity
     bool computed = true;      ///< false when it was read from a file
-    double gap = 0;    ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
-    double noise = 0;  ///< what keeps a function M from being smooth on any scale, torque
-    std::size_t jumps = 0;                             ///< of a function M along the motion, each of which was located
-    bool located = false;                              ///< conditions of the motion in functions that were read
-    std::optional<Rough> rough = {};                   ///< of Outcome::unresolved, where it is known
-    std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it
+    double gap = 0;  ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
+    double unproven = 0;    ///< the longest stretch in which functions that are read may do more than was seen
+    double noise = 0;       ///< what keeps a function M from being smooth on any scale, torque
+    std::size_t jumps = 0;  ///< of a function M along the motion, each of which was located
+    bool located = false;   ///< conditions of the motion in functions that were read
+    std::optional<Rough> rough = {};                         ///< of Outcome::unresolved, where it is known
+    std::vector<std::string> event_names = {};               ///< of the user's events, by Event::user
+    std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 

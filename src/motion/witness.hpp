@@ -39,6 +39,7 @@ public:
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     // What is read is nothing but a function.
+    model::Formula* read() override { return function_->read(); }
     double next_break(double t) override { return function_->next_break(t); }
     bool has_pieces() override { return function_->has_pieces(); }
     void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,

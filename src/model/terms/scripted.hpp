@@ -9,6 +9,10 @@
 #include "model/oscillator.hpp"
 #include "model/terms/term.hpp"
 
+namespace dinal::model {
+class Formula;
+}
+
 namespace dinal::model::terms {
 
 /// What a function remembers from one call to the next in one run.
@@ -62,6 +66,8 @@ public:
         }
         return times.size();
     }
+    /// What it computes, where that is known to the letter: null, or valid until something else of the user's runs.
+    virtual Formula* read() { return nullptr; }
     /// The first time after t at which it is known to jump or kink; `never` when nothing is known.
     virtual double next_break(double /*t*/) { return never; }
     /// Its conditions of theta, velocity and states are known.

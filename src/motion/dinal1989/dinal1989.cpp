@@ -184,7 +184,7 @@ Trajectory Dinal1989::run(const Problem& problem) const {
         if (now.frozen) trajectory.outcome = model::Outcome::stuck_at_end;
     }
     rows.finish();
-    if (problem.drive.M().has_script()) trajectory.gap = h / 2;
+    if (problem.drive.M().has_script()) trajectory.gap = trajectory.unproven = h / 2;
     trajectory.state_at_stop = dinal.state(now);
     trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
     trajectory.events = Growing<model::Event>(std::move(events));

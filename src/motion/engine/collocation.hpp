@@ -14,6 +14,7 @@
 #include "motion/clock.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/engine/unseen.hpp"
 
 namespace dinal::motion::engine {
 
@@ -21,6 +22,7 @@ namespace dinal::motion::engine {
 struct Segment : NodeTimes {
     Clock start;
     double end = 0;                ///< exactly
+    bool proven = true;            ///< functions that are read do nothing in it that their series do not
     bool to_the_end = false;       ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
     std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
     std::vector<Nodes> f{};        ///< their rates: of the angles without meaning
@@ -145,6 +147,7 @@ private:
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
+    bool hides_nothing(Segment& segment, const Mode& mode);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     void find_sizes(const Segment& segment);
     /// What acts on a body, or the rate of a state.
@@ -168,6 +171,8 @@ private:
     std::vector<Stalled> stalled_;    ///< of each body and state: the last stretch that it made too long
     std::vector<char> may_be_rough_;  ///< of the same: a function acts
     double seen_ = -model::never;     ///< where a load did what its series does not: looked at until it is behind
+    Unseen unseen_;
+    int unproven_in_a_row_ = 0;                             ///< stretches
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
     std::array<std::vector<double>, node_count> points_;    ///< all of y at a node

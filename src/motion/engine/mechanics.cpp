@@ -181,6 +181,7 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         nonlinear_ |= loads_.back().asks_the_motion();
     }
     for (const model::OwnState& state : drive.states) rates_.emplace_back(&asking, state.rate.get(), 0);
+    for (const model::WantedEvent& event : drive.events) whens_.emplace_back(&asking, event.when.get(), 0);
     nonlinear_ |= !drive.states.empty();
     all_linear_ = !nonlinear_;
     bristles_.reserve(joints());
@@ -204,6 +205,11 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
             contact.law.emplace(&asking, friction.function.get(), Piecewise::Law{false, slip});
         } else if (user != nullptr && user->function->has_pieces()) {
             contact.law.emplace(&asking, user->function.get(), Piecewise::Law{true, slip});
+        }
+        const auto* spring = joint.spring.as<model::springs::UserSpring>();
+        if (spring != nullptr && spring->function->has_pieces()) {
+            const auto turned = [this, j](const Moment& at) { return angle(j, at.y); };
+            contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, true});
         }
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
@@ -331,13 +337,34 @@ double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
 
+Mechanics::Asked Mechanics::spring(std::size_t joint) const {
+    const auto* spring = system_.joints[joint].spring.as<model::springs::UserSpring>();
+    const auto& held = contacts_[joint].spring;
+    return spring == nullptr ? Asked{} : Asked{spring->function.get(), held ? held->piece() : nullptr};
+}
+
+Mechanics::Asked Mechanics::law(std::size_t joint) const {
+    const model::ContactFriction& friction = system_.joints[joint].friction;
+    const auto* user = friction.law.as<laws::UserLaw>();
+    const auto& held = contacts_[joint].law;
+    return {friction.function != nullptr ? friction.function.get()
+            : user != nullptr            ? user->function.get()
+                                         : nullptr,
+            held ? held->piece() : nullptr};
+}
+
+double Mechanics::spring_torque(std::size_t joint, double angle) const {
+    const auto& held = contacts_[joint].spring;
+    return held ? held->value({}, angle) : system_.joints[joint].spring.torque(angle);
+}
+
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y), s = velocity(joint, at.y);
     double torque = -friction(joint, at, mode, belt);
     if (own.damping != 0) torque += own.damping * s;
     if (own.stiffness != 0) torque += own.stiffness * q;
-    if (!own.spring.none()) torque += own.spring.torque(q);
+    if (!own.spring.none()) torque += spring_torque(joint, q);
     return torque;
 }
 
@@ -348,7 +375,7 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
     const Nodes angle = between(joint, y), velocity = between(joint, std::span(y).subspan(bodies()));
     for (std::size_t j = first; j < end; ++j) out[j] = C * velocity[j] + k * angle[j];
     if (!own.spring.none()) {
-        for (std::size_t j = first; j < end; ++j) out[j] += own.spring.torque(angle[j]);
+        for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
     }
     add_native_friction(joint, mode, has_belt(joint) ? difference(velocity, belt) : velocity, first, end, out);
 }
@@ -464,6 +491,12 @@ bool Mechanics::asks_functions() const {
     bool asks = false;
     for_each_signal([&](const Signal& s) { asks = asks || s.asks_functions(); });
     return asks;
+}
+
+bool Mechanics::has_functions() const {
+    bool has = asks_functions() || !rates_.empty() || !whens_.empty();
+    for (std::size_t j = 0; j < joints(); ++j) has = has || spring(j).function != nullptr || law(j).function != nullptr;
+    return has;
 }
 
 double Mechanics::fastest(const Frame& frame) const {

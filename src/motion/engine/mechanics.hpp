@@ -95,6 +95,7 @@ public:
     /// Those of the user's, and behind them the bend of each joint's bristles.
     [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size(); }
     [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
+    [[nodiscard]] std::size_t events() const { return drive_.events.size(); }
     /// The bristles of a joint; null where it has none.
     [[nodiscard]] const model::laws::Bristle* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
@@ -175,6 +176,8 @@ public:
     [[nodiscard]] bool may_open(std::size_t joint) const { return rubs(joint) && contacts_[joint].may_open; }
     /// What presses on a contact: its normal load, or else the greatest of its limits. Up to 0 the contact is open.
     [[nodiscard]] double pressing(std::size_t joint, const Moment& at) const;
+    /// What tells of an event of the user.
+    [[nodiscard]] double when(std::size_t event, const Moment& at) const { return whens_[event].value(at); }
     /// How great torques are at a joint: of its springs and its friction.
     [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
 
@@ -196,6 +199,8 @@ public:
     [[nodiscard]] bool may_go_on() const;
     void forget_failure() const;
     [[nodiscard]] bool asks_functions() const;
+    /// There is any function of the user's.
+    [[nodiscard]] bool has_functions() const;
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
     [[nodiscard]] double fastest(const Frame& frame) const;
 
@@ -217,6 +222,10 @@ public:
         }
         for (Contact& contact : contacts_) {
             if (contact.law && contact.law->has_pieces()) f(*contact.law);
+            if (contact.spring) f(*contact.spring);
+        }
+        for (Piecewise& when : whens_) {
+            if (when.has_pieces()) f(when);
         }
     }
     /// From now on users' laws of friction act as the mode says.
@@ -232,6 +241,38 @@ public:
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
     }
+    /// How a user's function is asked, for those who look at what is read.
+    struct Asked {
+        model::UserFunction* function = nullptr;
+        const model::terms::Piece* piece = nullptr;
+    };
+    [[nodiscard]] Asked rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
+    [[nodiscard]] Asked when(std::size_t event) const {
+        return {drive_.events[event].when.get(), whens_[event].piece()};
+    }
+    [[nodiscard]] Asked spring(std::size_t joint) const;
+    [[nodiscard]] Asked law(std::size_t joint) const;
+    /// The base, and where there are belts, the velocity of one.
+    [[nodiscard]] const Signal& base() const { return base_; }
+    [[nodiscard]] const Signal& belt(std::size_t joint) const { return belts_[joint]; }
+    /// Calls it with what limits or drives the friction of a joint in a mode, and what torque one unit of it makes.
+    template <class F>
+    void for_each_friction(std::size_t joint, const Mode& mode, const Moment& at, F f) const {
+        const Contact& c = contacts_[joint];
+        if (c.native && c.normal.none()) return;
+        const Slipping& how = mode.friction[joint];
+        const double pressed = c.normal.none() ? 1 : std::fabs(c.normal.value(at));
+        const std::size_t way = how.way == model::Motion::forward ? 1 : 0;
+        const bool slides = how.way != model::Motion::stuck && !how.riding;
+        for (const std::size_t side : {0U, 1U}) {
+            if (slides && side != way) continue;
+            f(slides || c.holding[side].none() ? c.sliding[side] : c.holding[side], pressed > 0 ? pressed : 1);
+        }
+        if (c.normal.none() || !rubs(joint)) return;
+        const double torque =
+            std::fabs(slides ? sliding(joint, how, velocity(joint, at.y), at) : holding(joint, how.way, at));
+        f(c.normal, pressed > 0 ? torque / pressed : 1);
+    }
     [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
     [[nodiscard]] const std::vector<Signal>& loads() const { return loads_; }
 
@@ -240,10 +281,12 @@ private:
         std::array<Signal, 2> sliding, holding;
         Signal normal;
         const model::laws::Bristle* bristle = nullptr;
-        std::optional<Piecewise> law = {};  ///< the user's function
+        std::optional<Piecewise> law = {};     ///< the user's function
+        std::optional<Piecewise> spring = {};  ///< the user's, if it has conditions
         bool varies = false, native = false, may_open = false;
     };
 
+    [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;
     /// Calls it with each function of the user's.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
@@ -256,6 +299,7 @@ private:
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
     std::vector<Piecewise> rates_;  ///< of the states of the user
+    std::vector<Piecewise> whens_;  ///< of his events
     std::vector<double> jumps_;     ///< found, of belts
     bool nonlinear_ = false, all_linear_ = true, has_belts_ = false;
 };

@@ -133,6 +133,7 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     part.contradiction = run.contradiction;
     part.rough = run.rough;
     part.gap = run.gap;
+    part.unproven = run.unproven;
     part.noise = run.noise;
     part.jumps = run.jumps;
     part.located = run.located;

@@ -1476,7 +1476,9 @@ bool Engine::end_at(double x) {
         return fail(Outcome::excitation_not_finite);
     }
     keep(length);
-    if (mechanics_.asks_functions()) result_.gap = std::max(result_.gap, std::min(length, solver_->gap(segment_)));
+    const double between = std::min(length, solver_->gap(segment_));
+    if (mechanics_.has_functions()) result_.gap = std::max(result_.gap, between);
+    if (!segment_.proven) result_.unproven = std::max(result_.unproven, problem_.step > 0 ? between : length);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break && now_.hi < problem_.window.end;
@@ -2166,7 +2168,7 @@ bool Engine::cross(const Ending& ending) {
 }
 
 double Engine::watched(std::size_t event, const Moment& at) const {
-    return asking_.ask(*problem_.drive.events[event].when, at);
+    return mechanics_.when(event, at);
 }
 
 /// Events of the user, if one of them comes before the end that is known so far.

@@ -37,7 +37,8 @@ struct AssemblyRun {
     std::vector<model::Event> events;
     model::Outcome outcome = model::Outcome::reached_end;
     double t_start = 0, t_stop = 0;
-    double gap = 0;  ///< the longest between two looks at a user's function of the time
+    double gap = 0;       ///< the longest between two looks at a user's function
+    double unproven = 0;  ///< the longest stretch in which functions that are read may do more than was seen
     model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
     Mode begun = {};                                      ///< how the contacts stood at the start
     bool located = false;                                 ///< conditions of the motion, all that there were

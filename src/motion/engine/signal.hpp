@@ -61,7 +61,8 @@ public:
     struct Law {
         bool alone;
         std::function<double(const Moment&)> slip;
-        double way = 0;  ///< 0: its joint does not slide
+        double way = 0;         ///< 0: its joint does not slide
+        bool of_angle = false;  ///< it is a spring, and what it is called with may have any sign
     };
     Piecewise(const Asking* asking, model::UserFunction* function, Law law) : Piecewise(asking, function, 0) {
         law_ = std::move(law);
@@ -87,8 +88,8 @@ public:
     /// Of a law, at this speed. At 0 it is what the function gives, whichever piece it is held to.
     [[nodiscard]] double value(const Moment& at, double speed) const {
         return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
-            return is_held() && speed != 0 ? function_->value_on(piece_, t, state, states, nullptr)
-                                           : function_->value_with(t, state, states);
+            return is_held() && (speed != 0 || law_->of_angle) ? function_->value_on(piece_, t, state, states, nullptr)
+                                                               : function_->value_with(t, state, states);
         });
     }
     /// Decides the conditions at this moment; decisions stay, except those that depend on what `again` has bits for.
@@ -99,7 +100,8 @@ public:
         if (is_held() && stays && !crossed_) return;
         crossed_ = false;
         // What sets off is on its way already.
-        const double speed = law_ ? std::max(law_->way * law_->slip(at), std::numeric_limits<double>::min()) : 0;
+        const double given = law_ ? law_->way * law_->slip(at) : 0;
+        const double speed = law_ && !law_->of_angle ? std::max(given, std::numeric_limits<double>::min()) : given;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             function_->decide(piece_, t, state, states, again);
         });
@@ -115,6 +117,8 @@ public:
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
     void let_go() { piece_ = {}; }
+    /// Null while it is not held.
+    [[nodiscard]] const model::terms::Piece* piece() const { return is_held() ? &piece_ : nullptr; }
 
 private:
     [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
@@ -176,6 +180,24 @@ public:
     }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
+    /// All its functions are read, but for controllers that hold a value.
+    [[nodiscard]] bool is_read() const {
+        return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) {
+            return part.function != nullptr ? part.function->function->read() != nullptr : part.delayed == nullptr;
+        });
+    }
+    /// Its functions that act at this time and are read: the formula, the piece that it is held to, by how much later
+    /// it acts, its gain.
+    template <class F>
+    void for_each_read(double t, F f) const {
+        for (const Part& part : parts_) {
+            const model::Component& c = *part.component;
+            if (part.function == nullptr || c.gain == 0 || t < c.from || t >= c.to) continue;
+            model::Formula* read = part.function->function->read();
+            if (read != nullptr)
+                f(*read, part.piecewise ? part.piecewise->piece() : nullptr, part.function->delay, c.gain);
+        }
+    }
     /// A function of the motion has no pieces that are known.
     [[nodiscard]] bool samples_the_motion() const {
         return std::any_of(parts_.begin(), parts_.end(),

@@ -44,7 +44,7 @@ public:
         trajectory.state_at_stop = y_;
         trajectory.motion_at_stop = standstill_.motion();
         trajectory.began_stuck = standstill_.began_stuck();
-        if (excitation_.has_script()) trajectory.gap = full_.h / 2;
+        if (excitation_.has_script()) trajectory.gap = trajectory.unproven = full_.h / 2;
     }
 
 private:

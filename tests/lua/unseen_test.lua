@@ -1,0 +1,122 @@
+-- A pulse far narrower than a stretch, in every kind of function that is read: found, or the gap is told.
+-- What it does is known in closed form: the integral of exp(-x^2) is sqrt(pi), that of 1/cosh(x) is pi.
+dofile "tests/lua/support.lua"
+
+local exp, root = math.exp, math.sqrt(math.pi)
+local seed = 20
+local function lot(a, b)
+    seed = (seed * 1103515245 + 12345) % 2147483648
+    return a + (b - a) * seed / 2147483648
+end
+
+-- Of pulses w wide, at p, of unit width times height, whose integral is `area`.
+local shapes = {
+    { area = root, at = function(p, w) return function(x) return exp(-((x - p) / w) ^ 2) / w end end },
+    { area = math.pi, at = function(p, w) return function(x) return 2 / (exp((x - p) / w) + exp(-(x - p) / w)) / w end end },
+}
+local t_end = 2.5
+local free = { I = 1, k = 0 }
+local function glide(system_of, o)
+    o = o or {}
+    o.velocity0, o.t_end, o.dt = o.velocity0 or 1, t_end, .5
+    local run = system(system_of):simulate(o)
+    return select(2, run:at(t_end)), run
+end
+-- Each returns the velocity at the end, and what it must be.
+local kinds = {
+    M = function(f, area) return 1 + area, glide(free, { M = function(t) return f(t) end }) end,
+    field = function(f, area) return math.sqrt(1 + 2 * area), glide(free, { M = function(t, theta, v) return f(theta) end }) end,
+    damping = function(f, area) return exp(-area), glide(free, { M = function(t, theta, v) return -v * f(t) end }) end,
+    state = function(f, area)
+        local _, run = glide(free, { M = function(t, theta, v, z) return 0 * z.q end,
+            states = { q = { start = 0, rate = function(t, theta, v, z) return f(t) end } } })
+        return area, run.states.q[#run.states.q], run
+    end,
+    spring = function(f, area) return math.sqrt(1 - .2 * area), glide { I = 1, k = 0, spring = function(theta) return .1 * f(theta) end } end,
+    friction = function(f, area) return 1 - .1 * area, glide { I = 1, k = 0, friction = function(speed, t) return .1 * f(t) end } end,
+    Rd = function(f, area) return 1 - .1 * area, glide { I = 1, k = 0, Rd = function(t) return .1 * f(t) end } end,
+    normal = function(f, area) return 1 - .1 * area, glide { I = 1, k = 0, Rd = .1, normal = function(t) return f(t) end } end,
+    base = function(f, area) return 1 - .1 * area, glide(free, { base = function(t) return .1 * f(t) end }) end,
+}
+
+test("a narrow smooth pulse is found in every kind of function", function()
+    local names = {}
+    for kind in pairs(kinds) do names[#names + 1] = kind end
+    table.sort(names)
+    for _, kind in ipairs(names) do
+        local of = kinds[kind]
+        for n = 1, 24 do
+            local shape = shapes[n % 2 + 1]
+            local p, w = lot(.3, 1.5), 10 ^ lot(-6, -2)
+            local want, got, run = of(shape.at(p, w), shape.area)
+            local what = ("%s: w %g p %g got %.10g want %.10g gap %s"):format(kind, w, p, got, want, run.gap)
+            assert(math.abs(got - want) < 2e-6 or (run.gap and run.gap > w), what)
+            if kind == "M" then assert(math.abs(got - want) < 1e-8, what) end
+        end
+    end
+end)
+
+test("a small narrow pulse beside a sine is found", function()
+    for _ = 1, 40 do
+        local p, w, A = lot(.3, 1.5), 10 ^ lot(-6, -1), 10 ^ lot(-5, -1)
+        local got = glide(free, { velocity0 = 0, M = function(t) return math.sin(t) + A * exp(-((t - p) / w) ^ 2) end })
+        local want = 1 - math.cos(t_end) + A * w * root
+        assert(math.abs(got - want) < 1e-11, ("A %g w %g: %g"):format(A, w, got - want))
+    end
+end)
+
+test("a narrow pulse of the belt, and of what tells an event, is found", function()
+    for _ = 1, 24 do
+        local p, w = lot(.3, 1.5), 10 ^ lot(-5, -2)
+        local got = glide({ I = 1, k = 0, Rd = .1 }, { belt = function(t) return 3 * exp(-((t - p) / w) ^ 2) end })
+        local want = 1 - .1 * t_end + .4 * w * math.sqrt(math.log(3 / (1 - .1 * p)))
+        assert(math.abs(got - want) < .01 * w, ("w %g: %g, want %g"):format(w, got, want))
+        local run = system { I = 1, k = 4 }:simulate { theta0 = 1, t_end = 3, dt = 1,
+            events = { { when = function(t) return exp(-((t - p) / w) ^ 2) - .5 end } } }
+        local told = run.events:filter(function(e) return e.kind == "user" end)
+        equal(#told, 2)
+        local far = w * math.sqrt(math.log(2))
+        assert(math.abs(told[1].t - (p - far)) < 1e-9 and math.abs(told[2].t - (p + far)) < 1e-9)
+    end
+end)
+
+test("conditions of springs and events are located, however narrow", function()
+    for _ = 1, 20 do
+        local a, w = lot(.3, 1.5), 10 ^ lot(-6, -1)
+        -- A step of the potential by 3/8 takes three quarters of the energy 1/2.
+        local got = glide { I = 1, k = 0, spring = function(theta) if theta > a and theta < a + w then return .375 / w end return 0 end }
+        assert(math.abs(got - .5) < 1e-9 + 1e-13 / w, ("w %g: %.12g"):format(w, got))
+        local run = system(free):simulate { velocity0 = 1, t_end = t_end, dt = 1,
+            events = { { when = function(t, theta) if theta > a and theta < a + w then return 1 end return -1 end } } }
+        local told = run.events:filter(function(e) return e.kind == "user" end)
+        equal(#told, 2)
+        assert(math.abs(told[1].t - a) < 1e-9 and math.abs(told[2].t - (a + w)) < 1e-9)
+    end
+end)
+
+test("a condition on something narrow is found", function()
+    for _, d in ipairs { 1e-2, 1e-4, 1e-6 } do
+        local run = system(free):simulate { velocity0 = 1, t_end = 2, dt = .1, M = function(t, theta, v)
+            if exp(-((theta - .3) / d) ^ 2) > .5 then return 1 / d end
+            return 0
+        end }
+        -- It is as wide as 2 d sqrt(ln 2).
+        assert(math.abs(select(2, run:at(2)) - math.sqrt(1 + 4 * math.sqrt(math.log(2)))) < 1e-7)
+        equal(run.gap, nil)
+    end
+end)
+
+test("what could not be proven is told as the gap", function()
+    local S = system { I = 1, k = 4, C = .2 }
+    local function gap(M, o)
+        o = o or {}
+        o.M, o.t_end, o.dt = M, 10, 1
+        return S:simulate(o).gap
+    end
+    equal(gap(function(t) return math.sin(t) / (1.2 + math.cos(t)) end), nil)
+    -- Nobody divides by what may be 0 and says how great the rest is.
+    local sinc = gap(function(t) local x = 3 * (t - 4.321) return math.sin(x) / x end)
+    assert(sinc > 0 and sinc < S.T0, sinc)
+    equal(gap(function(t) return math.sin(t) / (1.2 + math.cos(t)) end, { integrator = integrator.rk4 { h = .01 } }), .005)
+end)
+finish()
