@@ -671,9 +671,13 @@ private:
 
     /// What the run may have missed, and what made it long.
     void tell_doubts() {
-        if (run_.gap > 0) {
+        const double shortest = system_.shortest_natural_period(), scale = std::isfinite(shortest) ? shortest : 1;
+        if (run_.gap > 0 && run_.gap == run_.unproven) {
+            say("What Lua functions do is proven but for pulses shorter than {}, which may have been missed.",
+                text::number_text(run_.gap, scale));
+        } else if (run_.gap > 0) {
             say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
-                text::number_text(run_.gap, system_.shortest_natural_period()));
+                text::number_text(run_.gap, scale));
         }
         if (run_.noise > 0) {
             say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);

@@ -10,10 +10,11 @@ namespace {
 using model::bounds::Disc;
 using model::bounds::Interval;
 
-// The disc about a stretch, 1 being half of that: it holds an ellipse of Bernstein's, the sum of whose half axes is
-// rho. A function that differs from its value in the middle by r at most there differs from its polynomial of degree n
-// by 4 r rho^-n / (rho - 1) at most on the stretch (Trefethen, Approximation Theory and Approximation Practice, 8.2).
-constexpr double disc_size = 3, rho = 5.82842712474619, whole_of_axes = 6.16227766016838;  // 3 + sqrt(3^2 -+ 1)
+// A disc about a stretch, three times as wide, holds an ellipse of Bernstein's with foci at both ends, the sum of whose
+// half axes is rho. A function that differs there from its value in the middle by r at most differs on the stretch from
+// its polynomial of degree n by 4 r rho^-n / (rho - 1) at most (Trefethen, Approximation Theory and Approximation
+// Practice, theorem 8.2).
+constexpr double rho = 5.82842712474619, greatest_power = 6.16227766016838;  // 3 + sqrt(3^2 - 1) and 3 + sqrt(3^2 + 1)
 
 constexpr double power(double x, std::size_t n) {
     return n == 0 ? 1 : x * power(x, n - 1);
@@ -22,11 +23,11 @@ constexpr double falls(std::size_t n) {
     return 4 / (power(rho, n) * (rho - 1));
 }
 
-/// |Tk(z) - Tk(0)| at most for all z in that disc, where z = i 3 = sinh(a) i is worst.
+/// |Tk(z) - Tk(0)| at most for all z in that disc, where z = 3 i is worst.
 constexpr Series growth = [] {
     Series most{};
     for (std::size_t k = 1; k < node_count; ++k) {
-        const double e = power(whole_of_axes, k);
+        const double e = power(greatest_power, k);
         most[k] = k % 2 == 0 ? (e + 1 / e) / 2 - 1 : (e - 1 / e) / 2;
     }
     return most;
