@@ -939,8 +939,8 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     constexpr double clearly = 64;
     if (2 * s.h <= too_short_to_look * longest_) return true;
     const bool seen = s.start.until(seen_) > 0 && seen_ < s.end;
-    const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(), [seen](const Signal& load) {
-        return load.asks_in_time() && (seen || !load.is_read());
+    const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(), [&](const Signal& load) {
+        return load.asks_in_time() && (seen || unproven_in_a_row_ > 0 || !load.is_read());
     });
     if (!scripts && !mechanics_.nonlinear()) return true;
     std::vector<Series> loads(n_);
