@@ -1062,16 +1062,18 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     const auto beside = [&](std::size_t i) {
         return sizes_[i] + mechanics_.system().bodies[i].inertia * greatest(s.y[n_ + i]) / s.h;
     };
+    // Of a motion that has died out only the rounding of what has acted is left.
+    const auto rough = [&](std::size_t k) { return std::max(floor_.noise[k], rounding * floor_.greatest[k]); };
     double slowest = model::never;
     for (std::size_t i = 0; i < n_; ++i) {
         slowest = std::min(slowest, beside(i) / mechanics_.system().bodies[i].inertia);
-        look_at_signal(mechanics_.loads()[i], beside(i), floor_.noise[i]);
+        look_at_signal(mechanics_.loads()[i], beside(i), rough(i));
     }
     look_at_signal(mechanics_.base(), slowest, 0);
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
         if (!begin(mechanics_.rate(k), time(0), nullptr)) continue;
         const double size = std::max({greatest(s.y[2 * n_ + k]) / s.h, greatest(s.f[2 * n_ + k]), fastest_rate_[k]});
-        look(size, of_last_iteration * size + smallest, 0);
+        look(size, of_last_iteration * size + clearly * rough(n_ + k) + smallest, 0);
     }
     for (std::size_t e = 0; e < mechanics_.events(); ++e) {
         if (begin(mechanics_.when(e), time(0), nullptr)) look(0, smallest, of_last_iteration);
@@ -1091,16 +1093,15 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
                                      [&](const Signal& signal, double torque) {
                                          look_at_signal(signal, torque > 0 ? size / torque : model::never, 0);
                                      });
-        if (begin(mechanics_.spring(j), between(0), nullptr)) look(size, of_last_iteration * size + smallest, 0);
+        const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
+        if (begin(mechanics_.spring(j), between(0), nullptr)) look(size, allowed, 0);
         const Slipping& how = mode.friction[j];
         const Mechanics::Asked law = mechanics_.law(j);
         if (law.function == nullptr || how.way == model::Motion::stuck || mode.leans[j] != 0 || how.riding) continue;
         Series speed = difference(between(n_), cheb::fit(s.belts[j]));
         for (double& c : speed) c *= model::sign_of(how.way);
         const bool alone = joint.friction.function == nullptr;
-        if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) {
-            look(size, of_last_iteration * size + smallest, 0);
-        }
+        if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
     }
     if (good) unproven_in_a_row_ = s.proven ? 0 : unproven_in_a_row_ + 1;
     return good;
