@@ -6,25 +6,7 @@
 namespace dinal::analysis {
 namespace {
 
-/// How many samples count as one: 1 for noise, more where neighbours are alike (Sokal's sum, up to the first lag that
-/// is noise).
-double correlation_length(const std::vector<double>& residual) {
-    const std::size_t n = residual.size();
-    double square = 0;
-    for (const double x : residual) square += x * x;
-    if (!(square > 0)) return 1;
-    const double noise = 2 / std::sqrt(static_cast<double>(n));
-    double length = 1;
-    for (std::size_t lag = 1; lag < n / 4; ++lag) {
-        double sum = 0;
-        for (std::size_t i = 0; i + lag < n; ++i) sum += residual[i] * residual[i + lag];
-        if (sum / square < noise) break;
-        length += 2 * sum / square;
-    }
-    return length;
-}
-
-double correlation_length(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
+double longest_correlation(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
     const int columns =
         question.columns.empty() ? 0 : *std::max_element(question.columns.begin(), question.columns.end()) + 1;
     double longest = 1;
@@ -60,7 +42,7 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     std::optional<LeastSquares> best = fit_from(question, question.start);
     for (Eigen::Index i = 0; i < question.start.size(); ++i) {
         for (const double begin : question.other_starts[static_cast<std::size_t>(i)]) {
-            if (best && correlation_length(question, best->residual) < like_noise) break;
+            if (best && longest_correlation(question, best->residual) < like_noise) break;
             Eigen::VectorXd other = question.start;
             other[i] = begin;
             auto found = fit_from(question, other);
@@ -74,7 +56,7 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
                      .predicted = question.measured - best->residual,
                      .silent = std::vector<bool>(static_cast<std::size_t>(n), false)};
     found.noise = std::sqrt(best->sum / static_cast<double>(spare));
-    found.widening = std::sqrt(correlation_length(question, best->residual));
+    found.widening = std::sqrt(longest_correlation(question, best->residual));
     const Prediction model = [&](const Eigen::VectorXd& p) { return question.model(p, question.measured.size()); };
     const auto J = derivative(model, best->parameters, question.scale, found.noise);
     const Covariance covariance = covariance_of(J.value_or(Eigen::MatrixXd::Zero(question.measured.size(), n)),

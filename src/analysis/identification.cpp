@@ -1008,6 +1008,13 @@ private:
             found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
         }
         found.noise = deviation();
+        const Eigen::VectorXd& left = best_->residual;
+        // Samples whose noise is alike tell less than as many that are independent.
+        constexpr double rounding = 1e-7;
+        if (found.noise > rounding * range_) {
+            found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
+        }
+        const double spread = found.widening * found.noise;
         Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
         for (Eigen::Index i = 0; i < count(); ++i) {
             const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
@@ -1027,9 +1034,9 @@ private:
             const auto i = static_cast<std::size_t>(which);
             const auto place = static_cast<Eigen::Index>(which);
             const double open = least_error([which](const Parameters& p) { return at(p, which); });
-            found.error[i] = found.silent[i] ? 0 : std::max(open, found.noise * std::sqrt(full(place, place)));
+            found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
         }
-        ratios(full, found);
+        ratios(full, spread, found);
         judge(found);
         if (found.is_noise) {  // the errors are those of a motion, and there may be none
             found.error.fill(0);
@@ -1081,7 +1088,7 @@ private:
     }
 
     /// omega0, zeta and Rd/k, with the errors that their parts have together.
-    void ratios(const Eigen::MatrixXd& covariance, Identified& found) const {
+    void ratios(const Eigen::MatrixXd& covariance, double spread, Identified& found) const {
         const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
         const double Rd = at(found.value, Unknown::Rd);
         found.omega0 = omega0_of(found.value);
@@ -1092,7 +1099,7 @@ private:
             if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
             Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
             by.head(4) << by_I, by_k, by_C, by_Rd;
-            return std::max(least_error(value), found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by))));
+            return std::max(least_error(value), spread * std::sqrt(std::max(0.0, by.dot(covariance * by))));
         };
         found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
         found.zeta_error =

@@ -38,6 +38,7 @@ struct Identified {
     double noise = 0;                       ///< standard deviation of what is left
     std::size_t cut_low = 0, cut_high = 0;  ///< samples at the least and the greatest value, where those cut it off
     double scatter = 0;                     ///< what neighbouring samples differ by that a smooth motion would not
+    double widening = 1;                    ///< of the errors, because the residual is alike from sample to sample
     bool M_is_noisy = false;                ///< which the errors ignore
     bool is_noise = false;                  ///< it explains no more of the record than it would of noise
     bool is_unexplained = false;            ///< it leaves much of the record, and what it leaves is not noise

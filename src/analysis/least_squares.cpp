@@ -167,4 +167,20 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     return result;
 }
 
+double correlation_length(std::span<const double> residual) {
+    const std::size_t n = residual.size();
+    double square = 0;
+    for (const double x : residual) square += x * x;
+    if (!(square > 0)) return 1;
+    const double noise = 2 / std::sqrt(static_cast<double>(n));
+    double length = 1;
+    for (std::size_t lag = 1; lag < n / 4; ++lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < n; ++i) sum += residual[i] * residual[i + lag];
+        if (sum / square < noise) break;
+        length += 2 * sum / square;
+    }
+    return length;
+}
+
 }  // namespace dinal::analysis

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace dinal::analysis {
@@ -42,5 +43,9 @@ struct Covariance {
 /// Before the record nothing is known to better than ten times what says nothing, which bounds the errors along a
 /// valley that is flat; all parameters that such a valley runs through are silent, not one of them.
 Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise);
+
+/// How many samples count as one: 1 for noise, more where neighbours are alike (Sokal's sum, up to the first lag that
+/// is noise).
+double correlation_length(std::span<const double> residual);
 
 }  // namespace dinal::analysis

@@ -118,7 +118,6 @@ struct FitAnswer {
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
     std::optional<model::Assembly> system;
-    std::string remark = {};
     bool from_guess = false;  ///< a system was given
     model::Units units;       ///< of the record; without one for M where only ratios to I are found
 };
@@ -857,13 +856,8 @@ private:
             next = known_until_[row];
         }
         fit.found.noise = found.noise * first.size;
-        constexpr double alike = 1.3, rounding = 1e-7;
-        if (found.widening > alike && fit.found.noise > rounding * first.range) {
-            fit.remark = fmt::format(
-                "the residual is correlated from sample to sample (noise in M, another law of friction or a wrong "
-                "guess); the errors are {:.2g} times wider because of that",
-                found.widening);
-        }
+        constexpr double rounding = 1e-7;
+        if (fit.found.noise > rounding * first.range) fit.found.widening = found.widening;
     }
 
     lua_State* L_;
@@ -1099,7 +1093,13 @@ std::string fit_summary(const FitAnswer& fit) {
                                 fit.question.t[*wild]);
         }
     }
-    if (!fit.remark.empty()) text += "\n  " + fit.remark;
+    constexpr double alike = 1.3;
+    if (fit.found.widening > alike && !fit.found.is_noise) {
+        text += fmt::format(
+            "\n  the residual is correlated from sample to sample (noise with a memory or in M, another law of friction "
+            "or a wrong guess); the errors are {:.2g} times wider because of that",
+            fit.found.widening);
+    }
     if (fit.found.M_is_noisy) text += "\n  the errors ignore the noise of M: they may be far too small";
     if (fit.question.given.back() == 0.0) text += "\n  offset is held at 0";
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {

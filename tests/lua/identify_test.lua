@@ -285,4 +285,23 @@ test("no error is below what a double can tell, a held offset and a missing spri
     raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
 end)
 
+test("noise with a memory widens the errors, and is told; white noise does neither", function()
+    local M = excitation.harmonic { amplitude = 1, omega = 1.7 } + excitation.harmonic { amplitude = 0.5, omega = 4 }
+    local run = system { I = 1, k = 4, C = 0.2, Rd = 0.2 }:simulate { M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
+    local within, told = 0, 0
+    for seed = 1, 20 do
+        local white, x, colored = vector.normal { n = #run.t, std = 0.003, seed = seed }, 0, {}
+        for i = 1, #run.t do
+            x = 0.9 * x + white[i]
+            colored[i] = x
+        end
+        local fit = identify { data = data { t = run.t, theta = run.theta + vector(colored) }, M = M }
+        if math.abs(fit.k - 4) < 2 * fit.std_error.k then within = within + 1 end
+        if tostring(fit):find "correlated from sample to sample" then told = told + 1 end
+        local plain = identify { data = data { t = run.t, theta = run.theta + white }, M = M }
+        has_not(tostring(plain), "correlated")
+    end
+    assert(within >= 17 and told == 20, within .. " " .. told) -- 19 and 20; without the memory 10 of 20
+end)
+
 finish()
