@@ -294,7 +294,7 @@ private:
     void tell_law() {
         const model::Friction& law = system_.friction();
         if (!joint_.friction.is_constant()) return;
-        if (law.normal() != 1) say("These are the torques under the normal load {:.5g}.", law.normal());
+        if (law.normal() != 1 && !law.none()) say("These are the torques under the normal load {:.5g}.", law.normal());
         if (!law.depends_on_speed()) return;
         say("{}", law.as<model::laws::Stribeck>() != nullptr
                       ? "Friction falls from Re at rest to Rd at high speed."

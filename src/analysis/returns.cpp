@@ -336,17 +336,34 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
     const double h = order == 2 ? 1e-5 : 3e-4;
     for (Index i = 0; i < basis.rank; ++i) {
         const VectorXd direction = basis.columns.col(i);
-        const auto slope = [&](double step) -> std::optional<VectorXd> {
+        struct Slope {
+            VectorXd value;
+            double bend;
+            bool alike;  // the motions to both sides
+        };
+        const auto slope = [&](double step) -> std::optional<Slope> {
             const Return ahead = (*this)(at + step * direction, mode, returns);
             const Return behind = (*this)(at - step * direction, mode, returns);
             if (!ahead.finished || !behind.finished) return {};
-            found.bend = std::max(found.bend, size_of_step(ahead.to + behind.to - 2 * at) / (2 * step));
-            return (ahead.to - behind.to) / (2 * step);
+            return Slope{(ahead.to - behind.to) / (2 * step), size_of_step(ahead.to + behind.to - 2 * at) / (2 * step),
+                         ahead.events == behind.events};
         };
-        const auto near = slope(h);
-        const auto far = order == 2 ? near : slope(2 * h);
-        if (!near || !far) return {};
-        found.by_place += (order == 2 ? *near : VectorXd((4 * *near - *far) / 3)) * direction.transpose();
+        constexpr double least = 3e-8, little = 0.01;
+        for (double step = h;; step /= 10) {
+            const auto near = slope(step), far = order == 2 ? near : slope(2 * step);
+            if (!near || !far) return {};
+            const double bend = std::max(near->bend, far->bend);
+            const bool alike = near->alike && far->alike;
+            // A grazing, a stop or a switch lies between the two sides.
+            if (order != 2 && !alike && bend > little) {
+                if (step / 10 < least) return {};
+                continue;
+            }
+            found.bend = std::max(found.bend, bend);
+            found.by_place +=
+                (order == 2 ? near->value : VectorXd((4 * near->value - far->value) / 3)) * direction.transpose();
+            break;
+        }
     }
     return found;
 }
@@ -357,6 +374,9 @@ void Returns::once(const Moment& from, Return& sum) {
     sum.finished = section_ ? run.outcome == model::Outcome::stopped : model::is_whole(run.outcome);
     sum.time += run.t_stop - start_;
     if (!sum.finished) return;
+    for (const model::Event& e : run.events) {
+        if (e.kind != model::EventKind::user) sum.events.emplace_back(e.kind, e.where);
+    }
     Moment at = Runs::at_stop(run);
     sum.mode = std::move(at.mode);
     sum.to = place(at.y);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/steady.hpp"
@@ -108,6 +109,7 @@ public:
         bool finished = false;
         model::Outcome outcome = model::Outcome::reached_end;
         std::optional<HeldMode> mode = {};
+        std::vector<std::pair<model::EventKind, int>> events = {};  ///< on the way: what, and at which joint
     };
     /// A value that a measured number passes, upwards (way = 1) or downwards (-1).
     struct Section {
@@ -130,7 +132,8 @@ public:
         double bend = 0;  ///< by how much the slopes to both sides differ from their mean
     };
     /// D of the map of so many returns at a place to which they lead back, by differences of this order in what the
-    /// mode allows.
+    /// mode allows. Those of order 4 are made smaller where the motions to both sides do not have the same events; none
+    /// where that does not help and the slopes differ.
     [[nodiscard]] std::optional<Derivative> derivative(const Eigen::VectorXd& at, const HeldMode& mode, int returns,
                                                        int order);
     [[nodiscard]] double start() const { return start_; }

@@ -281,4 +281,17 @@ test("what a load comes to just before it jumps back, at the end of its period, 
     end
 end)
 
+test("multipliers beside a grazing are those of the motion, from wherever it was found", function()
+    -- This motion keeps 1e-3 from the speed of the belt (di Bernardo, Kowalczyk and Nordmark 2003: grazing at 1.7077997).
+    -- The values are those of the variational equation, by an integrator of order 8.
+    local sys = system { I = 1, k = 1, friction = friction.law(function(s) return 1.5 - 1.5 * s + 0.45 * s ^ 3 end) }
+    for _, start in ipairs { { 0, 0 }, { 2, 0.9 }, { 0.5, -1 } } do
+        local M = 0.1 * excitation.harmonic { omega = 1.7079, phase = math.pi / 2 }
+        local s = sys:steady { M = M, belt = 1, theta0 = start[1], velocity0 = start[2] }
+        equal(s.periods, 4)
+        near(s.multipliers[1].re, 0.843663, 1e-3)
+        near(s.multipliers[2].re, 0.007191, 1e-3)
+    end
+end)
+
 finish()
