@@ -349,20 +349,22 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
                          ahead.events == behind.events};
         };
         constexpr double least = 3e-8, little = 0.01;
-        for (double step = h;; step /= 10) {
+        double step = h;
+        for (bool done = false; !done;) {
             const auto near = slope(step), far = order == 2 ? near : slope(2 * step);
             if (!near || !far) return {};
             const double bend = std::max(near->bend, far->bend);
             const bool alike = near->alike && far->alike;
             // A grazing, a stop or a switch lies between the two sides.
-            if (order != 2 && !alike && bend > little) {
-                if (step / 10 < least) return {};
+            done = order == 2 || alike || bend <= little;
+            if (!done) {
+                step /= 10;
+                if (step < least) return {};
                 continue;
             }
             found.bend = std::max(found.bend, bend);
             found.by_place +=
                 (order == 2 ? near->value : VectorXd((4 * near->value - far->value) / 3)) * direction.transpose();
-            break;
         }
     }
     return found;

@@ -196,7 +196,7 @@ std::vector<Acting> acting_in(const RigQuestion& question);
 /// known. What is a function is looked at at some times: only its user knows its period.
 std::optional<Repetition> repetition_of(const RigQuestion& question);
 /// Asks all of it at times all over the period and one period later: the sentence that names the worst two that differ.
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& drive);
+std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& repeats);
 /// `settles` of the question; none where its controllers and what else drives the bodies have no common period, or too
 /// long a one.
 std::optional<double> settles_after(const RigQuestion& question);

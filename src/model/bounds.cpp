@@ -315,7 +315,11 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
                                             : never;
     }
     const double way = std::max(result.range.hi - c, c - result.range.lo);
-    if (!(result.disc.r * worth + result.apart <= way)) result.disc.r = 0, result.apart = way == way ? way : never;
+    if (std::isnan(way)) {
+        result.disc.r = 0, result.apart = never;
+    } else if (!(result.disc.r * worth + result.apart <= way)) {
+        result.disc.r = 0, result.apart = way;
+    }
     return result;
 }
 

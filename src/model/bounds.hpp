@@ -38,7 +38,8 @@ struct Disc {
 inline double outward(double r, double c) {
     constexpr double few = 16 * std::numeric_limits<double>::epsilon();
     const double more = r * (1 + few) + few * std::fabs(c) + std::numeric_limits<double>::min();
-    return more == more ? more : never;
+    if (std::isnan(more)) return never;
+    return more;
 }
 
 /// The results of an operation that gives c for the centres; not finite where it may not be analytic.
