@@ -36,7 +36,7 @@ bool tells_all(const RunToTell& whole) {
     return several(whole) && !whole.joint;
 }
 
-/// What acts on the joint of this number as M; nothing acts on a link by itself.
+/// The M of a body; a link has none.
 const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
     static const model::Excitation none;
     return whole.system.is_link(joint) ? none : whole.drive.loads[joint];
@@ -236,7 +236,7 @@ private:
         end_paragraph();
     }
 
-    /// Of a link, or of a body that is not alone.
+    /// A link, and a body that links pull at, have no T0 and zeta of their own.
     void tell_numbers() {
         std::string numbers;
         const auto number = [&](const char* name, double value) {
@@ -325,7 +325,7 @@ private:
             add(".");
         }
         if (first.stuck && !first.ended_by) {
-            say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was sampled " : "",
+            say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
                 at(run_.t_stop));
             tell_stillness();
         }
@@ -355,7 +355,7 @@ private:
         tell_impacts();
     }
 
-    /// A contact on which nothing presses.
+    /// Nothing presses on an open contact.
     void tell_open() {
         const double open = time_open(run_), all = run_.t_stop - run_.t_start;
         if (open >= all && all > 0) {
@@ -384,7 +384,7 @@ private:
         end_paragraph();
     }
 
-    /// Of what others disturb, whose turns have no rule.
+    /// Turns that links disturb have no rule, so only their range is told.
     void tell_reach() {
         double low = run_.initial.theta, high = low;
         for (const Stretch& swing : swings_) {
@@ -669,18 +669,15 @@ private:
         if (!system_.units.usual()) say("Units: {}.", system_.units.in_words());
     }
 
-    /// What the run may have missed, and what made it long.
+    /// These sentences say what the run may have missed, and what made it long.
     void tell_doubts() {
         const double shortest = system_.shortest_natural_period(), scale = std::isfinite(shortest) ? shortest : 1;
-        if (run_.gap > 0 && run_.gap == run_.unproven) {
-            say("What Lua functions do is proven but for pulses shorter than {}, which may have been missed.",
-                text::number_text(run_.gap, scale));
-        } else if (run_.gap > 0) {
-            say("Lua functions are sampled at most {} apart: a shorter pulse would have been missed.",
+        if (run_.gap > 0) {
+            say("A pulse of a Lua function that is shorter than {} may have been missed.",
                 text::number_text(run_.gap, scale));
         }
         if (run_.noise > 0) {
-            say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
+            say("The torques are noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
         }
         if (run_.jumps_often()) {
             say("M jumps {} times along the motion. Each jump was located, which takes at least six evaluations of M: "

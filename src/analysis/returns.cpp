@@ -349,23 +349,19 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
                          ahead.events == behind.events};
         };
         constexpr double least = 3e-8, little = 0.01;
+        const auto differ = [](const Slope& s) { return !s.alike && s.bend > little; };
         double step = h;
-        for (bool done = false; !done;) {
-            const auto near = slope(step), far = order == 2 ? near : slope(2 * step);
-            if (!near || !far) return {};
-            const double bend = std::max(near->bend, far->bend);
-            const bool alike = near->alike && far->alike;
-            // A grazing, a stop or a switch lies between the two sides.
-            done = order == 2 || alike || bend <= little;
-            if (!done) {
-                step /= 10;
-                if (step < least) return {};
-                continue;
-            }
-            found.bend = std::max(found.bend, bend);
-            found.by_place +=
-                (order == 2 ? near->value : VectorXd((4 * near->value - far->value) / 3)) * direction.transpose();
+        std::optional<Slope> near = slope(step), far = order == 2 ? near : slope(2 * step);
+        // A grazing, a stop or a switch lies between the two sides.
+        while (order != 2 && near && far && (differ(*near) || differ(*far))) {
+            step /= 10;
+            if (step < least) return {};
+            near = slope(step), far = slope(2 * step);
         }
+        if (!near || !far) return {};
+        found.bend = std::max({found.bend, near->bend, far->bend});
+        const VectorXd value = order == 2 ? near->value : VectorXd((4 * near->value - far->value) / 3);
+        found.by_place += value * direction.transpose();
     }
     return found;
 }

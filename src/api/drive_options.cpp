@@ -1,4 +1,4 @@
-// What drives a run of bodies and links, and from where it starts: options to model::Drive.
+// Reads the options of what drives a run, and of where it starts, into a model::Drive.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -43,13 +43,13 @@ struct WantedEvent {
     std::shared_ptr<EventAction> act = {};
 };
 
-/// What acts on a system in a run, and from where it starts.
+/// All that acts on a system in a run, and the state from which it starts.
 struct Drive {
-    /// What acts on one body.
+    /// The drive of one body.
     Drive(Excitation M = {}, const State& start = {})  // NOLINT(google-explicit-constructor): M alone is a drive
         : loads{std::move(M)}, belts(1), theta0{start.theta}, velocity0{start.velocity} {}
 
-    /// Of several, from rest, on which nothing acts.
+    /// Several bodies at rest, on which nothing acts.
     [[nodiscard]] static Drive at_rest(std::size_t bodies, std::size_t joints) {
         Drive drive;
         drive.loads.resize(bodies), drive.belts.resize(joints);
@@ -58,14 +58,14 @@ struct Drive {
     }
 
     std::vector<Excitation> loads;  ///< M of each body
-    /// Of each body and link: the velocity of the surface that its dry friction acts against, rad per time unit.
+    /// The velocity of the surface that the dry friction of each body and link acts against, rad per time unit.
     std::vector<Excitation> belts;
     Excitation base = {};  ///< acceleration of the support, rad per time unit^2; angles are relative to it
     std::vector<OwnState> states = {};
     std::vector<WantedEvent> events = {};
     std::vector<double> theta0, velocity0;  ///< of each body
 
-    // Of one body, or the first.
+    // The parts that concern one body, or the first.
     [[nodiscard]] const Excitation& M() const { return loads.front(); }
     [[nodiscard]] const Excitation& belt() const { return belts.front(); }
     [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }

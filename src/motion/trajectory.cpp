@@ -147,7 +147,7 @@ std::string outcome_text(const Trajectory& trajectory) {
     if (trajectory.outcome == model::Outcome::chattering) return chatter_text(trajectory);
     if (trajectory.rough) return rough_text(*trajectory.rough);
     std::string text(model::sentence(trajectory.outcome));
-    if (trajectory.noise > 0) text += fmt::format(", within the noise of M, {:.2g}", trajectory.noise);
+    if (trajectory.noise > 0) text += fmt::format(", within the noise of the torques, {:.2g}", trajectory.noise);
     return text;
 }
 
@@ -177,7 +177,7 @@ std::string summary(const Trajectory& trajectory) {
                     : trajectory.rough       ? rough_text(*trajectory.rough)
                                              : std::string(model::sentence(trajectory.outcome));
     }
-    if (trajectory.noise > 0) text += fmt::format("; noise of M {:.2g}", trajectory.noise);
+    if (trajectory.noise > 0) text += fmt::format("; noise of the torques {:.2g}", trajectory.noise);
     if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
     text += too_few_rows(static_cast<std::size_t>(rows.rows()), trajectory.events.size());
     if (trajectory.find("theta")) text += fmt::format("; peak |theta| {:.3g}", peak(trajectory));

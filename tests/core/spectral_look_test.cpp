@@ -230,7 +230,7 @@ TEST_CASE("an M that is rough on every scale is followed as exactly as it can be
         CHECK(one.run.noise <= 10 * c.size);
         // A constant error of that size would move the mass by its own size over k, and it is not constant.
         CHECK(std::fabs(one.run.state_at_stop.theta - clean.run.state_at_stop.theta) <= c.size);
-        CHECK(outcome_text(one.run).find("within the noise of M") != std::string::npos);
+        CHECK(outcome_text(one.run).find("within the noise of the torques") != std::string::npos);
         return one.calls;
     };
     // Within a few panels, and then no slower than a smooth one.

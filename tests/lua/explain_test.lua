@@ -35,7 +35,7 @@ test("the story of a function says how closely it was looked at, and never that 
     local sys = nondimensional { friction_ratio = 0.3 }
     local function pulse(t) return ({ t > 3.001 and t < 3.002 and 500 or 0 })[1] end -- the table: not read
     local unseen = sys:simulate { M = pulse, t_end = 10, dt = 1 }
-    says(unseen, "Nothing that was sampled moved it until the end of the run", "sampled at most 0.056", "a shorter pulse would have been missed")
+    says(unseen, "Nothing that was seen moved it until the end of the run", "A pulse of a Lua function that is shorter than 0.056")
     assert(unseen.gap > 0.05 and unseen.gap < 0.0585, unseen.gap)
     local seen = sys:simulate { M = pulse, t_end = 10, dt = 1, integrator = integrator.spectral { narrowest = 0.001 } }
     assert(#seen.events > 0 and seen.gap <= 0.001, seen.gap)
@@ -75,9 +75,9 @@ end)
 test("an M that is rough on every scale is told once, in the outcome, the summary and the story", function()
     local function single(x) return (string.unpack("f", string.pack("f", x))) end
     local run = nondimensional { zeta = 0.1 }:simulate { M = function(t) return single(math.sin(5 * t)) end, t_end = 10, dt = 1 }
-    assert(run.outcome:find("^reached the end, within the noise of M, %d"), run.outcome)
-    has(run, "noise of M")
-    says(run, "M is noisy (about")
+    assert(run.outcome:find("^reached the end, within the noise of the torques, %d"), run.outcome)
+    has(run, "noise of the torques")
+    says(run, "The torques are noisy (about")
 end)
 
 test("what a very fine encoder costs is told in the summary and the story", function()
@@ -115,7 +115,7 @@ test("outputs that are held, and relays of the motion, hide no pulse", function(
         [excitation.delayed(function(_, theta) return -theta end, { by = 0.5 })] = true,
     } do
         local text = sys:simulate { M = M, theta0 = 1, t_end = 10, dt = 1 }:explain()
-        equal(text:find("Lua functions are sampled", 1, true) ~= nil, hides)
+        equal(text:find("A pulse of a Lua function", 1, true) ~= nil, hides)
     end
 end)
 

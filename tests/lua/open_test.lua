@@ -1,12 +1,6 @@
 -- Contacts that open, where nothing presses on them or their limits are 0, and close again.
 dofile "tests/lua/support.lua"
 
-local function unread(f)
-    return function(...)
-        select("#")
-        return f(...)
-    end
-end
 local both = { function(f) return f end, unread }
 
 -- Kinds and times, and where, are what they should be.

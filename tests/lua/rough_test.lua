@@ -60,7 +60,7 @@ test("noise in M is followed as exactly as it can be, also with two bodies", fun
     equal(clean.outcome, "reached the end")
     for _, size in ipairs { 1e-11, 1e-9, 1e-8 } do
         local found = run(size)
-        local said = tonumber(found.outcome:match("within the noise of M, (%S+)"))
+        local said = tonumber(found.outcome:match("within the noise of the torques, (%S+)"))
         assert(said and said > size / 30 and said < 10 * size, found.outcome)
         -- A constant error of that size would move the mass by its own size over k.
         near(found.a.theta, clean.a.theta, size)

@@ -1008,7 +1008,10 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
         if (formula.takes_motion() && !named) unseen_.give(1, whole(0)), unseen_.give(2, whole(n_));
         const std::size_t count = formula.state_count(), from = named ? 0 : 2, more = speed != nullptr ? 1 : 0;
         if (count == 0) return true;
-        if (count != told - from + more) return false;
+        if (count != told - from + more) {
+            s.proven = false;
+            return false;
+        }
         if (speed != nullptr) unseen_.give(formula.first_state(), *speed);
         for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, whole(k));
         return true;
@@ -1050,7 +1053,7 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
                                  look(own, part_of(formula) * own + (clearly * noise + smallest) / std::fabs(gain), 0);
                              });
     };
-    /// Of the motion and, before all states, of a speed.
+    /// The function is given the motion and, before all states, a speed.
     const auto begin = [&](const Mechanics::Asked& asked, const Series& first, const Series* speed) {
         model::Formula* formula = good && asked.function != nullptr ? asked.function->read() : nullptr;
         if (formula == nullptr) return false;
@@ -1062,21 +1065,21 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     const auto beside = [&](std::size_t i) {
         return sizes_[i] + mechanics_.system().bodies[i].inertia * greatest(s.y[n_ + i]) / s.h;
     };
-    // Of a motion that has died out only the rounding of what has acted is left.
+    // When a motion has died out, only the rounding of what has acted is left.
     const auto rough = [&](std::size_t k) { return std::max(floor_.noise[k], rounding * floor_.greatest[k]); };
     double slowest = model::never;
     for (std::size_t i = 0; i < n_; ++i) {
         slowest = std::min(slowest, beside(i) / mechanics_.system().bodies[i].inertia);
         look_at_signal(mechanics_.loads()[i], beside(i), rough(i));
     }
-    look_at_signal(mechanics_.base(), slowest, 0);
+    look_at_signal(mechanics_.base_signal(), slowest, 0);
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
-        if (!begin(mechanics_.rate(k), time(0), nullptr)) continue;
+        if (!begin(mechanics_.asked_rate(k), time(0), nullptr)) continue;
         const double size = std::max({greatest(s.y[2 * n_ + k]) / s.h, greatest(s.f[2 * n_ + k]), fastest_rate_[k]});
         look(size, of_last_iteration * size + clearly * rough(n_ + k) + smallest, 0);
     }
     for (std::size_t e = 0; e < mechanics_.events(); ++e) {
-        if (begin(mechanics_.when(e), time(0), nullptr)) look(0, smallest, of_last_iteration);
+        if (begin(mechanics_.asked_when(e), time(0), nullptr)) look(0, smallest, of_last_iteration);
     }
     for (std::size_t j = 0; j < mechanics_.joints() && good; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
@@ -1087,16 +1090,16 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
         };
         const double size = beside(body);
         if (mechanics_.has_belt(j)) {
-            look_at_signal(mechanics_.belt(j), std::max(fastest_belt_[j], greatest(s.y[n_ + body])), 0);
+            look_at_signal(mechanics_.belt_signal(j), std::max(fastest_belt_[j], greatest(s.y[n_ + body])), 0);
         }
         mechanics_.for_each_friction(j, mode, s.moment(node_count / 2, points_[0]),
                                      [&](const Signal& signal, double torque) {
                                          look_at_signal(signal, torque > 0 ? size / torque : model::never, 0);
                                      });
         const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
-        if (begin(mechanics_.spring(j), between(0), nullptr)) look(size, allowed, 0);
+        if (begin(mechanics_.asked_spring(j), between(0), nullptr)) look(size, allowed, 0);
         const Slipping& how = mode.friction[j];
-        const Mechanics::Asked law = mechanics_.law(j);
+        const Mechanics::Asked law = mechanics_.asked_law(j);
         if (law.function == nullptr || how.way == model::Motion::stuck || mode.leans[j] != 0 || how.riding) continue;
         Series speed = difference(between(n_), cheb::fit(s.belts[j]));
         for (double& c : speed) c *= model::sign_of(how.way);

@@ -337,13 +337,13 @@ double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
 
-Mechanics::Asked Mechanics::spring(std::size_t joint) const {
+Mechanics::Asked Mechanics::asked_spring(std::size_t joint) const {
     const auto* spring = system_.joints[joint].spring.as<model::springs::UserSpring>();
     const auto& held = contacts_[joint].spring;
     return spring == nullptr ? Asked{} : Asked{spring->function.get(), held ? held->piece() : nullptr};
 }
 
-Mechanics::Asked Mechanics::law(std::size_t joint) const {
+Mechanics::Asked Mechanics::asked_law(std::size_t joint) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const auto* user = friction.law.as<laws::UserLaw>();
     const auto& held = contacts_[joint].law;
@@ -495,7 +495,8 @@ bool Mechanics::asks_functions() const {
 
 bool Mechanics::has_functions() const {
     bool has = asks_functions() || !rates_.empty() || !whens_.empty();
-    for (std::size_t j = 0; j < joints(); ++j) has = has || spring(j).function != nullptr || law(j).function != nullptr;
+    for (std::size_t j = 0; j < joints(); ++j)
+        has = has || asked_spring(j).function != nullptr || asked_law(j).function != nullptr;
     return has;
 }
 

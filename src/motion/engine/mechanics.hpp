@@ -20,7 +20,7 @@ constexpr std::size_t index(int body) {
     return static_cast<std::size_t>(body);
 }
 
-/// What rounding may do to a run: of the torques on each body, and of the rate of each state.
+/// The rounding of a run: that of the torques on each body, and behind them that of the rate of each state.
 struct Floor {
     std::vector<double> noise;     ///< how rough it was found to be
     std::vector<double> greatest;  ///< so far; no more than a small part of it is taken for noise
@@ -174,9 +174,9 @@ public:
     [[nodiscard]] bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
     /// The contact may be open for a while: its normal load, or all of its limits, change.
     [[nodiscard]] bool may_open(std::size_t joint) const { return rubs(joint) && contacts_[joint].may_open; }
-    /// What presses on a contact: its normal load, or else the greatest of its limits. Up to 0 the contact is open.
+    /// The normal load of a contact, or else the greatest of its limits. The contact is open while this is 0 or less.
     [[nodiscard]] double pressing(std::size_t joint, const Moment& at) const;
-    /// What tells of an event of the user.
+    /// The function of an event of the user.
     [[nodiscard]] double when(std::size_t event, const Moment& at) const { return whens_[event].value(at); }
     /// How great torques are at a joint: of its springs and its friction.
     [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
@@ -241,20 +241,19 @@ public:
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
     }
-    /// How a user's function is asked, for those who look at what is read.
+    /// A user's function, and the piece that it is held to: for those who look at what is read.
     struct Asked {
         model::UserFunction* function = nullptr;
         const model::terms::Piece* piece = nullptr;
     };
-    [[nodiscard]] Asked rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
-    [[nodiscard]] Asked when(std::size_t event) const {
+    [[nodiscard]] Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
+    [[nodiscard]] Asked asked_when(std::size_t event) const {
         return {drive_.events[event].when.get(), whens_[event].piece()};
     }
-    [[nodiscard]] Asked spring(std::size_t joint) const;
-    [[nodiscard]] Asked law(std::size_t joint) const;
-    /// The base, and where there are belts, the velocity of one.
-    [[nodiscard]] const Signal& base() const { return base_; }
-    [[nodiscard]] const Signal& belt(std::size_t joint) const { return belts_[joint]; }
+    [[nodiscard]] Asked asked_spring(std::size_t joint) const;
+    [[nodiscard]] Asked asked_law(std::size_t joint) const;
+    [[nodiscard]] const Signal& base_signal() const { return base_; }
+    [[nodiscard]] const Signal& belt_signal(std::size_t joint) const { return belts_[joint]; }
     /// Calls it with what limits or drives the friction of a joint in a mode, and what torque one unit of it makes.
     template <class F>
     void for_each_friction(std::size_t joint, const Mode& mode, const Moment& at, F f) const {
@@ -299,7 +298,7 @@ private:
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
     std::vector<Piecewise> rates_;  ///< of the states of the user
-    std::vector<Piecewise> whens_;  ///< of his events
+    std::vector<Piecewise> whens_;  ///< of the events of the user
     std::vector<double> jumps_;     ///< found, of belts
     bool nonlinear_ = false, all_linear_ = true, has_belts_ = false;
 };

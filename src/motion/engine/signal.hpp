@@ -18,6 +18,7 @@
 
 #include "model/assembly.hpp"
 #include "model/controller.hpp"
+#include "model/formula.hpp"
 #include "motion/engine/nodes.hpp"
 
 namespace dinal::motion::engine {
@@ -180,10 +181,12 @@ public:
     }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
-    /// All its functions are read, but for controllers that hold a value.
+    /// All its functions are read, but for controllers that hold a value, and the times of their changes are known.
     [[nodiscard]] bool is_read() const {
         return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) {
-            return part.function != nullptr ? part.function->function->read() != nullptr : part.delayed == nullptr;
+            if (part.function == nullptr) return part.delayed == nullptr;
+            const model::Formula* read = part.function->function->read();
+            return read != nullptr && !read->gave_up();
         });
     }
     /// Its functions that act at this time and are read: the formula, the piece that it is held to, by how much later
