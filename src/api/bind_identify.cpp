@@ -70,7 +70,7 @@ inline constexpr text::Option own_identify_options[] = {
      .otherwise = "none: a free decay",
      .meaning =
          "the excitation, in the time of the record: a Lua function, or an excitation such as excitation.samples; of "
-         "several bodies by name, as in rig:simulate",
+         "several bodies by name, as in sys:simulate",
      .object = "excitation"},
     {.name = "free",
      .otherwise = "all that are not given",
@@ -103,9 +103,7 @@ inline constexpr text::Option own_identify_options[] = {
      .meaning = "the reading where the spring is relaxed, if known; of several bodies by name",
      .wanted = by_body_wanted},
 };
-inline constexpr text::Option extras_of_record[] = {more_drive_options[0], more_drive_options[2],
-                                                    more_drive_options[3]};
-inline constexpr auto identify_options = text::joined(own_identify_options, extras_of_record);
+inline constexpr auto identify_options = text::joined(own_identify_options, states_option, moved_options);
 inline constexpr text::Call identify_call{"identify", "identify{ data = run }", identify_options};
 
 namespace {
@@ -428,13 +426,9 @@ public:
 private:
     void take_system() {
         options_.push("system");
-        if (const auto* plain = lua::test<model::Oscillator>(L_, -1)) {
-            system_ = motion::engine::assembly_of(*plain);
-        } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, -1)) {
-            system_ = **rig;
-        } else {
-            options_.wrong("system");
-        }
+        const auto* system = lua::test<model::AssemblyHandle>(L_, -1);
+        if (system == nullptr) options_.wrong("system");
+        system_ = **system;
         lua_pop(L_, 1);
         for (const char* name : {"I", "k", "C", "Rd", "Re"}) {
             if (options_.has(name))
@@ -571,7 +565,7 @@ private:
             const bool number = lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(lua_tonumber(L_, -1));
             if (!number || lua_type(L_, -2) != LUA_TSTRING) options_.wrong(option);
             const std::string what = fmt::format("identify: {}: the system", option);
-            const std::size_t joint = joint_named(L_, lua_tostring(L_, -2), system_, what.c_str(), rig_class);
+            const std::size_t joint = joint_named(L_, lua_tostring(L_, -2), system_, what.c_str(), system_class);
             if (system_.is_link(joint) && std::string_view(option) != "offset") options_.wrong(option);
             numbers[joint] = lua_tonumber(L_, -1);
         }

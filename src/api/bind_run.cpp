@@ -548,7 +548,8 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
 /// What was simulated, and how; nil where the run was read from a file.
 lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
     if (run->origin) {
-        lua::push(L, run->origin->system);
+        lua::push<AssemblyHandle>(
+            L, std::make_shared<const model::Assembly>(motion::engine::assembly_of(run->origin->system)));
     } else if (!run->whole) {
         lua_pushnil(L);
     } else if (run->joint && run->whole->system->named) {

@@ -262,16 +262,17 @@ double usual_dt(const motion::Window& window, double natural_period) {
 }
 
 int simulate_system(lua_State* L) {
-    const model::Oscillator& system = lua::self<model::Oscillator>(L, 1, simulate_call.example);
+    AssemblyHandle handle = lua::self<AssemblyHandle>(L, 1, simulate_call.example);
     const lua::Options options(L, 2, simulate_call);
+    if (const auto units = asked_units(L, options)) {
+        model::Assembly renamed = *handle;
+        renamed.units = *units;
+        handle = std::make_shared<const model::Assembly>(std::move(renamed));
+    }
+    if (!handle->is_plain()) return simulate_bodies(L, options, std::move(handle));
     RunOptions asked;
     options.fill(asked);
-    source::Task task = asked_task(L, options, asked, system);
-    if (const auto units = asked_units(L, options)) {
-        model::OscillatorParameters parameters = system.parameters();
-        parameters.units = *units;
-        task.system = options.value_or_fail(model::Oscillator::make(parameters));
-    }
+    source::Task task = asked_task(L, options, asked, oscillator_of(*handle).value());
     const double from = task.window.start;
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
         return motion::simulate(given.system, given.drive, given.window, given.rows, given.integrator, monitor, limits);
@@ -308,8 +309,9 @@ void check_name(const lua::Options& options, const char* option, const std::stri
     };
     if (!lua::is_name(name)) refuse("is not a name; use letters, digits and _");
     for (const lua::Member& member : of.members) {
-        if (name == member.name)
-            refuse(fmt::format("is a name that a {} has already; take another", &of == &rig_class ? "system" : "run"));
+        const bool gives_way = &of == &system_class && member.kind == lua::Kind::field && !is_of_whole(name);
+        if (name == member.name && !gives_way)
+            refuse(fmt::format("is a name that a {} has already; take another", of.name));
     }
 }
 

@@ -40,25 +40,15 @@ std::function<void(const void*)> watched_memories(lua_State* L, const lua::Optio
 
 /// What is asked of sys:simulate besides the excitation and the integrator.
 struct RunOptions {
-    double theta0 = 0;
-    double velocity0 = 0;
     double t_start = 0;
     std::optional<double> t_end = {};
     std::optional<double> dt = {};
     std::vector<double> times = {};
     bool dense = true;
 };
-inline constexpr text::FixedText<96> integrator_meaning{"the method; by default ", motion::default_integrator.c_str()};
-inline constexpr text::Option run_start_options[] = {
-    {.name = "M",
-     .unit = "torque",
-     .otherwise = "0",
-     .meaning = "the excitation: a number, a function of t or of t, theta, velocity, or an excitation",
-     .object = "excitation"},
-    {.name = "theta0", .unit = "rad", .meaning = "initial angle", .filled = text::fills<&RunOptions::theta0>},
-    {"velocity0", "rad per time unit", text::its_own, text::any_finite, "initial velocity",
-     text::fills<&RunOptions::velocity0>},
-};
+inline constexpr text::FixedText<240> integrator_meaning{
+    "the method; by default ", motion::default_integrator.c_str(),
+    ". exact and dinal1989 take one body without a name and with constant friction"};
 inline constexpr text::Option window_options[] = {
     {.name = "t_start", .unit = "time units", .meaning = "initial time", .filled = text::fills<&RunOptions::t_start>},
     {"t_end", "time units", text::its_own, text::any_finite, "end of the run; by default the last of the times",
@@ -85,8 +75,8 @@ inline constexpr text::Option dense_option[] = {
      .meaning = "false keeps only the rows: saves memory, but run:at(t) does not work",
      .filled = text::fills<&RunOptions::dense>},
 };
-inline constexpr auto simulate_options = text::joined(run_start_options, window_options, integrator_option,
-                                                      dense_option, more_drive_options, model::units_option);
+inline constexpr auto simulate_options = text::joined(drive_options, window_options, integrator_option, dense_option,
+                                                      more_drive_options, model::units_option);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options, false, &with_call};
 
@@ -105,9 +95,10 @@ inline constexpr text::Option continue_options[] = {
 inline constexpr text::Call continue_call{
     "run:continue", "run:continue{ t_end = 40 }", continue_options, true, &simulate_call, "t_end"};
 
-inline constexpr text::FixedText<600> simulate_summary{
+inline constexpr text::FixedText<760> simulate_summary{
     "Runs the system. The default integrator is ", motion::default_integrator.c_str(),
-    ". With states, M is called with (t, theta, velocity, z), and their columns are run.states.NAME. M must "
+    " for one body without a name, and integrator.spectral{} for others, all of whose sticking contacts are decided "
+    "together. With states, M is called with (t, theta, velocity, z), and their columns are run.states.NAME. M must "
     "depend only on its arguments, because it is evaluated out of order and repeatedly; a run that detects a "
     "memory ends with a message. Put memory into states or excitation.sampled, relay or delayed, and random "
     "numbers into a table. If M fails or Ctrl-C is pressed, dinal.partial has the run so far."};
@@ -116,7 +107,12 @@ inline constexpr lua::Doc simulate_doc = {
     simulate_summary.c_str(),
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ theta0 = 0, velocity0 = 2*math.pi, t_end = 3, dt = 0.01 }\n"
-    "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151",
+    "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151\n"
+    "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.2 } },\n"
+    "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
+    "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"
+    "print(string.format(\"%.6f\", run.events[1].t), run.events[1].kind, run.events[1].where)  --> "
+    "1.153846\tstick\tclutch",
     {&simulate_call}};
 
 }  // namespace dinal::api

@@ -104,17 +104,6 @@ int push_motion(lua_State* L, const lua::Options& options, analysis::RigQuestion
 
 }  // namespace
 
-int steady_of_rig(lua_State* L) {
-    analysis::RigQuestion question{.system = lua::self<AssemblyHandle>(L, 1, rig_steady_call.example), .drive = {}};
-    const lua::Options options(L, 2, rig_steady_call);
-    SteadyOptions asked;
-    options.fill(asked);
-    question.drive = asked_drive(L, options, *question.system);
-    question.periods = asked.periods.value_or(0);
-    question.repeats = repetition_or_fail(L, options, question, asked_period(options));
-    return push_motion(L, options, std::move(question));
-}
-
 namespace {
 
 void run_of_rig(lua_State* L, const Steady& s) {
@@ -554,13 +543,19 @@ void find_period(lua_State* L, analysis::SteadyQuestion& question) {
 }
 
 int steady_of_system(lua_State* L) {
-    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, steady_call.example);
+    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, steady_call.example);
     const lua::Options options(L, 2, steady_call);
     SteadyOptions asked;
     options.fill(asked);
     const std::optional<double> period = asked_period(options);
-    analysis::SteadyQuestion question{.system = system,
-                                      .drive = asked_drive(L, options, motion::engine::assembly_of(system)),
+    if (!system->is_plain()) {
+        analysis::RigQuestion whole{
+            .system = system, .drive = asked_drive(L, options, *system), .periods = asked.periods.value_or(0)};
+        whole.repeats = repetition_or_fail(L, options, whole, period);
+        return push_motion(L, options, std::move(whole));
+    }
+    analysis::SteadyQuestion question{.system = oscillator_of(*system).value(),
+                                      .drive = asked_drive(L, options, *system),
                                       .repeats = {},
                                       .periods = asked.periods.value_or(0)};
     find_period(L, question);

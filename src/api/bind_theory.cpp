@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
@@ -201,6 +202,13 @@ private:
     std::shared_ptr<const std::vector<double>> values_;
 };
 
+/// The option `system`; none when it is absent.
+std::optional<model::Oscillator> asked_system(const lua::Options& options) {
+    const auto* system = options.object<AssemblyHandle>("system");
+    if (system == nullptr) return {};
+    return options.value_or_fail(oscillator_of(**system));
+}
+
 class TheoryArguments {
 public:
     TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
@@ -234,11 +242,9 @@ public:
     }
     /// The system; nullptr when there is none and none is needed.
     /// Raises when no closed form is known for it.
-    [[nodiscard]] const model::Oscillator* system() const {
-        const auto* system = options_.object<model::Oscillator>("system");
-        if (system == nullptr) {
-            return system;
-        }
+    [[nodiscard]] std::optional<model::Oscillator> system() const {
+        std::optional<model::Oscillator> system = asked_system(options_);
+        if (!system) return system;
         const model::Friction& friction = system->friction();
         const char* lacks = !system->has_spring() ? "need a spring, and this system has k = 0"
                             : system->walls()     ? "do not include walls; simulate this system"
@@ -373,7 +379,7 @@ public:
     FreeMotion operator[](std::size_t i) const { return {system_, {theta0_[i], velocity0_[i]}}; }
 
 private:
-    const model::Oscillator& system_;
+    model::Oscillator system_;
     Quantity theta0_, velocity0_;
 };
 
@@ -398,7 +404,7 @@ int free_response(lua_State* L) {
     TheoryArguments arguments(L, options::free_response);
     const lua::Options& given = arguments.options();
     const Quantity t = arguments.quantity("t");
-    if (const model::Oscillator* system = arguments.system()) {
+    if (const auto system = arguments.system()) {
         const Starts starts(arguments);
         if (given.has("omega0") || given.has("zeta")) {
             given.fail("system", "system excludes omega0 and zeta, which it defines");
@@ -421,7 +427,7 @@ int free_response(lua_State* L) {
 
 int extremes(lua_State* L) {
     const lua::Options table(L, 1, options::extremes);
-    const auto& system = *table.object<model::Oscillator>("system");
+    const model::Oscillator system = *asked_system(table);
     options::ExtremesOptions asked;
     table.fill(asked);
     const FreeMotion motion(system, {asked.theta0, asked.velocity0});
@@ -451,13 +457,13 @@ int rest_position(lua_State* L) {
 
 int half_cycle(lua_State* L) {
     TheoryArguments arguments(L, options::half_cycle);
-    const model::Oscillator* system = arguments.system();
+    const auto system = arguments.system();
     for (const char* name : {"zeta", "x_f", "dead_zone"}) {
-        if (system != nullptr && arguments.options().has(name)) {
+        if (system && arguments.options().has(name)) {
             arguments.options().fail(name, fmt::format("system excludes {}, which it defines", name));
         }
     }
-    if (system != nullptr && !system->damped_frequency()) {
+    if (system && !system->damped_frequency()) {
         arguments.options().fail("system",
                                  fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
                                              system->damping_ratio()));
@@ -465,7 +471,7 @@ int half_cycle(lua_State* L) {
     const Quantity X = arguments.quantity("X");
     const Quantity n = arguments.quantity("n");
     const auto quantity = [&](const char* name, auto of_system) {
-        return system != nullptr ? Quantity(of_system(*system)) : arguments.quantity(name);
+        return system ? Quantity(of_system(*system)) : arguments.quantity(name);
     };
     const Quantity zeta = quantity("zeta", [](const model::Oscillator& sys) { return sys.damping_ratio(); });
     const Quantity x_f =
@@ -512,7 +518,7 @@ double stop_boundary(double r, double zeta, double factor) {
 
 int step_limit(lua_State* L) {
     TheoryArguments arguments(L, options::step_limit);
-    const model::Oscillator& system = *arguments.system();
+    const model::Oscillator system = *arguments.system();
     options::StepRule asked;
     arguments.options().fill(asked);
     const Quantity theta0 = arguments.quantity("theta0");

@@ -20,61 +20,6 @@ using model::AssemblyHandle;
 /// What the options Rd, Re, friction and normal say.
 model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call);
 
-inline constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
-/// What drives a run, and from where it starts.
-inline constexpr text::Option bodies_drive_rows[] = {
-    {.name = "M",
-     .unit = "torque",
-     .otherwise = "0",
-     .meaning =
-         "the excitations by body: { load = M }, each a number, an excitation or a function of t, or of t, theta, "
-         "velocity, z, where theta.load and velocity.load are those of a body",
-     .object = "excitation",
-     .wanted = by_body_wanted},
-    {.name = "theta0",
-     .unit = "rad",
-     .otherwise = "0",
-     .meaning = "initial angles: { load = 0.1 }",
-     .wanted = by_body_wanted},
-    {.name = "velocity0",
-     .unit = "rad per time unit",
-     .otherwise = "0",
-     .meaning = "initial velocities",
-     .wanted = by_body_wanted},
-    {.name = "belt",
-     .unit = "rad per time unit",
-     .otherwise = "0",
-     .meaning = "velocities of the surface under a body or link, by name: numbers, functions of t or excitations",
-     .wanted = by_body_wanted},
-    more_drive_options[3],
-    {.name = "states",
-     .meaning =
-         "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, "
-         "z) ... end } }",
-     .wanted =
-         "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta.load end } }",
-     .fields = {&state_call, text::Fields::Place::by_name}},
-    {.name = "events",
-     .meaning =
-         "events to locate: a list of { when = function(t, theta, velocity, z), ... }; act may assign to theta.NAME, "
-         "velocity.NAME and z.NAME",
-     .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
-     .fields = {&event_call, text::Fields::Place::listed}},
-};
-inline constexpr text::Option rig_integrator_option[] = {
-    {.name = "integrator",
-     .otherwise = "spectral",
-     .meaning = "the method: integrator.spectral or integrator.rk4; exact and dinal1989 are for one body with constant "
-                "friction",
-     .object = "integrator",
-     .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
-};
-inline constexpr auto bodies_simulate_options =
-    text::joined(bodies_drive_rows, window_options, rig_integrator_option, dense_option);
-inline constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
-                                                 bodies_simulate_options};
-int simulate_bodies(lua_State* L);
-
 /// Calls f with the joint of each name in the table of this option, the value on the top of the stack.
 enum class Names { bodies, links, both };
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
@@ -105,11 +50,15 @@ using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 std::vector<std::string> body_names(const model::Assembly& system);
 /// Pushes the table of options that makes the body or link.
 void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
+/// The one body as an oscillator, with the formulas of it. Fails for named bodies, and where its friction varies.
+text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system);
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
 model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
-/// Goes on with a run that is not one of an Oscillator.
+/// Runs a system that is not plain.
+int simulate_bodies(lua_State* L, const lua::Options& options, AssemblyHandle system);
+/// Goes on with a run of one.
 int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked);
 /// Pushes it; of one body without a name as seen from that.
 void push_bodies_run(lua_State* L, const BodiesRunHandle& run);
@@ -125,6 +74,8 @@ std::size_t joint_named(lua_State* L, std::string_view name, const model::Assemb
 [[nodiscard]] std::string readings_of(const model::Assembly& system, const model::Drive& drive, bool located,
                                       bool native);
 
+/// A system with names has this field; others are of one body, and give way to a body or link of that name.
+bool is_of_whole(std::string_view field);
 /// Pushes the body or link as a system of its own.
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t joint);
 /// Pushes the system of one body of these options, or that of the options `bodies` and `links`.

@@ -156,22 +156,20 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
 
 }  // namespace
 
-int simulate_bodies(lua_State* L) {
-    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, bodies_simulate_call.example);
-    const lua::Options options(L, 2, bodies_simulate_call);
+int simulate_bodies(lua_State* L, const lua::Options& options, AssemblyHandle system) {
     RunOptions asked;
     options.fill(asked);
     if (!asked.t_end && asked.times.empty()) options.missing("t_end");
     auto run = std::make_shared<BodiesRun>();
-    run->system = system;
-    run->drive = asked_drive(L, options, *system);
+    run->system = std::move(system);
+    run->drive = asked_drive(L, options, *run->system);
     const motion::Window window{asked.t_start,
                                 asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
     if (const auto wrong = window.complaint()) options.fail(*wrong);
-    run->integrator = asked_integrator(options, *system, run->drive, window);
-    run->dt = asked.dt.value_or(usual_dt(window, system->shortest_natural_period()));
+    run->integrator = asked_integrator(options, *run->system, run->drive, window);
+    run->dt = asked.dt.value_or(usual_dt(window, run->system->shortest_natural_period()));
     run->t_end = window.end, run->spaced = !options.has("times");
-    run->set_up = source::set_up_lines(L, *system, run->drive);  // before the functions change what they refer to
+    run->set_up = source::set_up_lines(L, *run->system, run->drive);  // before the functions change what they refer to
     const motion::Grid grid = run->spaced ? motion::Grid::every(run->dt) : motion::Grid::at(asked.times);
     return run_bodies(L, options, run, window, grid, limits_of_run(asked.dense));
 }

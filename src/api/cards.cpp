@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "api/bind_excitation.hpp"
+#include "api/bodies.hpp"
 #include "api/run.hpp"
 #include "lua/bind.hpp"
 #include "lua/user_function.hpp"
@@ -31,7 +32,10 @@ std::string row(std::string_view name, double value, std::string_view remark, co
 }  // namespace
 
 std::string system_card(lua_State* L, int index, const terminal::Display& screen) {
-    const model::Oscillator& system = *lua::test<model::Oscillator>(L, index);
+    const AssemblyHandle& handle = *lua::test<AssemblyHandle>(L, index);
+    const auto one = oscillator_of(*handle);
+    if (!one) return source::lua_text(L, *handle);
+    const model::Oscillator& system = one.value();
     std::string text = terminal::spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
     text = text::columns(text) < screen.width ? text : "system";
     const model::Units& units = system.units();

@@ -25,7 +25,6 @@ void register_plot(lua_State* L);
 // Defined in the bind_*.cpp of that name.
 extern const lua::Class system_functions;    // system, nondimensional
 extern const lua::Class system_class;        // sys
-extern const lua::Class rig_class;           // what system{ bodies } returns
 extern const lua::Class friction_module;     // friction.stribeck ...
 extern const lua::Class friction_class;      // what they return
 extern const lua::Class spring_module;       // spring.polynomial

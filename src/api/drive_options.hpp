@@ -38,25 +38,22 @@ inline constexpr text::Option event_options[] = {
 inline constexpr text::Call event_call{
     "events[1]", "{ when = function(t, theta, velocity, z) return theta - 1 end, name = \"limit\" }", event_options};
 
-inline constexpr text::Option more_drive_options[] = {
+inline constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
+/// The variables that a user adds, and what moves the surfaces and the support.
+inline constexpr text::Option states_option[] = {
     {.name = "states",
      .meaning = "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, "
                 "theta, velocity, z) ... end } }; z.NAME has their values, the fourth argument of M, rates "
                 "and events",
      .wanted = "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end } }",
      .fields = {&state_call, text::Fields::Place::by_name}},
-    {.name = "events",
-     .meaning = "events to locate: a list of { when = function(t, theta, velocity, z), direction = \"up\" "
-                "or \"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return "
-                "theta, velocity end }, reported where `when` passes zero; act may also set a state: "
-                "z.NAME = 0",
-     .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }",
-     .fields = {&event_call, text::Fields::Place::listed}},
+};
+inline constexpr text::Option moved_options[] = {
     {.name = "belt",
      .unit = "rad per time unit",
      .otherwise = "0",
      .meaning = "velocity of the surface under the mass, against which dry friction acts: a number, a "
-                "function of t, or an excitation",
+                "function of t, or an excitation; of named bodies and links a table by name",
      .object = "excitation"},
     {.name = "base",
      .unit = "rad per time unit^2",
@@ -64,6 +61,33 @@ inline constexpr text::Option more_drive_options[] = {
      .meaning = "acceleration of the support, to which theta is relative: a number, a function of t, or an excitation",
      .object = "excitation"},
 };
+/// What drives a system in a run, and from where it starts. The rest is in more_drive_options.
+inline constexpr text::Option drive_options[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning = "the excitation: a number, an excitation or a function of t, or of t, theta, velocity, z; of named "
+                "bodies a table by name, { load = M }. A function then gets theta.load and velocity.load",
+     .object = "excitation"},
+    {.name = "theta0",
+     .unit = "rad",
+     .otherwise = "0",
+     .meaning = "initial angle; of named bodies a table by name, { load = 0.1 }"},
+    {.name = "velocity0",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning = "initial velocity; of named bodies a table by name"},
+};
+inline constexpr text::Option events_option[] = {
+    {.name = "events",
+     .meaning = "events to locate: a list of { when = function(t, theta, velocity, z), direction = \"up\" "
+                "or \"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return "
+                "theta, velocity end }, reported where `when` passes zero; act may also set a state: "
+                "z.NAME = 0, and sets theta.NAME and velocity.NAME of named bodies",
+     .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }",
+     .fields = {&event_call, text::Fields::Place::listed}},
+};
+inline constexpr auto more_drive_options = text::joined(states_option, events_option, moved_options);
 
 std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options);
 std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options);

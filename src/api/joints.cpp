@@ -78,7 +78,7 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
         lua_pop(L, 1);
         return;
     }
-    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option);
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, by_body_wanted);
     std::vector<std::string> known;
     const std::size_t first = which == Names::links ? system.bodies.size() : 0;
     const std::size_t end = which == Names::bodies ? system.bodies.size() : system.joints.size();
@@ -117,7 +117,7 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
                  .option = option,
                  .culprit = name});
         }
-        check_name(options, option, name, rig_class);
+        check_name(options, option, name, system_class);
         if (lua_getfield(L, -1, name.c_str()) != LUA_TTABLE) {
             options.fail(
                 {.sentence = fmt::format("{}.{} must be a table such as {}, got {}", option, name,
@@ -153,12 +153,17 @@ model::Joint read_joint(lua_State* L, const std::string& call, std::span<const t
 
 }  // namespace
 
+text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system) {
+    if (system.named) {
+        return text::Error{fmt::format("needs one body, and this system has names: take one of them, such as sys.{}",
+                                       system.joints.front().name)};
+    }
+    if (!system.is_plain()) return text::Error{"needs constant friction, and that of this system varies"};
+    return engine::seen_alone(system, 0);
+}
+
 int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
     const auto oscillator = lua::value_or_raise(L, call, engine::seen_alone(system, j));
-    if (system.joints[j].friction.is_constant()) {
-        lua::push(L, oscillator);
-        return 1;
-    }
     model::Assembly one{
         .bodies = {{"", oscillator.inertia()}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
     one.joints[0].name.clear(), one.joints[0].first = 0, one.joints[0].second = model::Joint::ground;
@@ -184,16 +189,21 @@ int body_index(const lua::Options& options, const model::Assembly& system, const
                   .cure = name.empty() ? "" : text::did_you_mean(name, names)});
 }
 
-}  // namespace
-
-int push_bodies(lua_State* L, const lua::Options& options) {
-    const std::vector<std::string> names = tables_by_name(L, options, "bodies");
-    if (names.empty()) options.wrong("bodies");
+/// Raises where a system with names is given what only a body has.
+void refuse_of_one(const lua::Options& options) {
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
         options.fail(alone, fmt::format("{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
                                         std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
     }
+}
+
+}  // namespace
+
+int push_bodies(lua_State* L, const lua::Options& options) {
+    const std::vector<std::string> names = tables_by_name(L, options, "bodies");
+    if (names.empty()) options.wrong("bodies");
+    refuse_of_one(options);
     model::Assembly system;
     system.units = asked_units(L, options).value_or(model::Units());
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -413,13 +423,18 @@ void overwrite(lua_State* L, const lua::Options& options) {
 }  // namespace
 
 int system_with(lua_State* L) {
-    const auto* several = lua::test<AssemblyHandle>(L, 1);
-    model::Assembly old =
-        several != nullptr ? **several : engine::assembly_of(lua::self<model::Oscillator>(L, 1, with_call.example));
-    const text::Call& call = old.named ? rig_with_call : with_call;
-    const lua::Options options(L, 2, call);
+    const model::Assembly& old = *lua::self<AssemblyHandle>(L, 1, with_call.example);
+    const lua::Options options(L, 2, with_call);
     const int top = lua_gettop(L);
+    for (const char* option : {"bodies", "links"}) {
+        if (old.named || !options.has(option)) continue;
+        options.push(option);
+        if (!lua_istable(L, -1)) options.wrong(option);
+        options.fail(option,
+                     fmt::format("{} are of a system with names, and this one has one body without one", option));
+    }
     if (old.named) {
+        refuse_of_one(options);
         lua_newtable(L);
         for (const Names which : {Names::bodies, Names::links}) {
             lua_newtable(L);
@@ -456,7 +471,7 @@ int system_with(lua_State* L) {
     }
     lua_replace(L, 2);
     lua_settop(L, 2);
-    const lua::Options all(L, 2, {call.name, call.example, system_options});
+    const lua::Options all(L, 2, {with_call.name, with_call.example, system_options});
     return old.named ? push_bodies(L, all) : push_body(L, all);
 }
 

@@ -215,12 +215,8 @@ namespace {
 inline constexpr text::Option system_at_option[] = {
     {.name = "system", .meaning = "the system at this point", .object = "system", .wanted = "a system"},
 };
-inline constexpr auto at_options =
-    text::joined(drive_options, period_options, start_options, more_drive_options, system_at_option);
+inline constexpr auto at_options = text::joined(drive_options, period_options, more_drive_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
-inline constexpr auto rig_at_options = text::joined(bodies_drive_rows, period_options, system_at_option);
-inline constexpr text::Call rig_at_call{"rig:response: at", "at = function(p) return { belt = { load = p.speed } } end",
-                                        rig_at_options};
 
 /// What a call of sys:response asks.
 class ResponseCall {
@@ -230,11 +226,14 @@ public:
         : L_(L), system_(system), several_(std::move(several)), options_(options) {
         options.fill(asked_);
         if (several_ && !asked_.of.empty()) {
-            joint_ = joint_named(L, asked_.of, *several_, "rig:response: of: this system", rig_class);
+            joint_ = joint_named(L, asked_.of, *several_, "sys:response: of: this system", system_class);
         }
         choose();
         function_ = options.has("at");
-        if (several_ && !function_) options.missing("at");
+        if (several_ && !function_) {
+            options.fail("at", "a system of bodies with names, or with a friction that varies, needs at, such as " +
+                                   std::string(at_call.example));
+        }
         if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
         if (!several_) drive_ = question(values_.front()).drive;
@@ -301,12 +300,15 @@ public:
         }
         push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
-        SteadyOptions asked{.theta0 = asked_.theta0, .velocity0 = asked_.velocity0};
+        SteadyOptions asked;
         own.fill(asked);
         const std::optional<double> period = asked_period(own);
-        if (const auto* system = own.object<model::Oscillator>("system")) question.system = *system;
-        question.drive = asked_acting(L_, own, motion::engine::assembly_of(question.system));
-        question.drive.start_at({asked.theta0, asked.velocity0});
+        if (const auto* system = own.object<AssemblyHandle>("system")) {
+            question.system = own.value_or_fail(oscillator_of(**system));
+        }
+        question.drive = asked_drive(L_, own, motion::engine::assembly_of(question.system));
+        if (!own.has("theta0")) question.drive.theta0 = {asked_.theta0};
+        if (!own.has("velocity0")) question.drive.velocity0 = {asked_.velocity0};
         question.periods = asked.periods.value_or(0);
         question.repeats = repetition_at(x, own, as_assembly(question), period);
         lua_pop(L_, 1);
@@ -326,23 +328,17 @@ private:
         lua_call(L_, 1, 1);
         if (lua_istable(L_, -1)) return;
         options_.fail("at",
-                      fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of {}:steady, "
+                      fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of sys:steady, "
                                   "such as {{ belt = {} }}",
-                                  lua::describe(L_, -1), varied_, x, several_ ? "rig" : "sys",
-                                  several_ ? "{ load = p.speed }" : "p.speed"));
+                                  lua::describe(L_, -1), varied_, x,
+                                  several_ && several_->named ? "{ load = p.speed }" : "p.speed"));
     }
 
     [[nodiscard]] analysis::SteadyQuestion question_of_bodies(double x) const {
         push_point(x);
-        const lua::Options own(L_, lua_gettop(L_), rig_at_call);
-        own.push("system");
-        const auto* system = lua::test<AssemblyHandle>(L_, -1);
-        if (system == nullptr && !lua_isnil(L_, -1)) {
-            options_.fail("at", fmt::format("at must return a system of several bodies as system, got {}",
-                                            lua::describe(L_, -1)));
-        }
+        const lua::Options own(L_, lua_gettop(L_), at_call);
+        const auto* system = own.object<AssemblyHandle>("system");
         analysis::RigQuestion whole{.system = system != nullptr ? *system : several_, .drive = {}};
-        lua_pop(L_, 1);
         const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
         if (!std::equal(several_->joints.begin(), several_->joints.end(), whole.system->joints.begin(),
                         whole.system->joints.end(), names_alike)) {
@@ -596,16 +592,14 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call, co
 }  // namespace
 
 int response_of_system(lua_State* L) {
-    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
+    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, response_call.example);
     const lua::Options options(L, 2, response_call);
-    return response_of(L, options, ResponseCall(L, system, options), system);
-}
-
-int response_of_rig(lua_State* L) {
-    const AssemblyHandle rig = lua::self<AssemblyHandle>(L, 1, rig_response_call.example);
-    const lua::Options options(L, 2, rig_response_call);
-    const auto first = model::Oscillator::make(parameters_of(*rig, 0)).value();  // for the units
-    return response_of(L, options, ResponseCall(L, first, options, rig), first);
+    if (system->is_plain()) {
+        const model::Oscillator one = oscillator_of(*system).value();
+        return response_of(L, options, ResponseCall(L, one, options), one);
+    }
+    const auto first = model::Oscillator::make(parameters_of(*system, 0)).value();  // for the units
+    return response_of(L, options, ResponseCall(L, first, options, system), first);
 }
 
 }  // namespace dinal::api

@@ -65,35 +65,18 @@ inline constexpr text::Option response_options[] = {
      .unit = "rad per time unit",
      .meaning = "initial velocity",
      .filled = text::fills<&ResponseOptions::velocity0>},
+    {.name = "of",
+     .otherwise = "the first body",
+     .meaning =
+         "the named body or link whose amplitude tells where branches fold, as in c.points and c.jumps; one that "
+         "goes round has none, and then each value is searched from the one before",
+     .filled = text::fills<&ResponseOptions::of>},
 };
 inline constexpr text::Call response_call{"sys:response",
                                           "sys:response{ over = { frequency = vector.linspace(0.05, 3, 200) } }",
                                           response_options, false, &with_call};
 
 int response_of_system(lua_State* L);
-
-/// rig:response{ ... }.
-inline constexpr text::Option rig_response_options[] = {
-    response_options[0],
-    {.name = "at",
-     .otherwise = text::needed,
-     .meaning =
-         "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, and "
-         "system = ... if the system changes",
-     .wanted = "a function of a point that returns options of rig:steady"},
-    response_options[6],
-    response_options[7],
-    {.name = "of",
-     .otherwise = "the first body",
-     .meaning = "the body or link whose amplitude tells where branches fold, as in c.points and c.jumps; one that goes "
-                "round has none, and then each value is searched from the one before",
-     .filled = text::fills<&ResponseOptions::of>},
-};
-inline constexpr text::Call rig_response_call{
-    "rig:response",
-    "rig:response{ over = { speed = { 0.1, 0.2 } }, at = function(p) return { belt = { load = p.speed } } end }",
-    rig_response_options};
-int response_of_rig(lua_State* L);
 
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",
@@ -114,7 +97,9 @@ inline constexpr lua::Doc response_doc{
     "c:plot() is then a map of the amplitude, of the greatest one where several motions are stable; c.points has both "
     "parameters, and its column curve numbers the curves that the points form in their plane, which "
     "c:plot{ overlay = \"points\" } draws into the map. Give the first parameter so many values that the points of a curve "
-    "are near each other. sweep{ workers = n } with sys:steady makes larger maps.",
+    "are near each other. sweep{ workers = n } with sys:steady makes larger maps. Named bodies and links need `at`, and "
+    "have columns of their own, as in \"load.amplitude\"; under controllers that sample or wait each value is searched "
+    "from the one before.",
     "c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = { 0.75, 1.5, 2 } } }\n"
     "print(c.amplitude, c.stops[1])  --> vector{ 1.9726, 0.553775, 0.220479 }\t0.0\n"
     "sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }\n"
@@ -137,7 +122,13 @@ inline constexpr lua::Doc response_doc{
     "--> 1 fold 0.3 1.55558\n"
     "--> 1 fold 0.4 1.73797\n"
     "--> 2 fold 0.3 1.26161\n"
-    "--> 2 fold 0.4 1.31281",
+    "--> 2 fold 0.4 1.31281\n"
+    "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } },\n"
+    "    links = { rod = { \"a\", \"b\", k = 4 } } }\n"
+    "c = rig:response{ over = { omega = { 0.5, 2 } }, at = function(p)\n"
+    "    return { M = { a = excitation.harmonic{ omega = p.omega } } }\n"
+    "end }\n"
+    "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
     {&response_call}};
 
 }  // namespace dinal::api

@@ -49,8 +49,6 @@ std::optional<double> asked_period(const lua::Options& options);
 /// What is asked besides M.
 struct SteadyOptions {
     std::optional<int> periods = {};
-    double theta0 = 0;
-    double velocity0 = 0;
 };
 inline constexpr text::Range whole_periods{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
@@ -65,31 +63,10 @@ inline constexpr text::Option period_options[] = {
      .meaning = "periods of M in one of the motion, for a subharmonic one; by default as many as are found, up to 32",
      .filled = text::fills<&SteadyOptions::periods>},
 };
-inline constexpr text::Option start_options[] = {
-    {.name = "theta0",
-     .unit = "rad",
-     .meaning = "start of the search, which selects one of several motions",
-     .filled = text::fills<&SteadyOptions::theta0>},
-    {.name = "velocity0",
-     .unit = "rad per time unit",
-     .meaning = "initial velocity",
-     .filled = text::fills<&SteadyOptions::velocity0>},
-};
-inline constexpr text::Option drive_options[] = {
-    {.name = "M",
-     .unit = "torque",
-     .otherwise = "0",
-     .meaning = "the excitation: a number, a function of t or of t, theta, velocity, or an excitation",
-     .object = "excitation"},
-};
-inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options, more_drive_options);
+inline constexpr auto steady_options = text::joined(drive_options, period_options, more_drive_options);
 inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
-
-/// rig:steady{ ... }.
-inline constexpr auto rig_steady_options = text::joined(bodies_drive_rows, period_options);
-inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { load = 0.2 } }", rig_steady_options};
 
 struct RigSteady;
 
@@ -165,17 +142,22 @@ analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis:
                                            std::size_t joint);
 /// When its controllers repeat; raises when they never do.
 double settles_or_fail(const lua::Options& options, const analysis::RigQuestion& question);
-int steady_of_rig(lua_State* L);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",
     "The motion that remains when transients have died out: periodic under a periodic M, belt or base; a limit "
-    "cycle, whose period is found, or rest if nothing depends on t.",
+    "cycle, whose period is found, or rest if nothing depends on t. theta0 and velocity0 start the search, and select "
+    "one of several motions. Of named bodies s.load is the motion of the body or link `load`: amplitude, mean, lag, stops, "
+    "run; angles of those that go round are measured from each other.",
     "sys = nondimensional{ friction_ratio = 0.5 }\n"
     "s = sys:steady{ M = excitation.harmonic{ frequency = 1.35 } }\n"
     "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.860792180\t0\n"
     "squeal = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:steady{ belt = 0.1 }\n"
-    "print(string.format(\"%.6f\", squeal.period), squeal.stops)  --> 3.658799\t1",
+    "print(string.format(\"%.6f\", squeal.period), squeal.stops)  --> 3.658799\t1\n"
+    "rig = system{ bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },\n"
+    "    links = { rod = { \"a\", \"b\", k = 2, C = 0.1 } } }\n"
+    "s = rig:steady{ belt = { a = 0.1 }, theta0 = { a = 0.3 } }\n"
+    "print(s.status, string.format(\"%.6f %.6f\", s.period, s.b.amplitude))  --> steady\t4.627741 0.114468",
     {&steady_call}};
 inline constexpr lua::Doc steady_run_doc{
     "run:steady{ OPTIONS } -> steady",

@@ -9,9 +9,6 @@
 
 namespace dinal::api {
 
-/// Pushes the system, or raises what is wrong with it.
-int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters);
-
 /// The law that the option `friction` names, which excludes the options that are Coulomb's. One with a state of its own
 /// is refused unless it may be one.
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
@@ -98,13 +95,10 @@ constexpr auto none_needed(auto rows) {
     return rows;
 }
 inline constexpr auto change_options =
-    none_needed(text::joined(body_numbers, friction_options, spring_and_walls, model::units_option));
-inline constexpr auto rig_change_options = none_needed(text::joined(bodies_and_links, model::units_option));
+    none_needed(text::joined(body_numbers, friction_options, spring_and_walls, bodies_and_links, model::units_option));
 inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
-inline constexpr text::Call rig_with_call{"rig:with", "rig:with{ bodies = { load = { Rd = 0.5 } } }",
-                                          rig_change_options};
 
-/// sys:with{ OPTIONS } of one body or several.
+/// sys:with{ OPTIONS }.
 int system_with(lua_State* L);
 
 }  // namespace dinal::api

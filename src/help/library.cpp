@@ -57,7 +57,6 @@ const lua::Class library_class = {
 const Section all_sections[] = {
     {"Systems", "", &api::system_functions},
     {"A system", "sys", &api::system_class},
-    {"A system of several bodies", "rig", &api::rig_class},
     {"Laws of friction", "friction", &api::friction_module},
     {"A law of friction", "law", &api::friction_class},
     {"Springs", "spring", &api::spring_module},

@@ -64,7 +64,7 @@ constexpr Task tasks[] = {
     {"describe a system", "system, nondimensional, sys:with, friction, spring"},
     {"describe M(t)", "excitation, a Lua function, excitation.samples for a table or file"},
     {"run it and look", "sys:simulate, run:plot, run.events, run:at, run:explain"},
-    {"several bodies", "system{ bodies, links }, rig:simulate, rig:steady"},
+    {"several bodies", "system{ bodies, links }, sys:simulate, sys:steady, run.load"},
     {"a controller", "states, excitation.sampled, excitation.relay, excitation.delayed"},
     {"a steady motion or limit cycle", "sys:steady, run:cycle, run:poincare"},
     {"a response curve", "sys:response, theory.den_hartog, theory.linearised"},

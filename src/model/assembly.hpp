@@ -72,6 +72,8 @@ struct Assembly {
     bool named = true;
     Units units = {};
 
+    /// One body without a name, whose friction depends on its speed alone: an Oscillator says all of it.
+    [[nodiscard]] bool is_plain() const { return !named && joints.front().friction.is_constant(); }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     [[nodiscard]] bool is_linked(std::size_t body) const {
         return std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {

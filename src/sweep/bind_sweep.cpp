@@ -147,11 +147,11 @@ int looks_of_point(lua_State* L) {
     }
     lua::push_copy(L, 1);  // at 2 the options of simulate
     take_field(L, 2, "system");
-    const auto* rig = lua::test<model::AssemblyHandle>(L, 3);
-    if (rig == nullptr && lua::test<model::Oscillator>(L, 3) == nullptr) {
+    const auto* system = lua::test<model::AssemblyHandle>(L, 3);
+    if (system == nullptr) {
         lua::raise(L, fmt::format("at must return a table with system = ..., got {} there", lua::describe(L, 3)));
     }
-    const bool several = rig != nullptr && (*rig)->named;
+    const bool several = (*system)->named;
     if (take_field(L, 2, "of") != LUA_TSTRING && several) {
         lua::raise(L, "at must return the body to record, such as of = \"load\"");
     }

@@ -102,10 +102,19 @@ struct Call {
 /// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.
 std::optional<Error> complaint(const Option& option, const OptionValue& value);
 
+namespace detail {
+template <std::size_t n>
+std::array<char, n> row_count(const Option (&)[n]);
+template <std::size_t n>
+std::array<char, n> row_count(const std::array<Option, n>&);
+template <class Rows>
+inline constexpr std::size_t rows_in = std::tuple_size_v<decltype(row_count(std::declval<const Rows&>()))>;
+}  // namespace detail
+
 /// Rows one after another, for calls that share some.
-template <std::size_t... N>
-constexpr std::array<Option, (N + ...)> joined(const Option (&... parts)[N]) {
-    std::array<Option, (N + ...)> all{};
+template <class... Rows>
+constexpr std::array<Option, (detail::rows_in<Rows> + ...)> joined(const Rows&... parts) {
+    std::array<Option, (detail::rows_in<Rows> + ...)> all{};
     auto place = all.begin();
     ((place = std::copy(std::begin(parts), std::end(parts), place)), ...);
     return all;

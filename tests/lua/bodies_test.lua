@@ -367,7 +367,7 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(rig.motor.Rd, 1.0)
     raises_here(function() return rig.motor.dead_zone end, "no constant dead_zone: its normal is a function")
     raises_here(function() return rig.laod end, "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?")
-    raises_here(function() return rig.omega0 end, "omega0 is of one body or link: rig.load.omega0")
+    raises_here(function() return rig.omega0 end, "omega0 is of one body or link: sys.load.omega0")
     local other = rig:with { bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 27 } } }
     equal(other.load.Rd, 0.5)
     equal(other.load.Re, 2.0)
@@ -378,10 +378,10 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(rig:with { units = { t = "min" } }.units.t, "min")
     raises_here(function() rig:with { bodies = { laod = { Rd = 1 } } } end, "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?")
     raises_here(function() rig:with { links = { load = { Rd = 1 } } } end, "links: there is no link 'load'; there is shaft")
-    raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "rig:with: bodies.load has no option 'rd'")
+    raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "sys:with: bodies.load has no option 'rd'")
     raises_here(function() rig:with { bodies = { load = 3 } } end, "bodies.load must be a table such as { k = 3 }, got 3")
-    raises_here(function() rig.with { links = {} } end, "use a colon: rig:with")
-    raises_here(function() rig:with { k = 1 } end, "rig:with has no option 'k' among bodies, links and units")
+    raises_here(function() rig.with { links = {} } end, "use a colon: sys:with")
+    raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { k = ... } }")
 end)
 
 test("several bodies take spectral and rk4, and say of exact that it is for one body", function()
@@ -466,6 +466,20 @@ test("the lines that repeat a run of several bodies name its integrator, and lis
     assert(read(file):find("integrator = integrator.spectral", 1, true))
     equal(back["a.theta"], run:column "a.theta")
     equal(repeated(run).t, run.t)
+end)
+
+test("a body or link may be called like a field of one body, but not like a method", function()
+    local rig = system { bodies = { a = { I = 1 }, k = { I = 2 } }, links = { spring = { "a", "k", k = 3 }, friction = { "a", "k", Rd = 1 } } }
+    equal(rig.k.I, 2.0)
+    equal(rig.spring.k, 3.0)
+    equal(rig.friction.Rd, 1.0)
+    equal(#rig.links, 2)
+    equal(#system { I = 1, k = 1 }.bodies, 0)
+    raises_here(function() system { bodies = { with = { I = 1 } } } end, "'with' is a name that a system has already")
+    raises_here(function() system { bodies = { links = { I = 1 } } } end, "'links' is a name that a system has already")
+    raises_here(function() return rig.damping end, "this system has no 'damping'; its bodies and links are")
+    raises_here(function() rig:characteristic_torque(1) end, "needs one body, and this system has names: take one of them, such as sys.a")
+    raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
 end)
 
 finish()

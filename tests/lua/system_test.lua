@@ -132,7 +132,7 @@ test("a system whose friction varies has the fields that need no constant law", 
     equal(sys:with { k = 9 }.omega0, 3.0)
     equal(tostring(sys:with { Rd = 1 }), "system{ I = 1, k = 4, C = 1, Rd = 1, Re = 1 }")
     equal(system { I = 1, k = 4, Rd = 1 }:with { normal = Rd }.normal, Rd)
-    raises_here(function() sys:with { bodies = {} } end, "sys:with has no option 'bodies'")
+    raises_here(function() sys:with { bodies = {} } end, "bodies are of a system with names")
 end)
 
 finish()
