@@ -53,21 +53,14 @@ AnimationViewer animation_viewer = nullptr;
 
 /// The surface that the run slides on, where it moves.
 const model::Excitation* belt_of(const Run& run) {
-    const model::Excitation* belt = run.origin  ? &run.origin->drive.belt()
-                                    : run.whole ? &run.whole->drive.belts[*run.joint]
-                                                : nullptr;
+    const model::Excitation* belt = run.origin ? &run.origin->drive.belts[run.place()] : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;
-}
-
-const model::Oscillator* system_of(const Run& run) {
-    if (run.origin) return &run.origin->system;
-    return run.whole && run.trajectory.course ? &run.trajectory.course->system() : nullptr;
 }
 
 animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
-    const plots::RunData data{run, &run->trajectory, system_of(*run), units};
+    const plots::RunData data{run, &run->trajectory, alone(*run), units};
     lua::CallState call(L);  // between rows the integrator asks the excitation again
     auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
@@ -128,7 +121,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
                               const animation::Take& take, const model::Units& units) {
     std::vector<animation::Scene> bodies;
     std::vector<animation::RigScene::Link> links;
-    const model::Assembly& system = *run->whole->system;
+    const model::Assembly& system = run->system();
     for (const RunHandle& part : parts_of(run)) {
         const model::Joint& joint = system.joints[*part->joint];
         animation::Scene scene = asked_scene(L, options, part, take, units);

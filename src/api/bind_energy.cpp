@@ -37,9 +37,9 @@ bool is_part(const RunEnergy& energy) {
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
 analysis::Whose whose_of(const Run& run) {
-    return !run.joint || run.whole->system->joints.size() == 1 ? analysis::Whose::all
-           : run.whole->system->is_link(*run.joint)            ? analysis::Whose::link
-                                                               : analysis::Whose::body;
+    return !run.joint || run.system().joints.size() == 1 ? analysis::Whose::all
+           : run.of_body()                               ? analysis::Whose::body
+                                                         : analysis::Whose::link;
 }
 
 /// Of several bodies the sum: what the others do on one of them cancels.
@@ -127,14 +127,14 @@ int part_of_energy(lua_State* L) {
     const Run& run = *energy->run;
     if (!run.of_all()) return 0;
     NamedNumbers numbers;
-    const std::size_t joint = joint_named(L, lua_tostring(L, 2), *run.whole->system, "this energy", energy_class);
+    const std::size_t joint = joint_named(L, lua_tostring(L, 2), run.system(), "this energy", energy_class);
     add_balance(numbers, energy->parts[joint].total, true);
     lua::push_value(L, numbers);
     return 1;
 }
 
 std::string text_of_rig(const RunEnergy& energy) {
-    const auto& joints = energy.run->whole->system->joints;
+    const auto& joints = energy.run->system().joints;
     const analysis::Energy& all = energy.energy;
     const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * all.flow ? 0.0 : x; };
     std::string text =
@@ -304,20 +304,24 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
     return {};
 }
 
-std::string story_of_bodies(lua_State* L, const RunHandle& run) {
+std::string story_of_simulated(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
-    const BodiesRun& whole = *run->whole;
-    std::vector<const motion::Trajectory*> seen(whole.system->joints.size(), &run->trajectory);
-    if (!run->joint)
+    std::vector<const motion::Trajectory*> seen(run->system().joints.size(), &run->trajectory);
+    if (run->of_all())
         std::transform(parts.begin(), parts.end(), seen.begin(),
                        [](const RunHandle& part) { return &part->trajectory; });
-    const auto energies = energies_of(L, parts);
-    return analysis::explain({.system = *whole.system,
-                              .drive = whole.drive,
+    model::Drive drive = run->origin->drive;
+    if (run->terms) drive.loads = {*run->terms};
+    std::vector<analysis::Energy> energies;
+    if (!run->system().is_plain()) {
+        if (auto known = energies_of(L, parts)) energies = std::move(known).value();
+    }
+    return analysis::explain({.system = run->system(),
+                              .drive = drive,
                               .parts = std::move(seen),
-                              .method = whole.integrator,
+                              .method = run->origin->integrator,
                               .joint = run->joint},
-                             energies ? energies.value() : std::vector<analysis::Energy>());
+                             energies);
 }
 
 void register_energy(lua_State* L) {

@@ -169,8 +169,9 @@ lua::LuaFunction* read_function(const model::Component& component) {
 
 }  // namespace
 
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Drive& drive,
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Assembly& system, const model::Drive& drive,
                                              double from, double to) {
+    if (!system.is_plain()) return {};
     const model::Excitation& M = drive.M();
     model::Drive others = drive;
     others.loads = {model::Excitation()};

@@ -133,7 +133,7 @@ Data record_of(lua_State* L, const lua::Options& options) {
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
         if ((*run)->of_all() && !options.has("system")) {
             options.fail("data", fmt::format("a run of several bodies needs system = ..., or data = run.{} alone",
-                                             (*run)->whole->system->joints.front().name));
+                                             (*run)->system().joints.front().name));
         }
         record = rows_of(*run);
     } else if (lua_istable(L, place)) {

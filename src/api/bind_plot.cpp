@@ -188,13 +188,13 @@ std::optional<double> constant_value(const model::Excitation& excitation, double
 
 /// What acts on the mass besides its system; none if that varies, or if the mass would rest on a moving belt.
 std::optional<double> constant_load(const Run& run) {
-    if (!run.origin) return {};
+    if (!run.origin || run.system().joints.size() > 1) return {};
     const source::Task& task = *run.origin;
     const double t = task.window.start;
     const auto M = constant_value(run.terms ? *run.terms : task.drive.M(), t);
     const auto belt = constant_value(task.drive.belt(), t), base = constant_value(task.drive.base, t);
     if (!M || !base || belt != 0.0) return {};
-    return *M - task.system.inertia() * *base;
+    return *M - run.system().bodies.front().inertia * *base;
 }
 
 /// Without its events, which are those of all bodies.
@@ -210,8 +210,7 @@ plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandl
     if (drawn->size() == 0) {
         options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
     }
-    return {drawn, drawn.get(), run->origin ? &run->origin->system : nullptr,
-            asked_units(L, options).value_or(units_of(*run)), constant_load(*run)};
+    return {drawn, drawn.get(), alone(*run), asked_units(L, options).value_or(units_of(*run)), constant_load(*run)};
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.
@@ -293,9 +292,9 @@ void join_columns(lua_State* L) {
 
 motion::BetweenRows between_rows(const Run& run) {
     const model::Excitation* M = nullptr;
-    if (run.origin) M = run.terms ? &*run.terms : &run.origin->drive.M();
-    if (run.joint && !run.whole->system->is_link(*run.joint)) M = &run.whole->drive.loads[*run.joint];
-    const bool of_state = run.origin && run.origin->drive.states.empty();  // of theta and velocity alone
+    if (run.of_body()) M = run.terms ? &*run.terms : &run.origin->drive.loads[run.place()];
+    const bool of_state =
+        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // of theta and velocity alone
     const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
     return {run.trajectory, known ? M : nullptr};
@@ -373,8 +372,8 @@ namespace {
 std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& options, const RunHandle& run) {
     std::vector<plots::Figure> figures;
     for (const RunHandle& part : parts_of(run)) {
-        const model::Joint& joint = part->whole->system->joints[*part->joint];
-        if (part->whole->system->is_link(*part->joint) && joint.friction.none()) continue;
+        const model::Joint& joint = part->system().joints[part->place()];
+        if (!part->of_body() && joint.friction.none()) continue;
         std::vector<plots::Figure> own = options.value_or_fail(
             plots::column_figures(data_of(L, options, part, options.numbers("xlim")), {.ys = {"theta"}}));
         own.front().y.label = joint.name + " " + own.front().y.label;
@@ -412,13 +411,13 @@ int plot_run(lua_State* L) {
 int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
-    if (run->whole) {
+    if (run->origin && !(run->system().joints.size() == 1 && run->system().joints.front().friction.is_constant())) {
         options.fail({fmt::format(
             "the phase plane is that of a system of one body with constant Rd and Re; use run{}:plot{{ x = "
             "\"theta\", y = \"velocity\" }}",
-            run->joint ? "" : "." + run->whole->system->joints.front().name)});
+            run->of_all() ? "." + run->system().joints.front().name : "")});
     }
-    plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, run)));
+    plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, part_of(run, 0))));
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));

@@ -40,6 +40,7 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/fixed_text.hpp"
@@ -51,23 +52,15 @@
 namespace dinal::api {
 
 std::string line_of(const Run& run) {
-    return (run.of_all() ? text::counted(run.whole->system->bodies.size(), "body") + ", " : "") +
+    return (run.of_all() ? text::counted(run.system().bodies.size(), "body") + ", " : "") +
            motion::summary(run.trajectory);
 }
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const Run& run = *handle;
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
-    std::string text;
-    if (run.whole) {
-        text = story_of_bodies(L, handle);
-    } else if (run.origin) {
-        model::Drive drive = run.origin->drive;
-        if (run.terms) drive.loads = {*run.terms};
-        text = analysis::explain(run.trajectory, run.origin->system, drive, run.origin->integrator);
-    } else {
-        text = analysis::explain_rows(run.trajectory, run.units);
-    }
+    const std::string text =
+        run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.trajectory, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }
@@ -172,8 +165,9 @@ bool closes(std::span<const double> values) {
 
 /// That of M, where it knows one; else 0.
 double period_of_run(const Run& run) {
-    const auto drive =
-        run.origin ? analysis::repetition_of(run.terms ? *run.terms : run.origin->drive.M(), 0) : std::nullopt;
+    const auto drive = run.of_body()
+                           ? analysis::repetition_of(run.terms ? *run.terms : run.origin->drive.loads[run.place()], 0)
+                           : std::nullopt;
     return drive ? drive->period : 0;
 }
 
@@ -192,9 +186,9 @@ Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, st
     const double length = trajectory.t_stop - from, part = length / (trajectory.t_stop - trajectory.t_start);
     double period = trajectory.course->system().natural_period();
     if (const double own = period_of_run(run); own > 0) period = std::min(period, own);
-    const std::span<const model::Component> M = run.origin
-                                                    ? (run.terms ? *run.terms : run.origin->drive.M()).components()
-                                                    : std::span<const model::Component>();
+    const std::span<const model::Component> M =
+        run.of_body() ? (run.terms ? *run.terms : run.origin->drive.loads[run.place()]).components()
+                      : std::span<const model::Component>();
     for (const model::Component& component : M) {
         if (const auto* sine = std::get_if<model::Harmonic>(&component.term)) {
             period = std::min(period, 2 * std::numbers::pi / std::fabs(sine->omega));
@@ -255,9 +249,9 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
 /// Of which body or link "load.theta" is; a state is of each. None of other columns of the whole run.
 std::optional<std::size_t> joint_of_column(const Run& run, std::string_view column) {
     if (!run.of_all()) return {};
-    const auto& states = run.whole->drive.states;
+    const auto& states = run.origin->drive.states;
     if (std::any_of(states.begin(), states.end(), [&](const model::OwnState& s) { return s.name == column; })) return 0;
-    const auto& joints = run.whole->system->joints;
+    const auto& joints = run.system().joints;
     const auto is_its = [&](const model::Joint& joint) {
         return column.starts_with(joint.name) && column.substr(joint.name.size()).starts_with('.');
     };
@@ -281,11 +275,11 @@ int spectrum_of_run(lua_State* L) {
     const std::string name = positional ? std::string(lua_tostring(L, 2)) : asked.of;
     std::string_view own_name = name;
     if (const auto joint = joint_of_column(*run, name)) {
-        run = part_of(run->whole, *joint);
+        run = part_of(run, *joint);
         own_name.remove_prefix(name.find('.') + 1);
     }
     const auto column = files::find_column(run->trajectory.names(), own_name);
-    if (!column && run->of_all() && part_of(run->whole, 0)->trajectory.find(name)) check_one(L, *run, "." + name);
+    if (!column && run->of_all() && part_of(run, 0)->trajectory.find(name)) check_one(L, *run, "." + name);
     if (!column) options.fail(column.error());
     const auto [values, dt, kind] = samples_of(L, options, *run, *column, asked.from);
     const std::size_t rows = values.size();
@@ -361,7 +355,7 @@ int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
     const motion::Trajectory& trajectory = run->trajectory;
     const auto column = trajectory.find(name);
-    if (!column && run->of_all()) joint_named(L, name, *run->whole->system, "this run", run_class);  // raises
+    if (!column && run->of_all()) joint_named(L, name, run->system(), "this run", run_class);  // raises
     if (!column) {
         raise_unknown_name(
             L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
@@ -406,13 +400,13 @@ int other_column(lua_State* L) {
 
 /// run.load
 int body_or_link(lua_State* L) {
-    const RunHandle& run = run_self(L, "run.load");
+    const RunHandle run = run_self(L, "run.load");
     if (!run->of_all()) return 0;
     const std::string_view name = lua_tostring(L, 2);
-    const auto& joints = run->whole->system->joints;
+    const auto& joints = run->system().joints;
     const auto own = std::find_if(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
     if (own == joints.end()) return 0;
-    push_run(L, part_of(run->whole, static_cast<std::size_t>(own - joints.begin())));
+    push_run(L, part_of(run, static_cast<std::size_t>(own - joints.begin())));
     return 1;
 }
 
@@ -441,7 +435,7 @@ int data_of_run(lua_State* L) {
 
 lua::Pushed events(lua_State* L, const RunHandle& run) {
     push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run),
-                run->of_all() ? &*run->whole->system : nullptr);
+                run->of_all() ? &run->system() : nullptr);
     return {};
 }
 
@@ -461,27 +455,37 @@ void check_one(lua_State* L, const Run& run, std::string_view member) {
     if (!run.of_all()) return;
     const std::string name(member.substr(1));
     lua::raise(L, {.sentence = fmt::format("{} is of one body or link: run.{}{}", name,
-                                           run.whole->system->joints.front().name, member),
+                                           run.system().joints.front().name, member),
                    .culprit = name});
 }
 
 std::vector<RunHandle> parts_of(const RunHandle& run) {
     if (!run->of_all()) return {run};
     std::vector<RunHandle> parts;
-    for (std::size_t j = 0; j < run->whole->system->joints.size(); ++j) parts.push_back(part_of(run->whole, j));
+    for (std::size_t j = 0; j < run->system().joints.size(); ++j) parts.push_back(part_of(run, j));
     return parts;
 }
 
-std::vector<std::string> repeat_lines(lua_State* L, const Run& run) {
-    if (run.origin) return source::repeat_lines(*run.origin);
-    if (!run.whole) return run.comments;
-    const BodiesRun& whole = *run.whole;
-    const auto times = whole.run.table.column(0);
-    const motion::Grid rows =
-        whole.spaced ? motion::Grid::every(whole.dt) : motion::Grid::at({times.begin(), times.end()});
-    return source::repeat_lines(
-        whole.set_up.empty() ? source::set_up_lines(L, *whole.system, whole.drive) : whole.set_up, *whole.system,
-        whole.drive, {whole.run.t_start, whole.t_end}, rows, whole.integrator);
+std::optional<model::Oscillator> alone(const Run& run) {
+    if (run.origin == nullptr || run.of_all()) return {};
+    const auto made = motion::engine::seen_alone(run.system(), run.place());
+    return made ? std::optional(made.value()) : std::nullopt;
+}
+
+RunHandle part_of(const RunHandle& run, std::size_t joint) {
+    if (!run->of_all()) return run;
+    run->parts.resize(run->system().joints.size());
+    if (RunHandle known = run->parts[joint].lock()) return known;
+    auto seen = std::make_shared<Run>();
+    seen->trajectory = motion::seen_from(run->system(), run->origin->drive, run->trajectory.bodies, joint);
+    seen->trajectory.gap = run->trajectory.gap, seen->trajectory.outcome = run->trajectory.outcome;
+    seen->origin = run->origin, seen->joint = joint, seen->readings = run->readings;
+    run->parts[joint] = seen;
+    return seen;
+}
+
+std::vector<std::string> repeat_lines(const Run& run) {
+    return run.origin ? source::repeat_lines(*run.origin) : run.comments;
 }
 
 void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wrong,
@@ -519,7 +523,6 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     lua::CallState call(L);
     std::vector<model::WantedEvent> wanted;
     if (run->origin) wanted = run->origin->drive.events;
-    if (run->whole) wanted = run->whole->drive.events;
     std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
     if (trajectory.on_belt) {  // no event tells the extremes of theta there
         const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
@@ -547,29 +550,23 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
 
 /// What was simulated, and how; nil where the run was read from a file.
 lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
-    if (run->origin) {
-        lua::push<AssemblyHandle>(
-            L, std::make_shared<const model::Assembly>(motion::engine::assembly_of(run->origin->system)));
-    } else if (!run->whole) {
+    if (run->origin == nullptr) {
         lua_pushnil(L);
-    } else if (run->joint && run->whole->system->named) {
-        push_alone(L, "run.system", *run->whole->system, *run->joint);
+    } else if (run->joint) {
+        push_alone(L, "run.system", run->system(), *run->joint);
     } else {
-        lua::push<AssemblyHandle>(L, run->whole->system);
+        lua::push(L, run->origin->system);
     }
     return {};
 }
 
 std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".excitation");
-    if (run->origin) return run->origin->drive.M();
-    if (!run->whole || run->whole->system->is_link(*run->joint)) return {};
-    return run->whole->drive.loads[*run->joint];
+    return run->of_body() ? std::optional(run->origin->drive.loads[run->place()]) : std::nullopt;
 }
 
 std::optional<motion::Integrator> integrator_of_run(const Run& run) {
-    if (run.origin) return run.origin->integrator;
-    return run.whole ? std::optional(run.whole->integrator) : std::nullopt;
+    return run.origin ? std::optional(run.origin->integrator) : std::nullopt;
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
@@ -700,8 +697,7 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
-                      return run.origin || run.whole ? std::optional(status_word(run.trajectory.outcome))
-                                                     : std::nullopt;
+                      return run.origin ? std::optional(status_word(run.trajectory.outcome)) : std::nullopt;
                   }>,
      {"run.status -> string or nil",
       "How the run ended, in one word: \"end\" (moving), \"rest\", \"stuck\", \"event\" (with stop = true), "
@@ -709,7 +705,7 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run.status)  --> end"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
-                      return run.origin || run.whole ? motion::outcome_text(run.trajectory) : "read from a file";
+                      return run.origin ? motion::outcome_text(run.trajectory) : "read from a file";
                   }>,
      {"run.outcome -> string",
       "How the run ended: \"reached the end\" (moving), \"at rest\" (nothing can move it any more), \"stuck at the "
@@ -822,19 +818,18 @@ int run_at(lua_State* L) {
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
     lua::CallState call(L);  // between rows the integrator asks the excitation again
     const bool of_all = run->of_all();
-    const auto state = (of_all ? *part_of(run->whole, 0) : *run).trajectory.at(t);
+    const auto state = part_of(run, 0)->trajectory.at(t);
     call.check();
     if (!state) {
         lua::fail(L, "run:at(t)", state.error());
     }
     if (of_all) {
-        const BodiesRun& whole = *run->whole;
-        const std::vector<double> y = whole.run.history->at(t);
-        const std::size_t n = whole.system->bodies.size();
-        push_by_name(L, whole.system->bodies, y, 0);
-        push_by_name(L, whole.system->bodies, y, n);
-        if (whole.drive.states.empty()) return 2;
-        push_by_name(L, whole.drive.states, y, 2 * n);
+        const std::vector<double> y = run->trajectory.bodies->history->at(t);
+        const std::size_t n = run->system().bodies.size();
+        push_by_name(L, run->system().bodies, y, 0);
+        push_by_name(L, run->system().bodies, y, n);
+        if (run->origin->drive.states.empty()) return 2;
+        push_by_name(L, run->origin->drive.states, y, 2 * n);
         return 3;
     }
     lua_pushnumber(L, state->theta);
@@ -855,20 +850,20 @@ int run_at(lua_State* L) {
 lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".acceleration");
     const motion::Trajectory& trajectory = run->trajectory;
-    if (run->whole && !run->whole->system->is_link(*run->joint)) {
+    if (trajectory.bodies != nullptr && run->of_body()) {
         constexpr std::size_t last = motion::engine::columns_of_body;
-        const auto numbers = run->whole->run.table.column(last * (*run->joint + 1));
-        lua::push(L, view_of(run->whole, numbers));
+        lua::push(L, view_of(run, trajectory.bodies->table.column(last * (run->place() + 1))));
         return {};
     }
-    if (!run->origin) {
+    if (!run->of_body()) {
         const auto own = trajectory.find("acceleration");
         own ? static_cast<void>(lua::push(L, view_of(run, trajectory.rows.col(*own)))) : lua_pushnil(L);
         return {};
     }
     const source::Task& task = *run->origin;
-    const model::Lowered system(task.system);
-    const auto& walls = task.system.walls();
+    const model::Oscillator body = *alone(*run);
+    const model::Lowered system(body);
+    const auto& walls = body.walls();
     using motion::Column;
     const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
                velocity = trajectory.column(Column::velocity), M = trajectory.column(Column::M),
@@ -879,7 +874,7 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
         const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
         const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
         const double base = task.drive.base.components().empty() ? 0 : task.drive.base.value(t[i]);
-        values[static_cast<std::size_t>(i)] = leans ? 0 : torque / task.system.inertia() - base + 0.0;
+        values[static_cast<std::size_t>(i)] = leans ? 0 : torque / body.inertia() - base + 0.0;
         call.check();
     }
     lua::push_vector(L, std::move(values));
@@ -891,9 +886,7 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run) {
     const std::vector<std::string>& names = run->trajectory.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
-    const std::size_t first = run->origin || run->whole ? run->trajectory.first_state()
-                              : has_all                 ? always.size()
-                                                        : names.size();
+    const std::size_t first = run->origin ? run->trajectory.first_state() : has_all ? always.size() : names.size();
     lua_createtable(L, 0, static_cast<int>(names.size() - first));
     for (std::size_t i = first; i < names.size(); ++i) {
         lua::set_value(L, names[i].c_str(), view_of(run, run->trajectory.rows.col(static_cast<Eigen::Index>(i))));
@@ -948,21 +941,22 @@ int continue_run(lua_State* L) {
     MoreTime asked;
     options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
-    if (run->whole && run->whole->system->named && run->joint) {
+    if (run->joint) {
         options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
     }
-    if (run->whole) return continue_bodies(L, options, run->whole, asked);
     if (!run->origin) {
         options.fail(
             {"a run read from a file cannot be continued; start one from its end with sys:simulate{ theta0, "
              "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;
-    for (const model::Component& component : origin.drive.M().components()) {
-        const auto* sampled = model::controller_of<model::SampledController>(component);
-        if (sampled != nullptr && sampled->first && sampled->latest != run.get()) {
-            options.fail(
-                {"the function of excitation.sampled has been used in another run since: simulate this run again"});
+    for (const model::Excitation& load : origin.drive.loads) {
+        for (const model::Component& component : load.components()) {
+            const auto* sampled = model::controller_of<model::SampledController>(component);
+            if (sampled != nullptr && sampled->first && sampled->latest != run.get()) {
+                options.fail(
+                    {"the function of excitation.sampled has been used in another run since: simulate this run again"});
+            }
         }
     }
     const bool spaced = origin.rows.dt() > 0;
@@ -977,10 +971,10 @@ int continue_run(lua_State* L) {
     }
     const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
                                    const motion::Limits& limits) {
-        return motion::resume(task.system, task.drive, so_far, task.window.end, task.rows, task.integrator, monitor,
+        return motion::resume(*task.system, task.drive, so_far, task.window.end, task.rows, task.integrator, monitor,
                               limits);
     };
-    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.course != nullptr, compute);
+    return run_task(L, options, std::move(origin), so_far.t_stop, motion::is_dense(so_far), compute);
 }
 
 // run:save(file): which kind of file, which columns, and the comment block that lets the run be repeated.
@@ -1010,13 +1004,13 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
 }
 
 text::Expected<files::Written> write_record(const std::string& file, const Run& run) {
-    if (run.origin) {
-        return files::write_record1989(file, run.trajectory, run.origin->system);
+    if (run.origin && run.system().is_plain()) {
+        return files::write_record1989(file, run.trajectory, *alone(run));
     }
     if (run.trajectory.names() == files::record1989_names()) {
         return files::write_record1989(file, run.trajectory.rows.matrix());
     }
-    if (run.whole) return text::Error{"a .dat file is of one body with constant Rd and Re; save it as .csv"};
+    if (run.origin) return text::Error{"a .dat file is of one body with constant Rd and Re; save it as .csv"};
     return text::Error{
         "a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
 }
@@ -1025,7 +1019,7 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
                                      const Run& run) {
     const std::string ending = text::ending_of(file);
     if (ending == ".csv") {
-        return files::write_csv(file, asked_columns(L, options, run.trajectory), repeat_lines(L, run));
+        return files::write_csv(file, asked_columns(L, options, run.trajectory), repeat_lines(run));
     }
     if (ending != ".dat") {
         return text::Error{.sentence = fmt::format(

@@ -20,7 +20,6 @@
 #include "model/controller.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
-#include "motion/engine/one_body.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
 
@@ -34,7 +33,8 @@ std::size_t bytes_of_rows(const source::Task& task) {
         return 0;
     }
     const auto grid = task.rows.within(task.window);
-    return grid ? std::min<std::size_t>(grid->count(), 1ULL << 50U) * motion::column_count * sizeof(double) : 0;
+    const std::size_t row = motion::columns_of(*task.system, task.drive) * sizeof(double);
+    return grid ? std::min<std::size_t>(grid->count(), 1ULL << 40U) * row : 0;
 }
 
 /// The bytes of the machine, asked once: the answer takes as long as a tenth of a short run.
@@ -47,11 +47,20 @@ std::optional<std::size_t> memory_of_machine() {
     return bytes;
 }
 
+/// As the integrator plays it: M as native terms, where its functions can be read so.
+model::Drive played_drive(lua_State* L, const source::Task& task) {
+    model::Drive played = task.drive;
+    if (auto terms = terms_alone(L, *task.system, task.drive, task.window.start, task.window.end)) {
+        played.loads = {*terms};
+    }
+    return played;
+}
+
 source::Task asked_task(lua_State* L, const lua::Options& options, const RunOptions& asked,
-                        const model::Oscillator& system) {
+                        const AssemblyHandle& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
     source::Task task{.system = system,
-                      .drive = asked_drive(L, options, motion::engine::assembly_of(system)),
+                      .drive = asked_drive(L, options, *system),
                       .window = {.start = asked.t_start},
                       .rows = motion::Grid::at(asked.times),
                       .integrator = {}};
@@ -60,15 +69,12 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     }
     // The latest time and not the last one: times that do not increase are an error of their own.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
-    if (integrator != nullptr) {
-        task.integrator = *integrator;
-    } else {
-        model::Drive played = task.drive;
-        if (auto terms = terms_alone(L, system, task.drive, asked.t_start, task.window.end)) played.loads = {*terms};
-        task.integrator = motion::integrator_for(system, played);
-    }
+    task.integrator = integrator != nullptr ? *integrator
+                      : system->is_plain()
+                          ? motion::integrator_for(oscillator_of(*system).value(), played_drive(L, task))
+                          : motion::Spectral{};
     if (!options.has("times") && task.window.end > task.window.start) {
-        task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system.natural_period())));
+        task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system->shortest_natural_period())));
     }
     return task;
 }
@@ -220,17 +226,20 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     if (lua::memory_limit() > 0) lua::make_room(L, bytes_of_rows(origin));
     const double to = origin.window.end;
     const auto run = std::make_shared<Run>();
-    run->origin = std::move(origin);
+    run->origin = std::make_shared<const source::Origin>(std::move(origin));
     const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
-    if (std::holds_alternative<motion::Exact>(asked.integrator)) {
-        run->terms = terms_alone(L, asked.system, asked.drive, asked.window.start, to);
+    const model::Assembly& system = *asked.system;
+    if (system.is_plain() && std::holds_alternative<motion::Exact>(asked.integrator)) {
+        run->terms = terms_alone(L, system, asked.drive, asked.window.start, to);
     }
 
-    const Memories memories(L, options, run->origin->drive.M(), from != run->origin->window.start);
+    model::Excitation all;
+    for (const model::Excitation& load : asked.drive.loads) all = all + load;
+    const Memories memories(L, options, all, from != asked.window.start);
     lua::CallState call(L);
+    name_functions(call, system, asked.drive);
     call.set_span(to - from);
-    if (!asked.drive.states.empty()) call.name_states(names_of_states(asked.drive));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
@@ -242,7 +251,6 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     if (call.failed() && lua::interrupt_requested()) {
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
-    const model::Assembly system = motion::engine::assembly_of(asked.system);
     run->readings = readings_of(system, asked.drive, run->trajectory.located, run->terms.has_value());
     if (sees_all(system, asked.drive, run->trajectory.located)) run->trajectory.gap = run->trajectory.unproven;
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
@@ -269,13 +277,13 @@ int simulate_system(lua_State* L) {
         renamed.units = *units;
         handle = std::make_shared<const model::Assembly>(std::move(renamed));
     }
-    if (!handle->is_plain()) return simulate_bodies(L, options, std::move(handle));
     RunOptions asked;
     options.fill(asked);
-    source::Task task = asked_task(L, options, asked, oscillator_of(*handle).value());
+    source::Task task = asked_task(L, options, asked, handle);
     const double from = task.window.start;
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
-        return motion::simulate(given.system, given.drive, given.window, given.rows, given.integrator, monitor, limits);
+        return motion::simulate(*given.system, given.drive, given.window, given.rows, given.integrator, monitor,
+                                limits);
     };
     // What M refers to is written down before M runs, because it may change that.
     return run_task(L, options, source::origin_of(L, std::move(task)), from, asked.dense, compute);

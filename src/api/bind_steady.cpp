@@ -43,14 +43,19 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
 }
 
 /// The whole motion, or of one body without a name that of this body.
-SteadyHandle made(const std::shared_ptr<const analysis::RigQuestion>& question, analysis::SteadyMotion motion) {
+SteadyHandle made(lua_State* L, const std::shared_ptr<const analysis::RigQuestion>& question,
+                  analysis::SteadyMotion motion) {
     auto rig = std::make_shared<RigSteady>(RigSteady{question, std::move(motion)});
     if (const auto& period = rig->motion.of_bodies) {
-        auto run = std::make_shared<BodiesRun>();
-        run->system = question->system, run->drive = period->drive, run->run = period->run;
         constexpr double rows = 400;
-        run->dt = rig->motion.period / rows;
-        run->t_end = run->run.t_stop;
+        source::Task task{.system = question->system,
+                          .drive = period->drive,
+                          .window = {period->run.t_start, period->run.t_stop},
+                          .rows = motion::Grid::every(rig->motion.period / rows),
+                          .integrator = motion::Spectral{}};
+        auto run = std::make_shared<Run>();
+        run->trajectory = motion::trajectory_of(*question->system, period->drive, {period, &period->run});
+        run->origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)));
         rig->run = std::move(run);
     }
     if (!question->system->named) return seen_from(rig, 0);
@@ -97,8 +102,8 @@ int push_motion(lua_State* L, const lua::Options& options, analysis::RigQuestion
     asking_bodies(L, question,
                   [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
     check_motion(options, found);
-    lua::push<SteadyHandle>(L,
-                            made(std::make_shared<const analysis::RigQuestion>(std::move(question)), std::move(found)));
+    lua::push<SteadyHandle>(
+        L, made(L, std::make_shared<const analysis::RigQuestion>(std::move(question)), std::move(found)));
     return 1;
 }
 
@@ -112,7 +117,7 @@ void run_of_rig(lua_State* L, const Steady& s) {
     } else if (s.part != nullptr) {
         push_run(L, s.part);
     } else {
-        push_bodies_run(L, s.rig->run);
+        push_run(L, s.rig->run);
     }
 }
 
@@ -125,7 +130,7 @@ const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig) {
     rig.others.emplace();
     for (auto& other : found)
         rig.others->push_back(
-            made(std::make_shared<const analysis::RigQuestion>(std::move(other.question)), std::move(other.motion)));
+            made(L, std::make_shared<const analysis::RigQuestion>(std::move(other.question)), std::move(other.motion)));
     return *rig.others;
 }
 
@@ -463,7 +468,7 @@ namespace {
 std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
     const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
-    source::Task task{.system = asked.system,
+    source::Task task{.system = analysis::as_assembly(asked).system,
                       .drive = asked.drive,
                       .window = {},
                       .rows = motion::Grid::every(s.motion.period / rows),
@@ -478,14 +483,15 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
             const auto times = last.column(motion::Column::t);
             task.rows = motion::Grid::at({times.begin(), times.end()});
         }
-        return Run{.trajectory = last, .origin = source::origin_of(L, std::move(task))};
+        return Run{.trajectory = last,
+                   .origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)))};
     }
     if (asked.is_timeless()) return {};
     task.window = {.start = asked.repeats.start, .end = asked.repeats.start + s.motion.period};
     task.drive = {asked.drive.M(), s.motion.start};
-    Run made{.trajectory = {}, .origin = source::origin_of(L, task)};
+    Run made{.trajectory = {}, .origin = std::make_shared<const source::Origin>(source::origin_of(L, task))};
     asking(L, [&](const motion::Monitor& monitor) {
-        auto result = motion::simulate(task.system, task.drive, task.window, task.rows, task.integrator, monitor);
+        auto result = motion::simulate(*task.system, task.drive, task.window, task.rows, task.integrator, monitor);
         if (result) made.trajectory = std::move(result).value();
     });
     return made;
@@ -538,7 +544,7 @@ std::optional<double> asked_period(const lua::Options& options) {
 
 /// Functions in M that repeat say so, as native terms or by themselves.
 void find_period(lua_State* L, analysis::SteadyQuestion& question) {
-    const auto terms = terms_alone(L, question.system, question.drive, 0, model::never);
+    const auto terms = terms_alone(L, *as_assembly(question).system, question.drive, 0, model::never);
     question.drive.loads = {terms ? *terms : with_periods(L, question.drive.M())};
 }
 
@@ -566,13 +572,14 @@ int steady_of_system(lua_State* L) {
 namespace {
 
 /// Pushes the motion that the run leads to from where it ended.
-int push_motion_after(lua_State* L, const lua::Options& options, const BodiesRun& run, int periods,
+int push_motion_after(lua_State* L, const lua::Options& options, const Run& run, int periods,
                       const std::optional<double>& period) {
-    analysis::RigQuestion question{.system = run.system, .drive = run.drive, .periods = periods};
+    analysis::RigQuestion question{.system = run.origin->system, .drive = run.origin->drive, .periods = periods};
     const motion::Monitor none;
-    question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(run.run), run.run.t_stop);
+    const motion::Trajectory& ended = run.trajectory;
+    question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(*ended.bodies), ended.t_stop);
     question.repeats = repetition_or_fail(L, options, question, period);
-    question.repeats.start = std::max(question.repeats.start, run.run.t_stop);
+    question.repeats.start = std::max(question.repeats.start, ended.t_stop);
     return push_motion(L, options, std::move(question));
 }
 
@@ -584,14 +591,16 @@ int steady_of_run(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     const std::optional<double> period = asked_period(options);
-    if (run->whole && run->joint && run->whole->system->named) {
+    if (run->joint) {
         options.fail({"a body has no steady motion by itself: ask the run of all bodies, run:steady()"});
     }
-    if (run->whole) return push_motion_after(L, options, *run->whole, asked.periods.value_or(0), period);
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
     const source::Task& task = *run->origin;
-    analysis::SteadyQuestion question{
-        .system = task.system, .drive = task.drive, .repeats = {}, .periods = asked.periods.value_or(0)};
+    if (!task.system->is_plain()) return push_motion_after(L, options, *run, asked.periods.value_or(0), period);
+    analysis::SteadyQuestion question{.system = oscillator_of(*task.system).value(),
+                                      .drive = task.drive,
+                                      .repeats = {},
+                                      .periods = asked.periods.value_or(0)};
     question.drive.start_at(run->trajectory.state_at_stop);
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.drive.states[i].start = ended.carried->states[i];

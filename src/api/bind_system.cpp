@@ -381,7 +381,7 @@ std::optional<model::Units> asked_units(lua_State* L, const lua::Options& option
 }
 
 const model::Units& units_of(const Run& run) {
-    return run.origin ? run.origin->system.units() : run.units;
+    return run.origin ? run.system().units : run.units;
 }
 
 std::optional<lua::NamedNumbers> walls_by_name(const std::optional<model::Walls>& walls) {

@@ -32,21 +32,6 @@ std::vector<std::string> names_of_states(const model::Drive& drive);
 /// What users' functions get as theta, velocity and z.
 void name_functions(lua::CallState& call, const model::Assembly& system, const model::Drive& drive);
 
-/// A run of several bodies.
-struct BodiesRun {
-    AssemblyHandle system;
-    model::Drive drive;
-    motion::engine::AssemblyRun run;
-    double dt = 0;
-    double t_end = 0;    ///< that was asked for
-    bool spaced = true;  ///< a row every dt, not at times of the user
-    motion::Integrator integrator = motion::Spectral{};
-    std::string readings = {};             ///< which functions were read as formulas: sentences
-    std::vector<std::string> set_up = {};  ///< Lua text that makes all that was run, as it was at the start
-    // Of each joint, made when it is asked for. Not kept: they keep this run.
-    mutable std::vector<std::weak_ptr<const Run>> parts = {};
-};
-using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 std::vector<std::string> body_names(const model::Assembly& system);
 /// Pushes the table of options that makes the body or link.
 void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
@@ -54,14 +39,6 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
 text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system);
 /// As of one mass on the ground, with the linear spring and damping of the joint alone.
 model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
-/// The run as seen from the body or link of this joint.
-RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
-/// Runs a system that is not plain.
-int simulate_bodies(lua_State* L, const lua::Options& options, AssemblyHandle system);
-/// Goes on with a run of one.
-int continue_bodies(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked);
-/// Pushes it; of one body without a name as seen from that.
-void push_bodies_run(lua_State* L, const BodiesRunHandle& run);
 /// The joint of this name; raises that `what`, which has these members, has none of that name.
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of);

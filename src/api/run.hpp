@@ -17,23 +17,28 @@
 
 namespace dinal::api {
 
-struct BodiesRun;
 struct MoreTime;
 struct Data;
 
 struct Run {
     motion::Trajectory trajectory;
-    std::optional<source::Origin> origin = {};    ///< none when it was read from a file
-    std::vector<std::string> comments = {};       ///< of the file it was read from
-    std::optional<model::Excitation> terms = {};  ///< M as the native terms that its functions were read as
-    std::string readings = {};                    ///< which functions were read as formulas: sentences
-    model::Units units = {};                      ///< that stand in these; of another run those of its system
-    lua::MemoryCharge rows = {};                  ///< of the file it was read from
-    std::shared_ptr<const BodiesRun> whole = {};  ///< what was simulated, if it had names or a friction that varies
-    std::optional<std::size_t> joint = {};        ///< of `whole`: the body or link it is seen from; none: all of them
+    std::shared_ptr<const source::Origin> origin = {};  ///< none when it was read from a file
+    std::vector<std::string> comments = {};             ///< of the file it was read from
+    std::optional<model::Excitation> terms = {};        ///< M as the native terms that its functions were read as
+    std::string readings = {};                          ///< which functions were read as formulas: sentences
+    model::Units units = {};                            ///< that stand in these; of another run those of its system
+    lua::MemoryCharge rows = {};                        ///< of the file it was read from
+    std::optional<std::size_t> joint = {};              ///< the body or link with a name that it is seen from
+    // As seen from each joint, made when it is asked for. Not kept: they keep the run of all bodies.
+    mutable std::vector<std::weak_ptr<const Run>> parts = {};
 
-    /// It is seen from no body or link in particular.
-    [[nodiscard]] bool of_all() const { return whole != nullptr && !joint; }
+    [[nodiscard]] const model::Assembly& system() const { return *origin->system; }
+    /// Its system has names, and it is seen from none of its bodies and links.
+    [[nodiscard]] bool of_all() const { return origin != nullptr && system().named && !joint; }
+    /// The place of the joint among those of the system.
+    [[nodiscard]] std::size_t place() const { return joint.value_or(0); }
+    /// It was simulated, and is that of a body.
+    [[nodiscard]] bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.
@@ -60,6 +65,12 @@ Data rows_of(const RunHandle& run);
 /// Raises that `member`, written as ".theta" or ":cycle", is of one body or link, if the run is that of several.
 void check_one(lua_State* L, const Run& run, std::string_view member);
 
+/// The body or link that it is seen from, by itself; none of all bodies, and of a run that was read from a file.
+std::optional<model::Oscillator> alone(const Run& run);
+
+/// The run as seen from this body or link: itself where it is seen from one already, or has one body without a name.
+std::shared_ptr<const Run> part_of(const std::shared_ptr<const Run>& run, std::size_t joint);
+
 /// The runs, as seen from each of its bodies and links, that make up this one.
 std::vector<RunHandle> parts_of(const RunHandle& run);
 
@@ -76,7 +87,7 @@ std::string line_of(const Run& run);
 /// What run:explain() says; raises what a user's spring does.
 std::string story_of_run(lua_State* L, const RunHandle& handle);
 /// Lua text that makes the run again, as lines, or the comments of the file that it was read from.
-std::vector<std::string> repeat_lines(lua_State* L, const Run& run);
+std::vector<std::string> repeat_lines(const Run& run);
 /// The t_end that is asked for, the last of the times, or where a run that stopped should have ended.
 double asked_end(const lua::Options& options, const MoreTime& asked, double stopped, double wanted);
 
@@ -91,8 +102,8 @@ inline constexpr text::Call save_call{"run:save", "run:save(\"run.csv\", { colum
 int save_run(lua_State* L);
 /// run:continue{ t_end }.
 int continue_run(lua_State* L);
-/// run:explain() of what has bodies, and run:energy(), in bind_energy.cpp.
-std::string story_of_bodies(lua_State* L, const RunHandle& run);
+/// run:explain() of what was simulated, and run:energy(), in bind_energy.cpp.
+std::string story_of_simulated(lua_State* L, const RunHandle& run);
 lua::Pushed energy_of_run(lua_State* L, const RunHandle& run);
 /// run:at(t), run.states and run.acceleration.
 int run_at(lua_State* L);

@@ -85,7 +85,7 @@ using SteadyHandle = std::shared_ptr<Steady>;
 struct RigSteady {
     std::shared_ptr<const analysis::RigQuestion> question;
     analysis::SteadyMotion motion;
-    BodiesRunHandle run = {};                              ///< one period; none at rest
+    RunHandle run = {};                                    ///< one period; none at rest
     std::optional<std::vector<SteadyHandle>> others = {};  ///< from other starts, once they were looked for
 };
 

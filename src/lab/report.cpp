@@ -367,9 +367,9 @@ int add_value(lua_State* L) {
         const std::string story = story_of_run(L, kept);
         add_lines(*report, printed(L, 2));
         report->items.emplace_back(ReportText{story});
-        if (kept->origin || kept->whole) {
+        if (kept->origin) {
             report->items.emplace_back(
-                ReportLines{fmt::format("{}", fmt::join(repeat_lines(L, *kept), "\n")), "How to repeat this run"});
+                ReportLines{fmt::format("{}", fmt::join(repeat_lines(*kept), "\n")), "How to repeat this run"});
         }
     } else {
         add_lines(*report, printed(L, 2));

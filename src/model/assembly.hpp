@@ -89,7 +89,7 @@ struct Assembly {
             if (joint.second >= 0) stiffness[static_cast<std::size_t>(joint.second)] += joint.stiffness;
         }
         for (std::size_t i = 0; i < bodies.size(); ++i) {
-            periods.push_back(2 * std::numbers::pi * std::sqrt(bodies[i].inertia / stiffness[i]));
+            periods.push_back(2 * std::numbers::pi / std::sqrt(stiffness[i] / bodies[i].inertia));
         }
         return periods;
     }

@@ -37,12 +37,19 @@ struct OwnRule {
     const char* release;  ///< "the listing let it go at", before the torque
 };
 
+/// How the general engine cuts a run into stretches.
+struct Cut {
+    double tolerance = 1e-12;
+    double longest = model::never;  ///< stretch, time units
+    double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
+};
+
 /// An option struct with its own run. The ranges of its options are in `about`; it may also have
 ///     std::optional<text::Error> wrong_for(const model::Oscillator& system, const model::Excitation& excitation)
 ///     const;
 /// what these forbid besides, and
 ///     OwnRule own_rule() const;
-///     static constexpr bool knows_more = true;    it runs problems with more in them (Problem::more), too
+///     Cut cut() const;    it runs any system, and problems with more in them (Problem::more)
 ///     static constexpr bool asks_in_order = true;          M at ever later times only: it may remember something
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
@@ -76,8 +83,8 @@ public:
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
     /// It asks M in order of time, so nobody needs to know whether M remembers something.
     [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
-    /// It runs problems with states of their own, events of the user, belts, bases and controllers with a memory.
-    [[nodiscard]] bool knows_more() const { return common_->knows_more; }
+    /// Of one that runs any system, and states, events of the user, belts, bases and controllers with a memory.
+    [[nodiscard]] std::optional<Cut> cut() const { return common_->cut(method_); }
 
 private:
     struct Common {
@@ -88,20 +95,13 @@ private:
         Resolution (*resolution)(const void* method, const model::Oscillator& system);
         Trajectory (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
-        bool knows_more, asks_in_order;
+        std::optional<Cut> (*cut)(const void* method);
+        bool asks_in_order;
     };
     template <class M>
     static constexpr bool is_in_order() {
         if constexpr (requires { M::asks_in_order; }) {
             return M::asks_in_order;
-        } else {
-            return false;
-        }
-    }
-    template <class M>
-    static constexpr bool is_for_more() {
-        if constexpr (requires { M::knows_more; }) {
-            return M::knows_more;
         } else {
             return false;
         }
@@ -136,7 +136,13 @@ private:
                 return std::nullopt;
             }
         },
-        is_for_more<M>(),
+        [](const void* method) -> std::optional<Cut> {
+            if constexpr (requires { as<M>(method).cut(); }) {
+                return as<M>(method).cut();
+            } else {
+                return std::nullopt;
+            }
+        },
         is_in_order<M>()};
 
     const void* method_;

@@ -10,6 +10,7 @@
 
 #include "model/controller.hpp"
 #include "model/springs/polynomial_spring.hpp"
+#include "motion/resumed_rows.hpp"
 #include "motion/stillness.hpp"
 #include "motion/witness.hpp"
 
@@ -232,7 +233,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                     past.motion,
                     course_bytes - std::min(course_bytes, past.course_bytes)};
     const bool more = drive.has_more() || system.walls() || model::has_memory(drive.M());
-    if (more && !method.knows_more()) {
+    if (more && !method.cut()) {
         return text::Error{
             .sentence = fmt::format("{} does not support states, events, belts, bases and controllers with memory: use "
                                     "integrator.spectral or rk4",
@@ -314,27 +315,10 @@ text::Expected<Trajectory> simulate(const model::Oscillator& system, const model
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor,
                                   const Limits& limits) {
-    const Window window{so_far.t_stop, t_end};
-    if (!(t_end > window.start)) {
-        return text::Error{
-            .sentence = fmt::format("t_end = {} must be after t = {}, where the run ended", t_end, window.start),
-            .option = "t_end"};
-    }
-    const Window all{so_far.t_start, t_end};
-    if (auto wrong = all.complaint()) return *wrong;
-    const auto grid = rows.within(all);
+    const auto grid = grid_of_both(so_far, t_end, rows, column_count, limits);
     if (!grid) return grid.error();
-    if (auto wrong = wrong_rows(*grid, column_count, limits)) return *wrong;
-    // The last row of the first part is none of all of it when only the old t_end put it there.
-    std::size_t kept = std::min(static_cast<std::size_t>(so_far.size()), grid->count());
-    if (kept > 0 && so_far.rows(static_cast<Eigen::Index>(kept) - 1, 0) != grid->time(kept - 1)) --kept;
-    std::vector<double> times;
-    times.reserve(grid->count() - kept);
-    for (std::size_t i = kept; i < grid->count(); ++i) {
-        // The old t_end may be a row of all but for its rounding, and a little later than that.
-        const bool there = std::fabs(grid->time(i) - window.start) <= 4e-16 * std::fabs(window.start);
-        if (there || grid->time(i) >= window.start) times.push_back(std::max(grid->time(i), window.start));
-    }
+    const Window window{so_far.t_stop, t_end};
+    auto [kept, times] = rows_to_come(so_far, *grid);
     const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0, so_far.carried.get()};
     model::Drive from_there = drive;
     from_there.start_at(so_far.state_at_stop);

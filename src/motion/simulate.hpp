@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "model/assembly.hpp"
 #include "model/drive.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
@@ -100,11 +102,31 @@ text::Expected<Trajectory> simulate(const model::Oscillator& system, const model
                                     const Grid& rows, MethodView method, const Monitor& monitor = {},
                                     const Limits& limits = {});
 
+/// The same of any system: of one with names all columns, and no course, which is that of its parts.
+text::Expected<Trajectory> simulate(const model::Assembly& system, const model::Drive& drive, const Window& window,
+                                    const Grid& rows, MethodView method, const Monitor& monitor = {},
+                                    const Limits& limits = {});
+
 /// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both, which shares
 /// with `so_far` what that has. `rows` are those of all of it; `so_far` has the first of them, and perhaps one at its
 /// end. Fails like simulate().
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
                                   const Limits& limits = {});
+
+text::Expected<Trajectory> resume(const model::Assembly& system, const model::Drive& drive, const Trajectory& so_far,
+                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
+                                  const Limits& limits = {});
+
+/// The run of all bodies as a trajectory: of one with names all columns.
+Trajectory trajectory_of(const model::Assembly& system, const model::Drive& drive,
+                         std::shared_ptr<const engine::AssemblyRun> run);
+/// As seen from this body or link.
+Trajectory seen_from(const model::Assembly& system, const model::Drive& drive,
+                     std::shared_ptr<const engine::AssemblyRun> run, std::size_t joint);
+/// How many columns its rows have.
+std::size_t columns_of(const model::Assembly& system, const model::Drive& drive);
+/// Whether the motion between the rows was kept.
+bool is_dense(const Trajectory& trajectory);
 
 }  // namespace dinal::motion

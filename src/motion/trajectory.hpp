@@ -69,6 +69,10 @@ struct Rough {
     bool other_integrators = true;  ///< may take the run
 };
 
+namespace engine {
+struct AssemblyRun;
+}
+
 struct Trajectory {
     std::vector<std::string> own_names = {};  ///< where these are not the six of every run: see names()
     Rows rows;                                ///< never NaN
@@ -94,6 +98,8 @@ struct Trajectory {
     std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
+    /// The run of all bodies that this one is, or is seen from one of them; none of a plain system.
+    std::shared_ptr<const engine::AssemblyRun> bodies = {};
 
     /// Jumps so many that they are what the run takes long for.
     [[nodiscard]] bool jumps_often() const {

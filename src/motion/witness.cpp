@@ -192,9 +192,27 @@ std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     return testimony_->found;
 }
 
+namespace {
+
+bool has_functions(const model::Drive& drive) {
+    const auto has = [](const model::Excitation& one) { return one.has_script(); };
+    return std::any_of(drive.loads.begin(), drive.loads.end(), has) ||
+           std::any_of(drive.belts.begin(), drive.belts.end(), has) || drive.base.has_script() ||
+           !drive.states.empty() || !drive.events.empty();
+}
+
+}  // namespace
+
 bool has_functions(const model::Oscillator& system, const model::Drive& drive) {
-    return has_functions(system) || drive.M().has_script() || !drive.states.empty() || !drive.events.empty() ||
-           drive.belt().has_script() || drive.base.has_script();
+    return has_functions(system) || has_functions(drive);
+}
+
+bool has_functions(const model::Assembly& system, const model::Drive& drive) {
+    const auto has = [](const model::Joint& joint) {
+        return !joint.friction.is_constant() || joint.friction.law.as<model::laws::UserLaw>() != nullptr ||
+               joint.spring.as<model::springs::UserSpring>() != nullptr;
+    };
+    return std::any_of(system.joints.begin(), system.joints.end(), has) || has_functions(drive);
 }
 
 }  // namespace dinal::motion

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "model/assembly.hpp"
 #include "model/contradiction.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
@@ -127,5 +128,6 @@ private:
 
 /// Something in the run is a function that a user has written.
 [[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Drive& drive);
+[[nodiscard]] bool has_functions(const model::Assembly& system, const model::Drive& drive);
 
 }  // namespace dinal::motion

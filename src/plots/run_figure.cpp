@@ -73,7 +73,7 @@ text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) 
 /// "M/k" and its like; nothing when the name is none of these.
 std::optional<double> divisor(const RunData& run, std::string_view name) {
     const std::size_t slash = name.find('/');
-    if (slash == std::string_view::npos || run.system == nullptr || !run.system->has_spring()) {
+    if (slash == std::string_view::npos || !run.system || !run.system->has_spring()) {
         return std::nullopt;
     }
     const std::string_view by = name.substr(slash + 1);
@@ -114,7 +114,7 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
         return {other != names.end() ? *other : std::string(x)};
     }
     std::vector<std::string> names{"theta"};
-    if (run.system != nullptr && run.system->has_spring() && is_excited(run, "M")) {
+    if (run.system && run.system->has_spring() && is_excited(run, "M")) {
         names.emplace_back("M/k");
     } else if (is_excited(run, "M_over_k")) {
         names.emplace_back("M_over_k");
@@ -276,8 +276,8 @@ void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) 
 }  // namespace
 
 text::Expected<Figure> phase_figure(const RunData& run) {
-    const bool record = run.system == nullptr && has(run, "velocity_over_omega0");
-    if (run.system == nullptr && !record) {
+    const bool record = !run.system && has(run, "velocity_over_omega0");
+    if (!run.system && !record) {
         return text::Error{
             "the phase plane needs omega0, which a run read from a .csv file does not have; use run:plot{ x = "
             "\"theta\", y = \"velocity\" }"};
@@ -299,7 +299,7 @@ text::Expected<Figure> phase_figure(const RunData& run) {
         plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
-    if (run.load && run.system != nullptr && run.system->has_linear_spring() && run.system->dead_zone() > 0) {
+    if (run.load && run.system && run.system->has_linear_spring() && run.system->dead_zone() > 0) {
         const double centre = *run.load / run.system->stiffness();
         const auto [lowest, highest] = run.system->resting_places();
         Interval zone{centre + lowest, centre + highest};

@@ -16,7 +16,7 @@ namespace dinal::plots {
 struct RunData {
     std::shared_ptr<const void> owner;  ///< keeps the trajectory alive
     const motion::Trajectory* trajectory;
-    const model::Oscillator* system;  ///< null in a run that was read from a file
+    std::optional<model::Oscillator> system;  ///< none in a run that was read from a file, or is of several bodies
     model::Units units = {};
     std::optional<double> load = {};  ///< the torque on the mass besides that of its system; none if it varies
 };

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "lua/user_function.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/witness.hpp"
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
@@ -16,8 +15,6 @@
 namespace dinal::source {
 
 namespace {
-
-namespace engine = motion::engine;
 
 void append_lines(std::vector<std::string>& lines, std::string_view text) {
     for (;;) {
@@ -110,16 +107,7 @@ bool acts(const std::vector<model::Excitation>& acting) {
     return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
 }
 
-}  // namespace
-
-Origin origin_of(lua_State* L, Task task) {
-    std::vector<std::string> set_up;
-    if (motion::has_functions(task.system, task.drive)) {
-        set_up = set_up_lines(L, engine::assembly_of(task.system), task.drive);
-    }
-    return {std::move(task), std::move(set_up)};
-}
-
+/// The lines that make a system and all that drives it. Without functions of a user Lua is not asked, and may be null.
 std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const model::Drive& drive) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
@@ -139,27 +127,32 @@ std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& syste
     return lines;
 }
 
-std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const model::Assembly& system,
-                                      const model::Drive& drive, const motion::Window& window, const motion::Grid& rows,
-                                      const motion::Integrator& integrator) {
+}  // namespace
+
+Origin origin_of(lua_State* L, Task task) {
+    std::vector<std::string> set_up;
+    if (!task.system->is_plain() || motion::has_functions(*task.system, task.drive)) {
+        set_up = set_up_lines(L, *task.system, task.drive);
+    }
+    return {std::move(task), std::move(set_up)};
+}
+
+std::vector<std::string> repeat_lines(const Origin& origin) {
+    const model::Assembly& system = *origin.system;
+    const model::Drive& drive = origin.drive;
+    std::vector<std::string> lines = origin.set_up.empty() ? set_up_lines(nullptr, system, drive) : origin.set_up;
     std::string options;
     for (const auto& [name, given] : {std::pair("M", acts(drive.loads)), std::pair("states", !drive.states.empty()),
                                       std::pair("events", !drive.events.empty()), std::pair("belt", acts(drive.belts)),
                                       std::pair("base", !drive.base.components().empty())}) {
         if (given) options += fmt::format("{0} = {0}, ", name);
     }
-    append_lines(set_up,
-                 fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
-                             "integrator = {} }}",
-                             options, by_body(system, drive.theta0), by_body(system, drive.velocity0), window.start,
-                             window.end, rows_text(rows), lua_text(integrator)));
-    return set_up;
-}
-
-std::vector<std::string> repeat_lines(const Origin& origin) {
-    const model::Assembly system = engine::assembly_of(origin.system);
-    return repeat_lines(origin.set_up.empty() ? set_up_lines(nullptr, system, origin.drive) : origin.set_up, system,
-                        origin.drive, origin.window, origin.rows, origin.integrator);
+    append_lines(lines, fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
+                                    "integrator = {} }}",
+                                    options, by_body(system, drive.theta0), by_body(system, drive.velocity0),
+                                    origin.window.start, origin.window.end, rows_text(origin.rows),
+                                    lua_text(origin.integrator)));
+    return lines;
 }
 
 }  // namespace dinal::source

@@ -13,7 +13,7 @@ namespace dinal::source {
 
 /// All that sys:simulate{...} was told, checked for kind but not yet for sense.
 struct Task {
-    model::Oscillator system;
+    model::AssemblyHandle system;
     model::Drive drive;
     motion::Window window;
     motion::Grid rows;
@@ -31,12 +31,5 @@ Origin origin_of(lua_State* L, Task task);
 
 /// Lua text that makes the same run again, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);
-
-/// The lines that make a system and all that drives it. Without functions of a user Lua is not asked, and may be null.
-std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const model::Drive& drive);
-/// These lines, and the one that runs it.
-std::vector<std::string> repeat_lines(std::vector<std::string> set_up, const model::Assembly& system,
-                                      const model::Drive& drive, const motion::Window& window, const motion::Grid& rows,
-                                      const motion::Integrator& integrator);
 
 }  // namespace dinal::source

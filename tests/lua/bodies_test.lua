@@ -381,7 +381,7 @@ test("each body and link is a system of its own, and with changes some of its nu
     raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "sys:with: bodies.load has no option 'rd'")
     raises_here(function() rig:with { bodies = { load = 3 } } end, "bodies.load must be a table such as { k = 3 }, got 3")
     raises_here(function() rig.with { links = {} } end, "use a colon: sys:with")
-    raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { k = ... } }")
+    raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }")
 end)
 
 test("several bodies take spectral and rk4, and say of exact that it is for one body", function()
@@ -406,7 +406,7 @@ test("several bodies take spectral and rk4, and say of exact that it is for one 
     equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
     near(long.b.theta, rk4.b.theta, 1e-8)
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body without a name and with constant friction: use integrator.spectral or rk4")
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
     -- each body alone would be stable with this h, and their common mode is not
     local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }

@@ -347,10 +347,6 @@ local different = {
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["pictures of the run: plot"] = "the run of several bodies draws the angles of all",
-    ["pictures of the run: phase_plot, constant laws, event that bounces endlessly"] =
-        "the run of several bodies has no phase plane",
-    ["pictures of the body: plot phase_plot, constant laws, event that bounces endlessly"] =
-        "the run of a body draws no M/k and has no phase plane",
     ["words of the run: line"] = writers,
     ["save: acceleration"] = "only the file of several bodies has the column acceleration",
     ["save: header, exact by default"] = exact_of_one,

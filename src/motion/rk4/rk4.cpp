@@ -61,7 +61,7 @@ text::Expected<model::State> Replay::at(double t) const {
 }  // namespace
 
 Trajectory Rk4::run(const Problem& problem) const {
-    if (problem.more) return engine::run(problem, {.longest = h, .step = h});
+    if (problem.more) return engine::run(problem, cut());
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
     std::shared_ptr<Replay> replay;

@@ -13,10 +13,10 @@ struct Rk4 {
     double h = 0;  ///< the step, at most stability_limit()
 
     static const MethodText about;
-    static constexpr bool knows_more = true;
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
+    [[nodiscard]] Cut cut() const { return {.longest = h, .step = h}; }
     [[nodiscard]] Trajectory run(const Problem& problem) const;
 };
 

@@ -1,6 +1,7 @@
 // integrator.spectral: Chebyshev panels between events and breaks of M, each solved to rounding whatever M is.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "motion/method.hpp"
@@ -18,12 +19,12 @@ struct Spectral {
     double narrowest = std::numeric_limits<double>::infinity();  ///< no pulse of this width is missed, time units
 
     static const MethodText about;
-    static constexpr bool knows_more = true;
     /// The longest panel whose samples miss no pulse of the width `narrowest`, time units.
     [[nodiscard]] double widest_looks() const;
     /// The longest panel of a run, time units.
     [[nodiscard]] double longest(const Problem& problem) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
+    [[nodiscard]] Cut cut() const { return {.tolerance = tolerance, .longest = std::min(max_panel, widest_looks())}; }
     [[nodiscard]] Trajectory run(const Problem& problem) const;
 };
 

@@ -77,7 +77,7 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
     scene.belt = belt != nullptr;
     scene.theta_unit = run.units.theta;
     scene.t_unit = run.units.t;
-    if (run.system != nullptr) {
+    if (run.system) {
         scene.walls = run.system->walls();
         scene.spring = run.system->has_spring() || !run.system->spring().none();
     }

@@ -1,0 +1,20 @@
+// The rows of a run that goes on: those that it has, and those that it still needs.
+#pragma once
+
+#include <vector>
+
+#include "motion/simulate.hpp"
+
+namespace dinal::motion {
+
+/// All rows of a run that goes on to t_end. Fails as simulate() does.
+text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const Grid& rows, std::size_t columns,
+                                  const Limits& limits);
+
+struct RowsToCome {
+    std::size_t kept;  ///< of the first part
+    std::vector<double> times;
+};
+RowsToCome rows_to_come(const Trajectory& so_far, const Grid& grid);
+
+}  // namespace dinal::motion
