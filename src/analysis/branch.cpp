@@ -99,7 +99,7 @@ private:
     [[nodiscard]] double sign() const { return half_ ? -1 : 1; }
     [[nodiscard]] PeriodMap map(const SteadyQuestion& question) const {
         const double length = half_ ? question.repeats.period / 2 : periods_ * question.repeats.period;
-        return {question.system, question.drive.M(), question.repeats.start, length, monitor_};
+        return {question.body, question.drive.M(), question.repeats.start, length, monitor_};
     }
 
     const Family& family_;

@@ -9,14 +9,14 @@
 namespace dinal::analysis {
 
 bool is_linear_but_for_friction(const SteadyQuestion& question) {
-    const model::Lowered system(question.system);
-    return question.system.has_linear_spring() && system.stiffness() > 0 && !system.has_remainder() &&
-           !question.system.walls() && !question.drive.M().has_feedback();
+    const model::Lowered system(question.body);
+    return question.body.has_linear_spring() && system.stiffness() > 0 && !system.has_remainder() &&
+           !question.body.walls() && !question.load().has_feedback();
 }
 
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
                                        const motion::Trajectory& run, std::complex<double> M_wave) {
-    const model::Lowered system(question.system);
+    const model::Lowered system(question.body);
     const Repetition& repeats = question.repeats;
     const double omega = 2 * std::numbers::pi / repeats.period, length = run.t_stop - run.t_start;
     const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - repeats.start)); };
@@ -31,10 +31,9 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
             const double piece = std::min(repeats.period / 64, s.lasts() / 12);
             sum += held * s.lasts();
             sum_wave += held * between;
-            sum += integral(question.drive.M(), s.from, s.to, piece,
-                            [&](double t) { return question.drive.M().value(t); });
-            sum_wave += integral(question.drive.M(), s.from, s.to, piece,
-                                 [&](double t) { return question.drive.M().value(t) * wave(t); });
+            sum += integral(question.load(), s.from, s.to, piece, [&](double t) { return question.load().value(t); });
+            sum_wave += integral(question.load(), s.from, s.to, piece,
+                                 [&](double t) { return question.load().value(t) * wave(t); });
         } else {
             const double braking =
                 system.braking(s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward);
@@ -49,8 +48,8 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
     found.wave =
         left / std::complex<double>(system.stiffness() - system.inertia() * omega * omega, system.damping() * omega);
     if (!motion.symmetric) {
-        const double mean_M = integral(question.drive.M(), run.t_start, run.t_stop, repeats.period / 64,
-                                       [&](double t) { return question.drive.M().value(t); }) /
+        const double mean_M = integral(question.load(), run.t_start, run.t_stop, repeats.period / 64,
+                                       [&](double t) { return question.load().value(t); }) /
                               length;
         found.mean = (mean_M - sum / length) / system.stiffness();
     }

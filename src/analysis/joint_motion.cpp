@@ -15,31 +15,21 @@ namespace dinal::analysis {
 namespace engine = motion::engine;
 using motion::Trajectory;
 
-RigQuestion as_assembly(const SteadyQuestion& question) {
-    if (question.whole) return *question.whole;
-    const model::Oscillator& system = question.system;
-    RigQuestion asked{.system = std::make_shared<const model::Assembly>(engine::assembly_of(system)),
-                      .drive = question.drive,
-                      .repeats = question.repeats,
-                      .periods = question.periods};
-    if (system.has_spring()) asked.longest = motion::spectral::longest_panel * system.natural_period();
+SteadyQuestion for_returns(const SteadyQuestion& question) {
+    SteadyQuestion asked = question;
+    if (!question.is_plain()) return asked;
+    const model::Oscillator& body = question.body;
+    if (body.has_spring()) asked.longest = motion::spectral::longest_panel * body.natural_period();
     asked.settles = settles_after(asked).value_or(question.repeats.period);
     return asked;
 }
 
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive,
                                                double start) {
-    SteadyQuestion asked = question;
-    asked.repeats.start = start;
-    if (question.whole) {
-        auto whole = std::make_shared<RigQuestion>(*question.whole);
-        whole->drive = drive;
-        whole->repeats.start = start;
-        asked.whole = std::move(whole);
-        return std::make_shared<const SteadyQuestion>(std::move(asked));
-    }
-    asked.drive = drive;
-    return std::make_shared<const SteadyQuestion>(std::move(asked));
+    auto asked = std::make_shared<SteadyQuestion>(question);
+    asked->drive = drive;
+    asked->repeats.start = start;
+    return asked;
 }
 
 void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {
@@ -74,18 +64,19 @@ void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMo
     if (!moves) motion.rest = rest_of(question, motion.start.theta);
 }
 
-SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, std::size_t joint,
-                       const SteadyQuestion& own, std::shared_ptr<const motion::Trajectory> run) {
+SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
+                       std::shared_ptr<const motion::Trajectory> run) {
     const model::Assembly& system = *question.system;
+    const std::size_t joint = question.joint.value_or(0);
     const model::Joint& seen = system.joints[joint];
-    const bool alone = !system.named && seen.friction.is_constant();
+    const bool alone = question.is_plain();
     const auto of = [&](auto number) {
         const double second = seen.second < 0 ? 0 : number(whole.bodies[static_cast<std::size_t>(seen.second)]);
         return number(whole.bodies[static_cast<std::size_t>(seen.first)]) - second;
     };
     SteadyMotion facts = whole;
     if (run) {
-        tell_of_run(own, *run, facts);
+        tell_of_run(question, *run, facts);
         double size = 0;
         for (const BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
         // The difference of two angles that are held together is their rounding.
@@ -95,16 +86,16 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
             if (time_open(*run) == 0) facts.stuck = 1;
         }
         if (!alone) facts.rest = {facts.low, facts.low};
-        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, run->t_start);
+        if (whole.begun) facts.asked = begun_at(question, *whole.begun, run->t_start);
         facts.settled = std::move(run);
     } else if (whole.is_found()) {
         facts.amplitude = 0;
         facts.low = facts.high = of([](const BodyMotion& body) { return body.begin; });
         facts.start = {facts.low, of([](const BodyMotion& body) { return body.turned; })};
-        facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(own, facts.low)
+        facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(question, facts.low)
                                                                             : std::pair(facts.low, facts.low);
         if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
-        if ((alone || own.whole) && whole.begun) facts.asked = begun_at(own, *whole.begun, own.repeats.start);
+        if (whole.begun) facts.asked = begun_at(question, *whole.begun, question.repeats.start);
     }
     // Of a body that goes round the angle never comes back.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
@@ -116,13 +107,12 @@ SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, s
 }
 
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion) {
-    const RigQuestion assembly = as_assembly(question);
     std::shared_ptr<const Trajectory> run;
     if (const auto& period = motion.of_bodies) {
-        run = std::make_shared<const Trajectory>(
-            engine::part_with_rows(*assembly.system, period->drive, period->run, question.joint, question.system));
+        run = std::make_shared<const Trajectory>(engine::part_with_rows(*question.system, period->drive, period->run,
+                                                                        question.joint.value_or(0), question.body));
     }
-    return seen_from(assembly, motion, question.joint, question, std::move(run));
+    return seen_from(question, motion, std::move(run));
 }
 
 }  // namespace dinal::analysis

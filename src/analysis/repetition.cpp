@@ -105,7 +105,7 @@ std::optional<Repetition> repetition_of(const model::Excitation& excitation, dou
 namespace {
 
 /// What functions are given as states: of bodies with names all angles and velocities, and then the states of the run.
-std::vector<double> states_of(const RigQuestion& question) {
+std::vector<double> states_of(const SteadyQuestion& question) {
     const model::Drive& drive = question.drive;
     std::vector<double> states;
     if (question.system->named) {
@@ -178,7 +178,7 @@ double value_of(const model::Excitation& excitation, double t, const model::Stat
 
 }  // namespace
 
-std::vector<Acting> acting_in(const RigQuestion& question) {
+std::vector<Acting> acting_in(const SteadyQuestion& question) {
     std::vector<Acting> all;
     for (const model::Excitation& load : question.drive.loads) all.push_back({"M", &load});
     for (const model::Joint& joint : question.system->joints) {
@@ -192,7 +192,7 @@ std::vector<Acting> acting_in(const RigQuestion& question) {
     return all;
 }
 
-std::optional<Repetition> repetition_of(const RigQuestion& question) {
+std::optional<Repetition> repetition_of(const SteadyQuestion& question) {
     const std::vector<double> states = states_of(question);
     const model::State initial{question.drive.theta0.front(), question.drive.velocity0.front()};
     double start = 0;
@@ -217,7 +217,7 @@ std::optional<Repetition> repetition_of(const RigQuestion& question) {
     return Repetition{start, 0};
 }
 
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& repeats) {
+std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Repetition& repeats) {
     const std::vector<double> states = states_of(question);
     const auto differs = [&](const std::string& name, auto&& value) -> std::optional<text::Error> {
         constexpr int probes = 50;

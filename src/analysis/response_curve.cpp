@@ -45,7 +45,7 @@ private:
         SteadyQuestion question = question_.family(p);
         // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
         if (question.is_timeless()) return motion_of(question, near);
-        if (!before && !question.whole) question.drive.start_at(question_.start);
+        if (!before && question.is_plain()) question.drive.start_at(question_.start);
         if (before) question = from_motion(std::move(question), *before, false);
         return motion_of(question, near);
     }
@@ -56,13 +56,11 @@ private:
     }
 
     [[nodiscard]] static SteadyQuestion from_motion(SteadyQuestion question, const SteadyMotion& motion, bool states) {
-        if (question.whole && !motion.begun) return question;
-        if (question.whole) {
-            auto whole = std::make_shared<RigQuestion>(*question.whole);
-            whole->drive.theta0 = motion.begun->theta0;
-            whole->drive.velocity0 = motion.begun->velocity0;
-            if (states) whole->drive.states = motion.begun->states;
-            question.whole = std::move(whole);
+        if (!question.is_plain()) {
+            if (!motion.begun) return question;
+            question.drive.theta0 = motion.begun->theta0;
+            question.drive.velocity0 = motion.begun->velocity0;
+            if (states) question.drive.states = motion.begun->states;
             return question;
         }
         question.drive.start_at(motion.start);
@@ -89,8 +87,8 @@ private:
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it goes round: its size tells nothing
         const SteadyQuestion question = question_.family(p);
-        const bool plain = !question.whole && !question.is_timeless() && !question.drive.has_more();
-        if (question.whole && (question.whole->settles >= 0 || contracts(question))) return {};
+        const bool plain = question.is_plain() && !question.is_timeless() && !question.drive.has_more();
+        if (!question.is_plain() && (question.settles >= 0 || contracts(question))) return {};
         if (contracts(question) && question.drive.states.empty() && question.drive.events.empty()) return {};
         if (!plain) return circuit_of_returns(question_.family, p, motion, periods, monitor_);
         if (model::has_memory(question.drive.M())) return {};

@@ -23,7 +23,7 @@ public:
     ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
                   const motion::Monitor& monitor, const std::optional<Returns::Section>& section = {})
         : family_(family), monitor_(monitor), periods_(periods) {
-        const RigQuestion asked = as_assembly(*motion.asked);
+        const SteadyQuestion asked = for_returns(*motion.asked);
         for (const model::Excitation& load : asked.drive.loads) relays_.push_back(relays_of(load));
         Here& here = at(p);
         chart_.emplace(chart_of(here.runs));
@@ -44,7 +44,7 @@ public:
         section_ = *found;
         // A passage against the way of the belt slides.
         const auto n = here.runs.bodies();
-        const model::Excitation& belt = here.assembly.drive.belts[static_cast<std::size_t>(section_.measured % n)];
+        const model::Excitation& belt = here.question.drive.belts[static_cast<std::size_t>(section_.measured % n)];
         if (!belt.components().empty() && belt.value(here.question.repeats.start) > 0) section_.way = -1;
         Returns map = returns(here, section_);
         Returns::Return arrival = map.arrival(begin);
@@ -87,7 +87,7 @@ public:
             const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
             motion.status = rotates ? SteadyStatus::steady : SteadyStatus::rest;
             motion.bodies = bodies_at(begin.y, *chart_, here.runs.bodies());
-            motion = seen_from(here.assembly, motion, here.question.joint, here.question, {});
+            motion = seen_from(here.question, motion, {});
             motion.asked = begun_at(here.question, *motion.begun, start(here));
             return motion;
         }
@@ -103,10 +103,10 @@ public:
         if (!model::is_whole(run.outcome)) return motion;
         motion.outcome = run.outcome;
         motion.bodies = bodies_of(run, *chart_, reach_of_rows(run, *chart_));
-        const auto seen = std::make_shared<const motion::Trajectory>(
-            motion::engine::part_with_rows(system, period->drive, run, here.question.joint, here.question.system));
+        const auto seen = std::make_shared<const motion::Trajectory>(motion::engine::part_with_rows(
+            system, period->drive, run, here.question.joint.value_or(0), here.question.body));
         motion.of_bodies = std::move(period);
-        return seen_from(here.assembly, motion, here.question.joint, here.question, seen);
+        return seen_from(here.question, motion, seen);
     }
 
     [[nodiscard]] VectorXd units(const VectorXd& x, const Lap& /*lap*/, const SteadyMotion& motion) const override {
@@ -117,7 +117,7 @@ public:
         if (stands_) {
             const double natural = here_->runs.natural_period(),
                          omega = natural > 0 ? 2 * std::numbers::pi / natural : 1;
-            const model::Drive& drive = here_->assembly.drive;
+            const model::Drive& drive = here_->question.drive;
             double size = 0;
             for (const model::Excitation& belt : drive.belts) {
                 size = std::max(size, std::fabs(belt.value(start(*here_))) / omega);
@@ -170,13 +170,12 @@ private:
     struct Here {
         double p;
         SteadyQuestion question;
-        RigQuestion assembly;
         Runs runs;
-        Here(double value, SteadyQuestion asked, const std::vector<std::vector<bool>>& relays,
+        Here(double value, const SteadyQuestion& asked, const std::vector<std::vector<bool>>& relays,
              const motion::Monitor& monitor)
-            : p(value), question(std::move(asked)), assembly(as_assembly(question)), runs(assembly, monitor) {
+            : p(value), question(for_returns(asked)), runs(question, monitor) {
             for (std::size_t i = 0; i < relays.size(); ++i) {
-                assembly.drive.loads[i] = with_relays(assembly.drive.loads[i], relays[i]);
+                question.drive.loads[i] = with_relays(question.drive.loads[i], relays[i]);
             }
         }
     };
@@ -244,7 +243,7 @@ std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, cons
 std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
                                                  const motion::Monitor& monitor) {
     // NOTE: the least cycles of several bodies are not followed: their section moves away from them as the bodies turn.
-    if (!rest.asked || rest.asked->whole) return {};
+    if (!rest.asked || !rest.asked->is_plain()) return {};
     ReturnCircuit still(family, p, rest, 1, monitor);
     const VectorXd x = still.first();
     const Circuit::Lap lap = still.lap(x, p);

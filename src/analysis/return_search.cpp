@@ -62,7 +62,7 @@ double greatest(const Reach& reach, Index count) {
 /// Searches for the motion that a run from the start of the question leads to.
 class ReturnSearch {
 public:
-    ReturnSearch(const RigQuestion& question, const motion::Monitor& monitor)
+    ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
         : runs_(question, monitor), chart_(chart_of(runs_)) {}
 
     SteadyMotion found();
@@ -77,7 +77,7 @@ private:
     /// The bodies come to rest or go round evenly; stands: friction holds all.
     void tell_rest(const Runs::Run& run, bool stands);
 
-    [[nodiscard]] const RigQuestion& question() const { return runs_.question(); }
+    [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
     [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
     /// The period of M, or the slowest natural one.
     [[nodiscard]] double pace() const;
@@ -712,7 +712,7 @@ std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run 
 
 }  // namespace
 
-std::optional<double> settles_after(const RigQuestion& question) {
+std::optional<double> settles_after(const SteadyQuestion& question) {
     bool waits = false;
     double common = question.repeats.period;
     for (const model::Excitation& load : question.drive.loads) {
@@ -735,19 +735,20 @@ std::optional<double> settles_after(const RigQuestion& question) {
     return waits ? common : -1;
 }
 
-SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor) {
-    return ReturnSearch(question, monitor).found();
+SteadyMotion whole_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    const SteadyQuestion asked = for_returns(question);
+    return ReturnSearch(asked, monitor).found();
 }
 
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const RigQuestion assembly = as_assembly(question);
-    return seen_from(question, steady_motion(assembly, monitor));
+    SteadyMotion motion = whole_motion(question, monitor);
+    return question.is_plain() || question.joint ? seen_from(question, motion) : motion;
 }
 
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
     if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
     constexpr double periods = 4;
-    const PeriodMap map(question.system, question.drive.M(), question.repeats.start, periods * motion.period, monitor);
+    const PeriodMap map(question.body, question.drive.M(), question.repeats.start, periods * motion.period, monitor);
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
     const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});

@@ -15,17 +15,6 @@
 
 namespace dinal::analysis {
 
-struct RigQuestion {
-    model::AssemblyHandle system;
-    model::Drive drive;
-    Repetition repeats = {};  ///< period 0: nothing depends on the time
-    int periods = 0;          ///< of M in one of the motion; 0: as many as it takes
-    /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
-    /// none.
-    double settles = -1;
-    double longest = model::never;  ///< stretch of its runs, time units
-};
-
 /// Discrete part of a moment: no number that may change a little.
 struct HeldMode {
     motion::engine::Mode mode;
@@ -44,9 +33,9 @@ struct Moment {
 class Runs {
 public:
     using Run = motion::engine::AssemblyRun;
-    Runs(const RigQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
+    Runs(const SteadyQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
 
-    [[nodiscard]] const RigQuestion& question() const { return question_; }
+    [[nodiscard]] const SteadyQuestion& question() const { return question_; }
     [[nodiscard]] const model::Assembly& system() const { return *question_.system; }
     [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
@@ -68,7 +57,7 @@ private:
     [[nodiscard]] Run run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
                           std::shared_ptr<const motion::engine::Carry> before);
 
-    const RigQuestion& question_;
+    const SteadyQuestion& question_;
     const motion::Monitor& monitor_;
     std::optional<model::Contradiction> contradiction_;
     motion::engine::Floor floor_;  ///< what the last run found, for those that begin where hardly anything moves
@@ -190,27 +179,20 @@ struct Acting {
     const char* name;
     const model::Excitation* what;
 };
-std::vector<Acting> acting_in(const RigQuestion& question);
+std::vector<Acting> acting_in(const SteadyQuestion& question);
 
 /// When all that drives the run repeats itself: period 0 where nothing depends on the time; none where no period is
 /// known. What is a function is looked at at some times: only its user knows its period.
-std::optional<Repetition> repetition_of(const RigQuestion& question);
+std::optional<Repetition> repetition_of(const SteadyQuestion& question);
 /// Asks all of it at times all over the period and one period later: the sentence that names the worst two that differ.
-std::optional<text::Error> not_periodic(const RigQuestion& question, const Repetition& repeats);
+std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Repetition& repeats);
 /// `settles` of the question; none where its controllers and what else drives the bodies have no common period, or too
 /// long a one.
-std::optional<double> settles_after(const RigQuestion& question);
-/// One body as the smallest assembly.
-RigQuestion as_assembly(const SteadyQuestion& question);
+std::optional<double> settles_after(const SteadyQuestion& question);
+/// The question as the search for returns asks it: of a plain system with the longest stretch that its spring allows.
+SteadyQuestion for_returns(const SteadyQuestion& question);
 
-/// Where the motion from the start of the question leads.
-SteadyMotion steady_motion(const RigQuestion& question, const motion::Monitor& monitor = {});
-
-/// Motions from other starts that are not this one, each once; none where no motion was found.
-std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const SteadyMotion& known,
-                                              const motion::Monitor& monitor = {});
-
-/// The answer in sentences.
-std::string told(const RigQuestion& question, const SteadyMotion& motion, std::size_t others);
+/// The motion of all bodies that a run from the start of the question leads to, seen from none of them.
+SteadyMotion whole_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
 }  // namespace dinal::analysis

@@ -10,6 +10,8 @@
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
+#include "motion/engine/one_body.hpp"
+#include "motion/engine/part.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -18,16 +20,16 @@ class SteadySearch {
 public:
     SteadySearch(const SteadyQuestion& question, const motion::Monitor& monitor)
         : question_(question),
-          system_(question.system),
+          system_(question.body),
           monitor_(monitor),
-          map_(question.system, question.drive.M(), question.repeats.start, question.repeats.period, monitor),
+          map_(question.body, question.drive.M(), question.repeats.start, question.repeats.period, monitor),
           half_(map_, question.repeats.period / 2) {
         symmetric_ = is_alike_both_ways(question);
         contracts_ = contracts(question);
     }
 
     SteadyMotion found() {
-        const Place start = inside(question_.system, place_of(question_.drive.start(), map_.omega()));
+        const Place start = inside(question_.body, place_of(question_.drive.start(), map_.omega()));
         answer_.period = question_.repeats.period;
         if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
         if (question_.periods > 1) {
@@ -43,7 +45,7 @@ public:
     }
 
     SteadyMotion found_near() {
-        const Place start = inside(question_.system, place_of(question_.drive.start(), map_.omega()));
+        const Place start = inside(question_.body, place_of(question_.drive.start(), map_.omega()));
         answer_.period = question_.repeats.period;
         if (resonant_growth() > 0) return found();
         if (contracts_ && symmetric_ && follows_sine()) return answer_;
@@ -68,7 +70,7 @@ private:
     /// Without viscous damping, a harmonic of M at the natural frequency feeds pi |M_n| / k in each natural period, and
     /// friction takes 2 (Rd forward + Rd backward) / k.
     [[nodiscard]] double resonant_growth() const {
-        const model::Oscillator& system = question_.system;
+        const model::Oscillator& system = question_.body;
         if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
         if (system_.has_remainder() || system.walls() || question_.drive.M().has_feedback()) return 0;
         const double ratio = question_.repeats.period / system.natural_period(), n = std::round(ratio);
@@ -131,7 +133,7 @@ private:
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
-        const PeriodMap map(question_.system, question_.drive.M(), question_.repeats.start,
+        const PeriodMap map(question_.body, question_.drive.M(), question_.repeats.start,
                             periods * question_.repeats.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
         const bool good = found && (any || length_of(found->x - start) <= 0.2 * found->size);
@@ -143,7 +145,7 @@ private:
     /// A motion that creeps up to the edge of where it can rest would take for ever: this is where it gets.
     [[nodiscard]] std::optional<Place> rest_beside(const Place& x, const MapStep& step) const {
         const double k = system_.stiffness(), size = system_.greatest_holding() / k;
-        if (!question_.system.has_linear_spring() || !(step.high - step.low <= 1e-8 * size) ||
+        if (!question_.body.has_linear_spring() || !(step.high - step.low <= 1e-8 * size) ||
             question_.drive.M().has_feedback()) {
             return {};
         }
@@ -245,7 +247,7 @@ private:
         const double beside = 0.01 * size;
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
-            const PeriodMap map(question_.system, question_.drive.M(), question_.repeats.start,
+            const PeriodMap map(question_.body, question_.drive.M(), question_.repeats.start,
                                 n * question_.repeats.period, monitor_);
             const MapStep step = map(x);
             ++answer_.maps;
@@ -263,8 +265,8 @@ private:
 
     /// A linear spring off resonance, and friction, which only takes.
     [[nodiscard]] bool is_bounded() const {
-        return !system_.has_remainder() && !question_.system.walls() && !question_.drive.M().has_feedback() &&
-               question_.system.stiffness() > 0 && question_.system.damping() >= 0;
+        return !system_.has_remainder() && !question_.body.walls() && !question_.drive.M().has_feedback() &&
+               question_.body.stiffness() > 0 && question_.body.damping() >= 0;
     }
 
     bool grows(const std::vector<double>& sizes, bool overflow) {
@@ -296,9 +298,36 @@ private:
 
 }  // namespace
 
+SteadyQuestion SteadyQuestion::of(model::AssemblyHandle system, model::Drive drive, std::optional<std::size_t> joint) {
+    model::Oscillator body = motion::engine::seen_alone(*system, joint.value_or(0)).value();
+    return {.system = std::move(system), .drive = std::move(drive), .body = std::move(body), .joint = joint};
+}
+
+SteadyQuestion SteadyQuestion::of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats) {
+    return {.system = std::make_shared<const model::Assembly>(motion::engine::assembly_of(body)),
+            .drive = std::move(drive),
+            .body = body,
+            .repeats = repeats};
+}
+
+SteadyQuestion SteadyQuestion::seen_at(std::size_t which) const {
+    SteadyQuestion own = *this;
+    own.joint = which;
+    own.body = motion::engine::seen_alone(*system, which).value();
+    return own;
+}
+
+const model::Excitation& SteadyQuestion::load() const {
+    static const model::Excitation nothing;
+    if (is_plain()) return drive.M();
+    if (!joint || system->is_link(*joint)) return nothing;
+    const model::Excitation& own = drive.loads[*joint];
+    return own.has_feedback() || model::has_memory(own) ? nothing : own;
+}
+
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const bool waits = model::has_memory<model::DelayedController>(question.drive.M());
-    const bool returns = question.whole || waits || question.is_timeless() || question.drive.has_more();
+    const bool returns = !question.is_plain() || waits || question.is_timeless() || question.drive.has_more();
     if (returns) return returning_motion(question, monitor);
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
@@ -310,7 +339,7 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    const bool plain = !question.whole && !question.is_timeless() && !question.drive.has_more();
+    const bool plain = question.is_plain() && !question.is_timeless() && !question.drive.has_more();
     if (!plain || model::has_memory(question.drive.M())) return steady_motion(question, monitor);
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());
@@ -335,17 +364,17 @@ bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
 std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
-        question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
+        question.body.stiffness() > 0 ? question.body.natural_frequency() : 2 * std::numbers::pi / period;
     // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
     const bool asks = question.drive.M().has_feedback() || question.is_timeless();
     const auto M = asks ? TorqueRange{} : extremes(question.drive.M(), question.repeats);
-    const double stiff = question.system.inertia() * omega * omega;
-    const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
+    const double stiff = question.body.inertia() * omega * omega;
+    const double soft = std::max(question.body.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
     std::vector<SteadyQuestion> questions(other_starts, question);
     for (int i = 0; i < other_starts; ++i) {
         const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : start_around(i, widest);
-        const Place start = inside(question.system, Place(spot.real(), spot.imag()));
+        const Place start = inside(question.body, Place(spot.real(), spot.imag()));
         SteadyQuestion& other = questions[static_cast<std::size_t>(i)];
         other.periods = 0;
         other.drive.start_at({start[0], start[1] * omega});
@@ -355,7 +384,10 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
 
 }  // namespace
 
-std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
+namespace {
+
+/// Of one plain body.
+std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
     if (!known.is_found() || known.unique.value_or(false) || family) return {};
@@ -367,8 +399,9 @@ std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const Ste
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
-std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const SteadyMotion& known,
-                                              const motion::Monitor& monitor) {
+/// Of all bodies.
+std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const SteadyMotion& known,
+                                       const motion::Monitor& monitor) {
     const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;
     if (!known.is_found() || alone) return {};
     const std::size_t n = question.system->bodies.size();
@@ -393,9 +426,9 @@ std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const
                std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), moves_alike);
     };
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
-    std::vector<RigQuestion> questions(other_starts, question);
+    std::vector<SteadyQuestion> questions(other_starts, question);
     for (int s = 0; s < other_starts; ++s) {
-        RigQuestion& other = questions[static_cast<std::size_t>(s)];
+        SteadyQuestion& other = questions[static_cast<std::size_t>(s)];
         other.periods = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const auto spot = start_around(s, 2.5 * size, i);
@@ -418,6 +451,13 @@ std::vector<Other<RigQuestion>> other_motions(const RigQuestion& question, const
         }
     }
     return others_from(questions, known, alike, monitor);
+}
+
+}  // namespace
+
+std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
+                                       const motion::Monitor& monitor) {
+    return question.is_plain() ? others_of_one(question, known, monitor) : others_of_all(question, known, monitor);
 }
 
 }  // namespace dinal::analysis

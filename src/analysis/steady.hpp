@@ -12,7 +12,9 @@
 
 #include "analysis/period_map.hpp"
 #include "analysis/repetition.hpp"
+#include "model/assembly.hpp"
 #include "model/drive.hpp"
+#include "model/oscillator.hpp"
 #include "motion/engine/run.hpp"
 
 namespace dinal::analysis {
@@ -23,19 +25,31 @@ constexpr std::string_view name(SteadyStatus status) {
     return names[static_cast<std::size_t>(status)];
 }
 
-struct RigQuestion;
-
 struct SteadyQuestion {
-    model::Oscillator system;
+    model::AssemblyHandle system;
     model::Drive drive;
-    Repetition repeats;  ///< period 0: nothing depends on the time, and the period of a cycle is to be found
-    int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
-    /// Of one of several bodies or links: what is asked of all of them. The system is that of this one alone, and the
-    /// excitation is looked at for its harmonics only.
-    std::shared_ptr<const RigQuestion> whole = {};
-    std::size_t joint = 0;
+    /// The body, or of several the one that is looked at, as an oscillator with its formulas.
+    model::Oscillator body;
+    Repetition repeats = {};  ///< period 0: nothing depends on the time, and the period of a cycle is to be found
+    int periods = 0;          ///< of M in one of the motion; 0: as many as it takes
+    std::optional<std::size_t> joint = {};  ///< the body or link whose motion is told; none: of all that have names
+    /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
+    /// none.
+    double settles = -1;
+    double longest = model::never;  ///< stretch of its runs, time units
+
+    /// About one body without a name and with constant friction, or all or one of others.
+    static SteadyQuestion of(model::AssemblyHandle system, model::Drive drive, std::optional<std::size_t> joint = {});
+
+    /// About one body without a name.
+    static SteadyQuestion of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats);
+    /// The same about this body or link.
+    [[nodiscard]] SteadyQuestion seen_at(std::size_t which) const;
 
     [[nodiscard]] bool is_timeless() const { return repeats.period == 0; }
+    [[nodiscard]] bool is_plain() const { return system->is_plain(); }
+    /// What acts on the body that is looked at: of several bodies as far as it depends on the time alone.
+    [[nodiscard]] const model::Excitation& load() const;
 };
 
 /// How one of several bodies moves.
@@ -81,7 +95,7 @@ struct SteadyMotion {
     [[nodiscard]] bool stands() const { return status == SteadyStatus::adheres || status == SteadyStatus::rest; }
 };
 
-/// Where the motion from `initial` leads.
+/// Where the motion from the start of the question leads, as seen from its joint.
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
 /// The same from a place near the answer, as when a parameter has changed a little.
@@ -89,12 +103,10 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 /// The motions from other starts that are not this one, each once, with the question whose start leads to it. None is
 /// looked for where no motion was found, or it is known to be the only one, or one of a family.
-template <class Question>
-struct Other {
-    Question question;
+struct OtherMotion {
+    SteadyQuestion question;
     SteadyMotion motion;
 };
-using OtherMotion = Other<SteadyQuestion>;
 inline constexpr int other_starts = 16;
 std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor = {});
@@ -111,5 +123,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 /// The answer in sentences.
 std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
                  const std::vector<OtherMotion>& others);
+/// The same of all bodies.
+std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
 
 }  // namespace dinal::analysis

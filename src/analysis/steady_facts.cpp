@@ -68,13 +68,13 @@ double edge_of_rest(const model::Lowered& system, double here, double way, const
 }
 
 std::pair<double, double> rest_without_walls(const SteadyQuestion& question, double here) {
-    const model::Lowered system(question.system);
+    const model::Lowered system(question.body);
     const double k = system.stiffness();
-    const bool own_spring = !question.system.spring().none();
-    if (question.drive.M().has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
+    const bool own_spring = !question.body.spring().none();
+    if (question.load().has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
     const model::Excitation& base = question.drive.base;
     const model::Excitation loads =
-        base.components().empty() ? question.drive.M() : question.drive.M() + base.scaled(-question.system.inertia());
+        base.components().empty() ? question.load() : question.load() + base.scaled(-question.body.inertia());
     const double now = loads.value(question.repeats.start);
     const TorqueRange M = question.is_timeless() ? TorqueRange{now, now} : extremes(loads, question.repeats);
     if (own_spring) return {edge_of_rest(system, here, -1, M), edge_of_rest(system, here, 1, M)};
@@ -86,12 +86,10 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
 }  // namespace
 
 bool contracts(const SteadyQuestion& question) {
-    if (question.whole) return contracts(*question.whole);
-    const model::Oscillator& system = question.system;
-    return is_monotone(system.friction(), system.spring(), system.walls()) && !question.drive.M().has_feedback();
-}
-
-bool contracts(const RigQuestion& question) {
+    if (question.is_plain()) {
+        const model::Oscillator& body = question.body;
+        return is_monotone(body.friction(), body.spring(), body.walls()) && !question.drive.M().has_feedback();
+    }
     const model::Drive& drive = question.drive;
     const auto asks = [](const model::Excitation& of) { return of.has_feedback() || model::has_memory(of); };
     const auto& joints = question.system->joints;
@@ -116,7 +114,7 @@ double miss_one(const std::vector<std::complex<double>>& multipliers) {
 }
 
 bool is_alike_both_ways(const SteadyQuestion& question) {
-    const model::Oscillator& system = question.system;
+    const model::Oscillator& system = question.body;
     return acts_evenly(system.friction(), system) && system.spring().is_odd() &&
            (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.drive.M(), question.repeats);
 }
@@ -165,7 +163,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
 
 std::pair<double, double> rest_of(const SteadyQuestion& question, double here) {
     const auto [low, high] = rest_without_walls(question, here);
-    const auto& walls = question.system.walls();
+    const auto& walls = question.body.walls();
     if (!walls) return {low, high};
     // What pulls against a wall is held by it.
     return {std::clamp(low, walls->lower, walls->upper), std::clamp(high, walls->lower, walls->upper)};

@@ -10,10 +10,9 @@
 namespace dinal::analysis {
 
 /// Sliding and holding torque are the same each way, there are no walls, and M, belt and base depend on the time alone:
-/// the map brings no two states farther apart, so there is one motion, or a family of them.
+/// the map brings no two states farther apart, so there is one motion, or a family of them. Of several bodies the
+/// energy of the difference of two motions cannot grow in any joint.
 bool contracts(const SteadyQuestion& question);
-/// The same of several bodies, as the energy of the difference of two motions cannot grow in any joint.
-bool contracts(const RigQuestion& question);
 
 /// By how much these multipliers miss 1, in one period or in some: others beside the motion are periodic, too, where
 /// they do not.
@@ -34,14 +33,14 @@ inline Place place_of(const model::State& state, double omega) {
 std::complex<double> start_around(int i, double farthest, std::size_t body = 0);
 
 /// The motions that the questions lead to, each once, but for those that are alike to the known one.
-template <class Question, class Alike>
-std::vector<Other<Question>> others_from(const std::vector<Question>& questions, const SteadyMotion& known,
-                                         const Alike& alike, const motion::Monitor& monitor) {
-    std::vector<Other<Question>> others;
-    for (const Question& question : questions) {
+template <class Alike>
+std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& questions, const SteadyMotion& known,
+                                     const Alike& alike, const motion::Monitor& monitor) {
+    std::vector<OtherMotion> others;
+    for (const SteadyQuestion& question : questions) {
         SteadyMotion found = steady_motion(question, monitor);
         if (found.outcome == model::Outcome::interrupted) break;
-        const auto is_it = [&](const Other<Question>& seen) { return alike(seen.motion, found); };
+        const auto is_it = [&](const OtherMotion& seen) { return alike(seen.motion, found); };
         if (found.status == SteadyStatus::none || alike(known, found)) continue;
         if (std::none_of(others.begin(), others.end(), is_it)) others.push_back({question, std::move(found)});
     }
@@ -62,12 +61,11 @@ void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, 
 /// The question whose run begins so.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
-/// The motion as seen from a body or link, whose own question is that of one body; `run` is the run of its period as
-/// seen from there, none at rest.
-SteadyMotion seen_from(const RigQuestion& question, const SteadyMotion& whole, std::size_t joint,
-                       const SteadyQuestion& own, std::shared_ptr<const motion::Trajectory> run);
-
-/// The same from the body or link of the question, of a motion that was seen from any.
+/// The motion as seen from the body or link of the question; `run` is the run of its period as seen from there, none at
+/// rest.
+SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
+                       std::shared_ptr<const motion::Trajectory> run);
+/// The same of a motion that was seen from any: the run is that of its period.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion);
 
 /// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to.

@@ -31,9 +31,9 @@ struct Moments {
 
 /// The fundamental of M, beside all of M.
 bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<double>& wave) {
-    const double most = question.drive.M().most();
+    const double most = question.load().most();
     if (std::isfinite(most)) return std::abs(wave) > least_harmonic * 2 * most;
-    const TorqueRange M = extremes(question.drive.M(), question.repeats);
+    const TorqueRange M = extremes(question.load(), question.repeats);
     return std::abs(wave) > least_harmonic * (M.high - M.low);
 }
 
@@ -57,8 +57,8 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repet
     if (!model::is_whole(run.outcome)) return {};
     const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
-    const double own = question.system.stiffness() > 0 ? question.system.natural_period() : repeats.period;
-    const model::Excitation breaking = question.drive.M() + question.drive.belt() + question.drive.base;
+    const double own = question.body.stiffness() > 0 ? question.body.natural_period() : repeats.period;
+    const model::Excitation breaking = question.load() + question.drive.belt() + question.drive.base;
     const std::vector<double> ends = run.course == nullptr ? std::vector<double>() : run.course->piece_ends();
     Moments sum;
     for (const Stretch& s : stretches(run)) {
@@ -92,9 +92,9 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
     // Half a period of a symmetric motion tells all of it.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
-    const PeriodMap map(question.system, question.drive.M(), repeats.start, length, monitor);
-    const bool feedback = question.drive.M().has_feedback() || question.is_timeless();
-    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.drive.M(), repeats, 1);
+    const PeriodMap map(question.body, question.load(), repeats.start, length, monitor);
+    const bool feedback = question.load().has_feedback() || question.is_timeless();
+    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.load(), repeats, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
     if (const auto slides = drives && !motion.settled ? sine::ShortSlides::of(question) : std::nullopt) {
@@ -303,7 +303,7 @@ std::string told(const SteadyQuestion& question, const SteadyMotion& motion, con
     return story.told();
 }
 
-std::string told(const RigQuestion& question, const SteadyMotion& motion, std::size_t others) {
+std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others) {
     std::vector<std::string> names;
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;

@@ -234,9 +234,8 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         run->terms = terms_alone(L, system, asked.drive, asked.window.start, to);
     }
 
-    model::Excitation all;
-    for (const model::Excitation& load : asked.drive.loads) all = all + load;
-    const Memories memories(L, options, all, from != asked.window.start);
+    const model::Excitation loads = asked.drive.sum_of_loads();
+    const Memories memories(L, options, loads, from != asked.window.start);
     lua::CallState call(L);
     name_functions(call, system, asked.drive);
     call.set_span(to - from);

@@ -22,70 +22,43 @@
 
 namespace dinal::api {
 
-// ---- of several bodies
+// ---- the motion of all bodies, and as seen from one
 
 namespace {
 
 /// The motion as seen from the body or link of this joint.
-SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint) {
-    const analysis::SteadyMotion& whole = rig->motion;
-    analysis::SteadyQuestion question = question_of_joint(rig->question, joint);
-    const RunHandle run = rig->run != nullptr ? part_of(rig->run, joint) : nullptr;
+SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
+    analysis::SteadyQuestion question = whole->question.seen_at(joint);
+    const RunHandle run = whole->run != nullptr ? part_of(whole->run, joint) : nullptr;
     std::shared_ptr<const motion::Trajectory> seen;
     if (run) seen = {run, &run->trajectory};
-    analysis::SteadyMotion facts = analysis::seen_from(*rig->question, whole, joint, question, std::move(seen));
-    auto part = std::make_shared<Steady>(Steady{std::move(question), std::move(facts)});
-    part->rig = rig;
-    part->of_body = true;
-    part->others.emplace();
-    part->part = run;
-    return part;
+    analysis::SteadyMotion facts = analysis::seen_from(question, whole->motion, std::move(seen));
+    return std::make_shared<Steady>(
+        Steady{.question = std::move(question), .motion = std::move(facts), .run = run, .whole = whole});
 }
 
-/// The whole motion, or of one body without a name that of this body.
-SteadyHandle made(lua_State* L, const std::shared_ptr<const analysis::RigQuestion>& question,
-                  analysis::SteadyMotion motion) {
-    auto rig = std::make_shared<RigSteady>(RigSteady{question, std::move(motion)});
-    if (const auto& period = rig->motion.of_bodies) {
+/// The answer to a question about all bodies: the whole motion, or of one body without a name that of this body.
+SteadyHandle made(lua_State* L, analysis::SteadyQuestion question, analysis::SteadyMotion motion) {
+    auto whole = std::make_shared<Steady>(Steady{.question = std::move(question), .motion = std::move(motion)});
+    if (whole->question.is_plain()) return whole;
+    if (const auto& period = whole->motion.of_bodies) {
         constexpr double rows = 400;
-        source::Task task{.system = question->system,
+        source::Task task{.system = whole->question.system,
                           .drive = period->drive,
                           .window = {period->run.t_start, period->run.t_stop},
-                          .rows = motion::Grid::every(rig->motion.period / rows),
+                          .rows = motion::Grid::every(whole->motion.period / rows),
                           .integrator = motion::Spectral{}};
         auto run = std::make_shared<Run>();
-        run->trajectory = motion::trajectory_of(*question->system, period->drive, {period, &period->run});
+        run->trajectory = motion::trajectory_of(*task.system, period->drive, {period, &period->run});
         run->origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)));
-        rig->run = std::move(run);
+        whole->run = std::move(run);
     }
-    if (!question->system->named) return seen_from(rig, 0);
-    auto whole =
-        std::make_shared<Steady>(Steady{{.system = model::Oscillator::make(parameters_of(*question->system, 0)).value(),
-                                         .drive = {},
-                                         .repeats = question->repeats},
-                                        rig->motion});
-    whole->rig = std::move(rig);
-    return whole;
+    return whole->question.system->named ? whole : seen_from(whole, 0);
 }
 
 }  // namespace
 
-analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis::RigQuestion>& whole,
-                                           std::size_t joint) {
-    const model::Assembly& system = *whole->system;
-    analysis::SteadyQuestion question{.system = model::Oscillator::make(parameters_of(system, joint)).value(),
-                                      .drive = {},
-                                      .repeats = whole->repeats,
-                                      .periods = whole->periods};
-    question.whole = whole, question.joint = joint;
-    if (!system.is_link(joint)) {
-        const model::Excitation& load = whole->drive.loads[joint];
-        if (!load.has_feedback() && !model::has_memory(load)) question.drive = load;
-    }
-    return question;
-}
-
-double settles_or_fail(const lua::Options& options, const analysis::RigQuestion& question) {
+double settles_or_fail(const lua::Options& options, const analysis::SteadyQuestion& question) {
     const auto settles = analysis::settles_after(question);
     if (settles) return *settles;
     options.fail("M",
@@ -95,56 +68,13 @@ double settles_or_fail(const lua::Options& options, const analysis::RigQuestion&
 
 namespace {
 
-/// Pushes the motion that the question leads to.
-int push_motion(lua_State* L, const lua::Options& options, analysis::RigQuestion question) {
-    question.settles = settles_or_fail(options, question);
-    analysis::SteadyMotion found;
-    asking_bodies(L, question,
-                  [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
-    check_motion(options, found);
-    lua::push<SteadyHandle>(
-        L, made(L, std::make_shared<const analysis::RigQuestion>(std::move(question)), std::move(found)));
-    return 1;
-}
-
-}  // namespace
-
-namespace {
-
-void run_of_rig(lua_State* L, const Steady& s) {
-    if (s.rig->run == nullptr) {
-        lua_pushnil(L);
-    } else if (s.part != nullptr) {
-        push_run(L, s.part);
-    } else {
-        push_run(L, s.rig->run);
-    }
-}
-
-const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig) {
-    if (rig.others) return *rig.others;
-    std::vector<analysis::Other<analysis::RigQuestion>> found;
-    asking_bodies(L, *rig.question, [&](const motion::Monitor& monitor) {
-        found = analysis::other_motions(*rig.question, rig.motion, monitor);
-    });
-    rig.others.emplace();
-    for (auto& other : found)
-        rig.others->push_back(
-            made(L, std::make_shared<const analysis::RigQuestion>(std::move(other.question)), std::move(other.motion)));
-    return *rig.others;
-}
-
-std::string story_of_rig(lua_State* L, const Steady& s) {
-    return analysis::told(*s.rig->question, s.rig->motion, others_of_rig(L, *s.rig).size());
-}
-
 int body_of_steady(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const SteadyHandle s = lua::self<SteadyHandle>(L, 1, "s.load");
-    if (s->rig == nullptr || s->of_body) return 0;
+    if (!s->of_all()) return 0;
     const std::size_t joint =
-        joint_named(L, lua_tostring(L, 2), *s->rig->question->system, "this steady motion", steady_class);
-    lua::push<SteadyHandle>(L, seen_from(s->rig, joint));
+        joint_named(L, lua_tostring(L, 2), *s->question.system, "this steady motion", steady_class);
+    lua::push<SteadyHandle>(L, seen_from(s, joint));
     return 1;
 }
 
@@ -162,29 +92,30 @@ bool is_moving(const Steady& s) {
 
 /// Raises where a motion of several bodies is asked for what only one of them has.
 const Steady& of_one(lua_State* L, const Steady& s) {
-    if (s.rig == nullptr || s.of_body) return s;
+    if (!s.of_all()) return s;
     lua::raise(L, fmt::format("this motion has several bodies; choose one of them, such as s.{}.amplitude",
-                              s.rig->question->system->bodies.front().name));
+                              s.question.system->bodies.front().name));
 }
 
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     of_one(L, *s);
     if (!s->shape) {
-        asking(L, s->question.drive,
+        asking(L, s->question,
                [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
     }
     return *s->shape;
 }
 
-const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHandle& s) {
-    if (!s->others) {
-        std::vector<analysis::OtherMotion> others;
-        asking(L, s->question.drive, [&](const motion::Monitor& monitor) {
-            others = analysis::other_motions(s->question, s->motion, monitor);
-        });
-        s->others = std::move(others);
-    }
-    return *s->others;
+/// The motions from other starts, of all bodies.
+const std::vector<SteadyHandle>& others_of(lua_State* L, const SteadyHandle& s) {
+    Steady& all = s->whole ? *s->whole : *s;
+    if (all.others) return *all.others;
+    std::vector<analysis::OtherMotion> found;
+    asking(L, all.question,
+           [&](const motion::Monitor& monitor) { found = analysis::other_motions(all.question, all.motion, monitor); });
+    all.others.emplace();
+    for (auto& other : found) all.others->push_back(made(L, std::move(other.question), std::move(other.motion)));
+    return *all.others;
 }
 
 // ---- fields: nil where there is no such motion
@@ -248,45 +179,43 @@ std::optional<std::vector<lua::NamedNumbers>> steady_multipliers(const Steady& s
 }
 
 lua::Pushed steady_unique(lua_State* L, const SteadyHandle& s) {
-    const auto others = [&] { return s->rig ? others_of_rig(L, *s->rig).size() : others_of(L, s).size(); };
     const std::optional<bool>& unique = s->motion.unique;
     if (!is_found(*s)) {
         lua_pushnil(L);
     } else if (unique.value_or(false)) {
         lua_pushliteral(L, "proven");
     } else {
-        !unique&& others() == 0 ? lua::push_value(L, "not seen") : lua_pushboolean(L, 0);
+        !unique&& others_of(L, s).empty() ? lua::push_value(L, "not seen") : lua_pushboolean(L, 0);
     }
     return {};
 }
 
 std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const SteadyHandle& s) {
     if (!is_found(*s)) return {};
-    if (s->rig) return others_of_rig(L, *s->rig);
-    std::vector<SteadyHandle> others;
-    for (const analysis::OtherMotion& other : others_of(L, s)) {
-        others.push_back(std::make_shared<Steady>(Steady{other.question, other.motion}));
-    }
-    return others;
+    return others_of(L, s);
 }
 
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
-    if (s->rig) return story_of_rig(L, *s);
-    return analysis::told(s->question, s->motion, steady_shape(L, s), others_of(L, s));
+    const std::vector<SteadyHandle>& found = others_of(L, s);
+    const Steady& all = s->whole ? *s->whole : *s;
+    if (!all.question.is_plain()) return analysis::told(all.question, all.motion, found.size());
+    std::vector<analysis::OtherMotion> others;
+    for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
+    return analysis::told(s->question, s->motion, steady_shape(L, s), others);
 }
 
 std::string steady_summary(const Steady& s) {
     const analysis::SteadyMotion& m = s.motion;
-    const ColumnUnits in(s.question.system.units());
+    const ColumnUnits in(s.question.system->units);
     const auto number = [](double x, const std::string& unit) {
         return model::with_unit(fmt::format("{:.6g}", x), unit);
     };
-    if (s.rig && !s.of_body && is_found(s)) {
+    if (s.of_all() && is_found(s)) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";
         return m.period == 0 ? "steady: all bodies rotate at constant speed"
                              : fmt::format("steady: period {}, {}", number(m.period, in.t),
-                                           text::counted(s.rig->question->system->bodies.size(), "body"));
+                                           text::counted(s.question.system->bodies.size(), "body"));
     }
     switch (m.status) {
         case SteadyStatus::steady:
@@ -429,15 +358,16 @@ void register_steady(lua_State* L) {
 
 namespace {
 
+/// Pushes the motion that the question leads to.
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
-    const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
-    const auto note = watched_memories(L, options, steady->question.drive.M(), false);
-    asking(L, steady->question.drive, [&](const motion::Monitor& monitor) {
-        steady->motion = analysis::steady_motion(steady->question, monitor);
-    });
-    check_motion(options, steady->motion);
+    if (!question.is_plain()) question.settles = settles_or_fail(options, question);
+    const model::Excitation loads = question.drive.sum_of_loads();
+    const auto note = watched_memories(L, options, loads, false);
+    analysis::SteadyMotion found;
+    asking(L, question, [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
+    check_motion(options, found);
     note(nullptr);
-    lua::push<SteadyHandle>(L, steady);
+    lua::push<SteadyHandle>(L, made(L, std::move(question), std::move(found)));
     return 1;
 }
 
@@ -468,7 +398,7 @@ namespace {
 std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
     const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
-    source::Task task{.system = analysis::as_assembly(asked).system,
+    source::Task task{.system = asked.system,
                       .drive = asked.drive,
                       .window = {},
                       .rows = motion::Grid::every(s.motion.period / rows),
@@ -478,7 +408,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
         const motion::Trajectory& last = *s.motion.settled;
         task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.asked) {
-            task.integrator = motion::integrator_for(asked.system, asked.drive);
+            task.integrator = motion::integrator_for(asked.body, asked.drive);
         } else {
             const auto times = last.column(motion::Column::t);
             task.rows = motion::Grid::at({times.begin(), times.end()});
@@ -500,22 +430,21 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
 }  // namespace
 
 lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s) {
-    if (s->rig && is_found(*s)) {
-        run_of_rig(L, *s);
-        return {};
+    RunHandle run = s->run;
+    if (is_found(*s) && s->question.is_plain()) {
+        if (auto period = period_as_run(L, *s)) run = std::make_shared<const Run>(std::move(*period));
     }
-    auto run = is_found(*s) ? period_as_run(L, *s) : std::nullopt;
-    run ? push_run(L, std::make_shared<const Run>(std::move(*run))) : lua_pushnil(L);
+    run ? push_run(L, run) : lua_pushnil(L);
     return {};
 }
 
 analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& options,
-                                        const analysis::RigQuestion& question, const std::optional<double>& period) {
+                                        const analysis::SteadyQuestion& question, const std::optional<double>& period) {
     const auto acting = analysis::acting_in(question);
     const auto is_script = [](const analysis::Acting& one) { return one.what->has_script(); };
     const bool scripts = !question.drive.states.empty() || std::any_of(acting.begin(), acting.end(), is_script);
     std::optional<analysis::Repetition> repeats;
-    asking_bodies(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
+    asking(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
     if (!repeats && !period) {
         options.fail("period",
                      scripts ? "the period of M is not known; give it with period = ..."
@@ -525,7 +454,7 @@ analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& option
     if (period) repeats = analysis::Repetition{repeats ? repeats->start : 0, *period};
     if (repeats->period > 0 && (period || scripts)) {
         std::optional<text::Error> wrong;
-        asking_bodies(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *repeats); });
+        asking(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *repeats); });
         if (wrong) options.fail(*wrong);
     }
     return *repeats;
@@ -542,11 +471,16 @@ std::optional<double> asked_period(const lua::Options& options) {
     return asked.period;
 }
 
-/// Functions in M that repeat say so, as native terms or by themselves.
+namespace {
+
+/// Functions in M of a plain system that repeat say so, as native terms or by themselves.
 void find_period(lua_State* L, analysis::SteadyQuestion& question) {
-    const auto terms = terms_alone(L, *as_assembly(question).system, question.drive, 0, model::never);
+    if (!question.is_plain()) return;
+    const auto terms = terms_alone(L, *question.system, question.drive, 0, model::never);
     question.drive.loads = {terms ? *terms : with_periods(L, question.drive.M())};
 }
+
+}  // namespace
 
 int steady_of_system(lua_State* L) {
     const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, steady_call.example);
@@ -554,36 +488,12 @@ int steady_of_system(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     const std::optional<double> period = asked_period(options);
-    if (!system->is_plain()) {
-        analysis::RigQuestion whole{
-            .system = system, .drive = asked_drive(L, options, *system), .periods = asked.periods.value_or(0)};
-        whole.repeats = repetition_or_fail(L, options, whole, period);
-        return push_motion(L, options, std::move(whole));
-    }
-    analysis::SteadyQuestion question{.system = oscillator_of(*system).value(),
-                                      .drive = asked_drive(L, options, *system),
-                                      .repeats = {},
-                                      .periods = asked.periods.value_or(0)};
+    auto question = analysis::SteadyQuestion::of(system, asked_drive(L, options, *system));
+    question.periods = asked.periods.value_or(0);
     find_period(L, question);
-    question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
+    question.repeats = repetition_or_fail(L, options, question, period);
     return push_steady(L, options, std::move(question));
 }
-
-namespace {
-
-/// Pushes the motion that the run leads to from where it ended.
-int push_motion_after(lua_State* L, const lua::Options& options, const Run& run, int periods,
-                      const std::optional<double>& period) {
-    analysis::RigQuestion question{.system = run.origin->system, .drive = run.origin->drive, .periods = periods};
-    const motion::Monitor none;
-    const motion::Trajectory& ended = run.trajectory;
-    question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(*ended.bodies), ended.t_stop);
-    question.repeats = repetition_or_fail(L, options, question, period);
-    question.repeats.start = std::max(question.repeats.start, ended.t_stop);
-    return push_motion(L, options, std::move(question));
-}
-
-}  // namespace
 
 int steady_of_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, steady_run_call.example);
@@ -595,18 +505,19 @@ int steady_of_run(lua_State* L) {
         options.fail({"a body has no steady motion by itself: ask the run of all bodies, run:steady()"});
     }
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
-    const source::Task& task = *run->origin;
-    if (!task.system->is_plain()) return push_motion_after(L, options, *run, asked.periods.value_or(0), period);
-    analysis::SteadyQuestion question{.system = oscillator_of(*task.system).value(),
-                                      .drive = task.drive,
-                                      .repeats = {},
-                                      .periods = asked.periods.value_or(0)};
-    question.drive.start_at(run->trajectory.state_at_stop);
+    auto question = analysis::SteadyQuestion::of(run->origin->system, run->origin->drive);
+    question.periods = asked.periods.value_or(0);
     const motion::Trajectory& ended = run->trajectory;
-    for (std::size_t i = 0; i < ended.state_count(); ++i) question.drive.states[i].start = ended.carried->states[i];
+    if (question.is_plain()) {
+        question.drive.start_at(ended.state_at_stop);
+        for (std::size_t i = 0; i < ended.state_count(); ++i) question.drive.states[i].start = ended.carried->states[i];
+    } else {
+        const motion::Monitor none;
+        question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(*ended.bodies), ended.t_stop);
+    }
     find_period(L, question);
-    question.repeats = repetition_or_fail(L, options, as_assembly(question), period);
-    if (question.drive.has_more()) {
+    question.repeats = repetition_or_fail(L, options, question, period);
+    if (!question.is_plain() || question.drive.has_more()) {
         question.repeats.start = std::max(question.repeats.start, ended.t_stop);
     } else if (!question.is_timeless()) {
         asking(L, [&](const motion::Monitor&) { question.drive.start_at(state_at_period(ended, question.repeats)); });

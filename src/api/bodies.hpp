@@ -37,8 +37,6 @@ std::vector<std::string> body_names(const model::Assembly& system);
 void push_joint(lua_State* L, const model::Assembly& system, std::size_t joint);
 /// The one body as an oscillator, with the formulas of it. Fails for named bodies, and where its friction varies.
 text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system);
-/// As of one mass on the ground, with the linear spring and damping of the joint alone.
-model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint);
 /// The joint of this name; raises that `what`, which has these members, has none of that name.
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of);

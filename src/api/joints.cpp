@@ -50,14 +50,6 @@ std::vector<std::string> body_names(const model::Assembly& system) {
     return names;
 }
 
-model::OscillatorParameters parameters_of(const model::Assembly& system, std::size_t joint) {
-    const model::Joint& own = system.joints[joint];
-    model::OscillatorParameters parameters;
-    parameters.inertia = system.bodies[static_cast<std::size_t>(own.first)].inertia;
-    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
-    return parameters;
-}
-
 std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
                         const lua::Class& of) {
     std::vector<std::string> own;

@@ -221,22 +221,20 @@ inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return
 /// What a call of sys:response asks.
 class ResponseCall {
 public:
-    ResponseCall(lua_State* L, const model::Oscillator& system, const lua::Options& options,
-                 AssemblyHandle several = {})
-        : L_(L), system_(system), several_(std::move(several)), options_(options) {
+    ResponseCall(lua_State* L, AssemblyHandle system, const lua::Options& options)
+        : L_(L), system_(std::move(system)), options_(options) {
         options.fill(asked_);
-        if (several_ && !asked_.of.empty()) {
-            joint_ = joint_named(L, asked_.of, *several_, "sys:response: of: this system", system_class);
+        if (!asked_.of.empty()) {
+            joint_ = joint_named(L, asked_.of, *system_, "sys:response: of: this system", system_class);
         }
         choose();
         function_ = options.has("at");
-        if (several_ && !function_) {
+        if (!system_->is_plain() && !function_) {
             options.fail("at", "a system of bodies with names, or with a friction that varies, needs at, such as " +
                                    std::string(at_call.example));
         }
         if (function_) place_ = push_function(L, options, "at");
         if (!function_) check_harmonic();
-        if (!several_) drive_ = question(values_.front()).drive;
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 
@@ -252,7 +250,7 @@ public:
     void set_beside(double value) { beside_ = value; }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    [[nodiscard]] const model::Drive& drive() const { return drive_; }
+    [[nodiscard]] const model::Assembly& system() const { return *system_; }
     /// Rows for the values only.
     [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] bool doubled() const { return asked_.doubled; }
@@ -274,7 +272,7 @@ public:
     }
     /// Of each parameter.
     [[nodiscard]] std::vector<VariedColumn> columns() const {
-        const ColumnUnits in(system_.units());
+        const ColumnUnits in(system_->units);
         std::vector<VariedColumn> columns;
         for (const DataColumn& parameter : parameters_) {
             const std::string& name = parameter.name;
@@ -289,34 +287,8 @@ public:
     }
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
-        if (several_) return question_of_bodies(x);
-        analysis::SteadyQuestion question{.system = system_, .drive = {{}, start()}, .repeats = {}};
-        if (!function_) {
-            const double frequency = frequency_at(x);
-            question.drive.loads = {options_.value_or_fail(model::Excitation::make(
-                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}))};
-            question.repeats = {0, 1 / frequency};
-            return question;
-        }
-        push_point(x);
-        const lua::Options own(L_, lua_gettop(L_), at_call);
-        SteadyOptions asked;
-        own.fill(asked);
-        const std::optional<double> period = asked_period(own);
-        if (const auto* system = own.object<AssemblyHandle>("system")) {
-            question.system = own.value_or_fail(oscillator_of(**system));
-        }
-        question.drive = asked_drive(L_, own, motion::engine::assembly_of(question.system));
-        if (!own.has("theta0")) question.drive.theta0 = {asked_.theta0};
-        if (!own.has("velocity0")) question.drive.velocity0 = {asked_.velocity0};
-        question.periods = asked.periods.value_or(0);
-        question.repeats = repetition_at(x, own, as_assembly(question), period);
-        lua_pop(L_, 1);
-        return question;
+        return function_ ? question_by_user(x) : question_of_sine(x);
     }
-
-    /// Of several bodies, seen from the one whose branches are followed.
-    [[nodiscard]] const AssemblyHandle& several() const { return several_; }
 
 private:
     /// Pushes the table that `at` returns.
@@ -327,49 +299,62 @@ private:
         lua::set_number(L_, varied_.c_str(), x);
         lua_call(L_, 1, 1);
         if (lua_istable(L_, -1)) return;
-        options_.fail("at",
-                      fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of sys:steady, "
-                                  "such as {{ belt = {} }}",
-                                  lua::describe(L_, -1), varied_, x,
-                                  several_ && several_->named ? "{ load = p.speed }" : "p.speed"));
+        options_.fail(
+            "at", fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of sys:steady, "
+                              "such as {{ belt = {} }}",
+                              lua::describe(L_, -1), varied_, x, system_->named ? "{ load = p.speed }" : "p.speed"));
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question_of_bodies(double x) const {
+    [[nodiscard]] analysis::SteadyQuestion question_of_sine(double x) const {
+        const double frequency = frequency_at(x);
+        auto M = options_.value_or_fail(model::Excitation::make(
+            model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
+        auto question = analysis::SteadyQuestion::of(system_, {std::move(M), start()});
+        question.repeats = {0, 1 / frequency};
+        return question;
+    }
+
+    [[nodiscard]] analysis::SteadyQuestion question_by_user(double x) const {
         push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
-        const auto* system = own.object<AssemblyHandle>("system");
-        analysis::RigQuestion whole{.system = system != nullptr ? *system : several_, .drive = {}};
+        const auto* changed = own.object<AssemblyHandle>("system");
+        const AssemblyHandle system = changed != nullptr ? *changed : system_;
         const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
-        if (!std::equal(several_->joints.begin(), several_->joints.end(), whole.system->joints.begin(),
-                        whole.system->joints.end(), names_alike)) {
+        if (!std::equal(system_->joints.begin(), system_->joints.end(), system->joints.begin(), system->joints.end(),
+                        names_alike)) {
             options_.fail("at", "at must return systems with the same bodies and links");
         }
         SteadyOptions asked;
         own.fill(asked);
-        whole.drive = asked_drive(L_, own, *whole.system);
-        whole.periods = asked.periods.value_or(0);
-        whole.repeats = repetition_at(x, own, whole, asked_period(own));
-        whole.settles = settles_or_fail(own, whole);
+        const std::optional<double> period = asked_period(own);
+        model::Drive drive = asked_drive(L_, own, *system);
+        if (!system->named && !own.has("theta0")) drive.theta0 = {asked_.theta0};
+        if (!system->named && !own.has("velocity0")) drive.velocity0 = {asked_.velocity0};
+        auto question = analysis::SteadyQuestion::of(system, std::move(drive),
+                                                     system->is_plain() ? std::nullopt : std::optional(joint_));
+        question.periods = asked.periods.value_or(0);
+        question.repeats = repetition_at(x, own, question, period);
+        if (!system->is_plain()) question.settles = settles_or_fail(own, question);
         lua_pop(L_, 1);
-        return question_of_joint(std::make_shared<const analysis::RigQuestion>(std::move(whole)), joint_);
+        return question;
     }
 
     [[nodiscard]] analysis::Repetition repetition_at(double x, const lua::Options& own,
-                                                     const analysis::RigQuestion& question,
+                                                     const analysis::SteadyQuestion& question,
                                                      const std::optional<double>& period) const {
         const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
         // Between the values M is taken for what it is at them.
         std::optional<analysis::Repetition> known;
-        if (!is_value)
-            asking_bodies(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
+        if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
         if (known) return {known->start, period.value_or(known->period)};
         return repetition_or_fail(L_, own, question, period);
     }
 
     /// Adds the resonance where the motion grows: a curve past it would show a finite peak.
     void add_resonance() {
-        if (!system_.has_linear_spring()) return;
-        const double f = 1 / system_.natural_period(), from = values_.front();
+        const model::Oscillator body = oscillator_of(*system_).value();
+        if (!body.has_linear_spring()) return;
+        const double f = 1 / body.natural_period(), from = values_.front();
         const auto next =
             std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) < 0; });
         const auto is_it = [f](double x) { return std::fabs(x / f - 1) < 1e-12; };
@@ -396,7 +381,7 @@ private:
 
     /// Of bodies and links with names most columns have these in theirs.
     void check_name(std::string_view name) const {
-        const bool named = several_ && several_->named;
+        const bool named = system_->named;
         for (const char* column : {"stable", "branch", "status", "lag", "peak", "stops", "stuck", "amplitude"}) {
             const std::string_view known = column;
             const bool own = known == "stable" || known == "branch" || known == "status";
@@ -432,8 +417,7 @@ private:
     }
 
     lua_State* L_;
-    const model::Oscillator& system_;
-    AssemblyHandle several_;
+    AssemblyHandle system_;
     std::size_t joint_ = 0;
     const lua::Options& options_;
     ResponseOptions asked_;
@@ -441,7 +425,6 @@ private:
     std::string varied_;                  // the last of them
     std::vector<double> values_;          // its values
     double beside_ = 0;                   // the present value of the first of two
-    model::Drive drive_;
     bool function_ = false;
     int place_ = 0;
 };
@@ -466,11 +449,11 @@ struct ResponseRow {
 ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_t branch,
                    const analysis::SteadyQuestion& question, const motion::Monitor& monitor) {
     ResponseRow row{beside, point.parameter, branch, point.asked, point.motion.status, {}};
-    if (!question.whole) {
+    if (question.is_plain()) {
         row.joints.push_back({point.motion, analysis::shape_of(question, point.motion, monitor).lag});
     } else {
-        for (std::size_t j = 0; j < question.whole->system->joints.size(); ++j) {
-            const analysis::SteadyQuestion own = question_of_joint(question.whole, j);
+        for (std::size_t j = 0; j < question.system->joints.size(); ++j) {
+            const analysis::SteadyQuestion own = question.seen_at(j);
             const analysis::SteadyMotion motion = analysis::seen_from(own, point.motion);
             row.joints.push_back({motion, analysis::shape_of(own, motion, monitor).lag});
         }
@@ -482,7 +465,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
 }
 
 Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over,
-                   const model::Assembly* several) {
+                   const model::Assembly& system) {
     using analysis::SteadyStatus;
     const VariedColumn& of = over.back();
     const auto found = [&](const analysis::SteadyMotion& motion, double value, bool may_grow = false) {
@@ -490,8 +473,8 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
         return motion.is_found() ? value : grows ? std::numeric_limits<double>::infinity() : no_number;
     };
     Data data = table_of(rows, ListColumn{of.name, &ResponseRow::varied, of.unit});
-    for (std::size_t j = 0; j < (several != nullptr ? several->joints.size() : 1); ++j) {
-        const std::string name = several != nullptr && several->named ? several->joints[j].name + "." : "";
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        const std::string name = system.named ? system.joints[j].name + "." : "";
         const auto motion = [j](const ResponseRow& row) -> const analysis::SteadyMotion& {
             return row.joints[j].motion;
         };
@@ -530,8 +513,7 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
 
 namespace {
 
-int response_of(lua_State* L, const lua::Options& options, ResponseCall call, const model::Oscillator& system) {
-    const AssemblyHandle several = call.several();
+int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
     const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },
                                            .values = call.values(),
                                            .start = call.start(),
@@ -554,18 +536,14 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call, co
             }
         }
     };
-    if (several) {
-        asking_bodies(L, *call.question(call.values().front()).whole, work);
-    } else {
-        asking(L, call.drive(), work);
-    }
+    asking(L, call.question(call.values().front()), work);
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();
-    Data data = response_data(rows, over, several.get());
+    Data data = response_data(rows, over, call.system());
     if (call.is_list()) {
         const auto between = std::make_shared<const Data>(std::move(data));
         std::erase_if(rows, [](const ResponseRow& row) { return !row.asked; });
-        data = response_data(rows, over, several.get());
+        data = response_data(rows, over, call.system());
         data.between = between;
     }
     data.companions.push_back(jumps_of(parts, over));
@@ -573,7 +551,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call, co
     if (call.harmonic() && !call.is_plane()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{
-            .system = system,
+            .system = oscillator_of(call.system()).value(),
             .column = over.back(),
             .low = *low,
             .high = *high,
@@ -594,12 +572,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call, co
 int response_of_system(lua_State* L) {
     const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, response_call.example);
     const lua::Options options(L, 2, response_call);
-    if (system->is_plain()) {
-        const model::Oscillator one = oscillator_of(*system).value();
-        return response_of(L, options, ResponseCall(L, one, options), one);
-    }
-    const auto first = model::Oscillator::make(parameters_of(*system, 0)).value();  // for the units
-    return response_of(L, options, ResponseCall(L, first, options, system), first);
+    return response_of(L, options, ResponseCall(L, system, options));
 }
 
 }  // namespace dinal::api

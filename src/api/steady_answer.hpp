@@ -68,26 +68,19 @@ inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitatio
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
 
-struct RigSteady;
-
 struct Steady {
     analysis::SteadyQuestion question;
     analysis::SteadyMotion motion;
-    std::optional<analysis::SteadyShape> shape = {};                ///< made when it is first asked for
-    std::optional<std::vector<analysis::OtherMotion>> others = {};  ///< from other starts, once they were looked for
-    std::shared_ptr<RigSteady> rig = {};  ///< of several bodies, seen from one of them or, without a body, from none
-    bool of_body = false;
-    RunHandle part = {};  ///< one period, of a body
+    std::optional<analysis::SteadyShape> shape = {};  ///< made when it is first asked for
+    /// From other starts, once they were looked for: of all bodies.
+    std::optional<std::vector<std::shared_ptr<Steady>>> others = {};
+    RunHandle run = {};                  ///< one period, of what is not plain; none at rest
+    std::shared_ptr<Steady> whole = {};  ///< the motion of all bodies, of one or a link of which this is
+
+    [[nodiscard]] bool of_all() const { return !question.is_plain() && whole == nullptr; }
 };
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;
-
-struct RigSteady {
-    std::shared_ptr<const analysis::RigQuestion> question;
-    analysis::SteadyMotion motion;
-    RunHandle run = {};                                    ///< one period; none at rest
-    std::optional<std::vector<SteadyHandle>> others = {};  ///< from other starts, once they were looked for
-};
 
 /// Facts about a motion, or a rest, that was found.
 inline bool is_found(const Steady& s) {
@@ -98,23 +91,17 @@ inline double greatest_angle(const analysis::SteadyMotion& motion) {
     return std::max(std::fabs(motion.low), std::fabs(motion.high));
 }
 
-/// Calls the work, which may evaluate functions of a run with this drive, and raises their errors.
+/// Calls the work, which may evaluate functions, and raises their errors.
 template <class Work>
-void asking(lua_State* L, const model::Drive& drive, Work work) {
+void asking(lua_State* L, Work work) {
     lua::CallState call(L);
-    if (!drive.states.empty()) call.name_states(names_of_states(drive));
     work([](double) { return !lua::interrupt_requested(); });
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
 }
+/// The same of functions that are given the motion of the question.
 template <class Work>
-void asking(lua_State* L, Work work) {
-    asking(L, model::Drive(), std::move(work));
-}
-
-/// The same of functions of bodies.
-template <class Work>
-void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work work) {
+void asking(lua_State* L, const analysis::SteadyQuestion& question, Work work) {
     lua::CallState call(L);
     name_functions(call, *question.system, question.drive);
     work([](double) { return !lua::interrupt_requested(); });
@@ -125,7 +112,7 @@ void asking_bodies(lua_State* L, const analysis::RigQuestion& question, Work wor
 /// When all that drives the question repeats itself, as its terms have it or as the user gives it; period 0 where
 /// nothing depends on t. Raises when the period is unknown or wrong.
 analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& options,
-                                        const analysis::RigQuestion& question, const std::optional<double>& period);
+                                        const analysis::SteadyQuestion& question, const std::optional<double>& period);
 
 /// Raises when the motion could not be followed, or M was found to be no function of its arguments.
 void check_motion(const lua::Options& options, const analysis::SteadyMotion& motion);
@@ -136,12 +123,8 @@ int steady_of_run(lua_State* L);
 /// s.run
 lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s);
 
-// Of several bodies.
-/// The question as that of one of the bodies or links.
-analysis::SteadyQuestion question_of_joint(const std::shared_ptr<const analysis::RigQuestion>& whole,
-                                           std::size_t joint);
 /// When its controllers repeat; raises when they never do.
-double settles_or_fail(const lua::Options& options, const analysis::RigQuestion& question);
+double settles_or_fail(const lua::Options& options, const analysis::SteadyQuestion& question);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",

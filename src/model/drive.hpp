@@ -67,6 +67,12 @@ struct Drive {
 
     // The parts that concern one body, or the first.
     [[nodiscard]] const Excitation& M() const { return loads.front(); }
+    /// Of what acts on all bodies.
+    [[nodiscard]] Excitation sum_of_loads() const {
+        Excitation sum;
+        for (const Excitation& load : loads) sum = sum + load;
+        return sum;
+    }
     [[nodiscard]] const Excitation& belt() const { return belts.front(); }
     [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }
     void start_at(const State& state) { theta0.front() = state.theta, velocity0.front() = state.velocity; }

@@ -41,7 +41,7 @@ void steady_plane(benchmark::State& state) {
             for (int j = 0; j < side; ++j) {
                 const double r = 0.2 + 2.8 * j / (side - 1);
                 const auto M = model::Excitation::make(model::Harmonic{.amplitude = 1, .omega = r * omega0});
-                sum += analysis::steady_motion({.system = system, .drive = *M, .repeats = {0, 1 / r}}).amplitude;
+                sum += analysis::steady_motion(analysis::SteadyQuestion::of(system, *M, {0, 1 / r})).amplitude;
             }
         }
         benchmark::DoNotOptimize(sum);

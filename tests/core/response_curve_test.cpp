@@ -31,7 +31,7 @@ Oscillator duffing(double C, double Rd, double Re) {
                              .spring = springs::PolynomialSpring{{{3, 0.5}}}});
 }
 SteadyQuestion at_frequency(const Oscillator& system, double f, double M0 = 0.5) {
-    return {.system = system, .drive = truth::harmonic(M0, 2 * pi * f), .repeats = {0, 1 / f}};
+    return SteadyQuestion::of(system, truth::harmonic(M0, 2 * pi * f), {0, 1 / f});
 }
 std::vector<double> evenly(double from, double to, int n) {
     std::vector<double> values;

@@ -65,8 +65,7 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
     const Oscillator system = with_spring(cubic(1), 1, 0.05, 0.05, 0.2);
     const Excitation M = harmonic(1, 0.8);
     const double period = 2 * std::numbers::pi / 0.8;
-    const analysis::SteadyMotion steady =
-        analysis::steady_motion({.system = system, .drive = M, .repeats = {0, period}}, {});
+    const analysis::SteadyMotion steady = analysis::steady_motion(analysis::SteadyQuestion::of(system, M, {0, period}));
     REQUIRE(steady.status == analysis::SteadyStatus::steady);
     CHECK(steady.stable);
     CHECK(steady.symmetric);
@@ -75,7 +74,7 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
     CHECK(steady.start.velocity == within(run.state_at_stop.velocity, 1e-9));
     // A load that friction can hold: the mass may stay wherever the spring pulls back with no more than is left.
     const analysis::SteadyMotion adheres = analysis::steady_motion(
-        {.system = with_spring(cubic(1), 1, 0.5, 0.5), .drive = harmonic(0.3, 0.8), .repeats = {0, period}}, {});
+        analysis::SteadyQuestion::of(with_spring(cubic(1), 1, 0.5, 0.5), harmonic(0.3, 0.8), {0, period}));
     REQUIRE(adheres.status == analysis::SteadyStatus::adheres);
     CHECK(adheres.rest.second + std::pow(adheres.rest.second, 3) == within(0.2, 1e-9));
     CHECK(adheres.rest.first == within(-adheres.rest.second, 1e-9));

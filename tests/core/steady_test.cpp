@@ -22,15 +22,14 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 SteadyQuestion driven(double r, double gamma, double zeta = 0, double breakaway_factor = 1) {
-    return {.system = truth::nondimensional(zeta, gamma, breakaway_factor * gamma),
-            .drive = truth::harmonic(1, 2 * pi * r),
-            .repeats = {0, 1 / r}};
+    return SteadyQuestion::of(truth::nondimensional(zeta, gamma, breakaway_factor * gamma),
+                              truth::harmonic(1, 2 * pi * r), {0, 1 / r});
 }
 
 /// The amplitude after `periods` of M, by rk4 with steps of a ten-thousandth: another integrator and no map.
 double waited_for(const SteadyQuestion& question, int periods) {
     const double T = question.repeats.period;
-    const auto run = truth::must_run(question.system, question.drive.M(), question.drive.start(), {0, periods * T},
+    const auto run = truth::must_run(question.body, question.drive.M(), question.drive.start(), {0, periods * T},
                                      motion::Grid::none(), motion::Rk4{std::min(T, 1.0) / 2000});
     double low = 1e300, high = -1e300;
     for (const Event& event : run.events) {
@@ -142,7 +141,7 @@ TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a p
         question.drive = truth::harmonic(1, 2 * pi * 0.7, phase);
         const SteadyMotion found = steady_motion(question);
         CHECK(found.amplitude == within(amplitude, 1e-15));
-        const auto run = truth::must_run(question.system, question.drive.M(), found.start, {0, 1 / 0.7},
+        const auto run = truth::must_run(question.body, question.drive.M(), found.start, {0, 1 / 0.7},
                                          motion::Grid::none(), motion::Spectral{});
         CHECK(run.state_at_stop.theta == within(found.start.theta, 1e-13));
         CHECK(run.state_at_stop.velocity == within(found.start.velocity, 1e-12));

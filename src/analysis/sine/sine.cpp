@@ -13,7 +13,7 @@ namespace dinal::analysis::sine {
 
 std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
     const auto components = question.drive.M().components();
-    const model::Oscillator& system = question.system;
+    const model::Oscillator& system = question.body;
     if (components.size() != 1 || !system.has_linear_spring() || system.walls()) return {};
     const model::Component& only = components.front();
     const auto* sine = std::get_if<model::Harmonic>(&only.term);
