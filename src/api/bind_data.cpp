@@ -102,6 +102,10 @@ inline constexpr lua::Doc sort_doc{"d:sort(name, { OPTIONS }) -> data",
 inline constexpr lua::Doc names_doc{"d.names -> table",
                                     "The names of the columns, in the order in which they are printed and saved.",
                                     DINAL_DATA "print(table.concat(d.names, \" \"))  --> A r"};
+inline constexpr lua::Doc units_of_columns_doc{
+    "d.units -> table", "The units of the columns that have one, by their names.",
+    "run = system{ I = 1, k = 4, units = { t = \"s\" } }:simulate{ theta0 = 1, t_end = 1 }\n"
+    "print(run:data().units.t)  --> s"};
 inline constexpr lua::Doc length_doc{
     "#d -> integer", "The number of rows. d[1] is the first one, a table with a field for each column; beyond is nil.",
     DINAL_DATA "print(#d, d[2].A)  --> 3\t4.0"};
@@ -148,6 +152,15 @@ std::vector<std::string_view> names_of(const Data& data) {
     std::vector<std::string_view> names;
     for (const DataColumn& column : data.columns) names.emplace_back(column.name);
     return names;
+}
+
+/// Of the columns that have one.
+std::map<std::string, std::string> units_of_columns(const Data& data) {
+    std::map<std::string, std::string> units;
+    for (const DataColumn& column : data.columns) {
+        if (!column.unit.empty()) units.emplace(column.name, column.unit);
+    }
+    return units;
 }
 
 /// The metatable of the rows of the data at `index`, kept with it: it knows the order of the names.
@@ -261,6 +274,7 @@ constexpr lua::Member data_members[] = {
     {lua::a_method<data_functions::select>, select_doc},
     {lua::a_method<data_functions::sort>, sort_doc},
     {lua::a_value<DataHandle, names_of>, names_doc},
+    {lua::a_value<DataHandle, units_of_columns>, units_of_columns_doc},
     {lua::a_length<DataHandle, &Data::size>, length_doc},
     {lua::a_metamethod<data_pairs>("__pairs"), pairs_doc},
     {lua::a_text<DataHandle, [](const Data& data) { return text_of(data, text::readable_width); }>, to_string_doc},

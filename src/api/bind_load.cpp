@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <numeric>
+#include <vector>
 
 #include "api/classes.hpp"
 #include "api/data.hpp"
@@ -11,6 +14,8 @@
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/options.hpp"
+#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
@@ -18,6 +23,85 @@ namespace dinal::api {
 namespace {
 
 const char original_key = 0;  // in the registry: load as it was
+
+enum class Duplicates { keep, mean, first, last };
+struct LoadOptions : files::ReadOptions {
+    bool sort = false;
+    Duplicates duplicates = Duplicates::keep;
+};
+constexpr const char* duplicates_names[] = {"keep", "mean", "first", "last"};
+constexpr text::Option load_options[] = {
+    {.name = "skip",
+     .range = {"be a whole number from 0 to 1e+06", [](double x) { return text::is_whole(x, 0, 1e6); }},
+     .meaning = "lines before the names that are no part of the table",
+     .filled = text::fills<&LoadOptions::skip>},
+    {.name = "names",
+     .meaning = "the names of the columns, instead of those in the file",
+     .wanted = "a list of names such as { \"t\", \"theta\" }"},
+    {.name = "sort",
+     .meaning = "true puts the rows in the order of their times: of the column t, or of the first one of numbers",
+     .filled = text::fills<&LoadOptions::sort>},
+    {.name = "duplicates",
+     .meaning =
+         "what becomes of rows with the same time: one row with the mean of their numbers, the first or the last",
+     .filled = text::fills<&LoadOptions::duplicates>,
+     .choices = duplicates_names},
+};
+constexpr text::Call load_call{"load", "load(\"log.csv\", { skip = 3, sort = true })", load_options, true};
+
+/// The rows in these groups, one row of each: its first, its last, or with the mean of its numbers.
+void take_groups(files::ReadColumns& content, const std::vector<std::vector<std::size_t>>& groups, Duplicates which) {
+    const auto one = [which](const auto& values, const std::vector<std::size_t>& rows) {
+        return values[which == Duplicates::last ? rows.back() : rows.front()];
+    };
+    for (files::ReadColumn& column : content.columns) {
+        std::vector<double> numbers;
+        std::vector<std::string> words;
+        for (const std::vector<std::size_t>& rows : groups) {
+            if (column.of_words) {
+                words.push_back(one(column.words, rows));
+            } else if (which == Duplicates::mean && rows.size() > 1) {
+                double sum = 0;
+                for (const std::size_t row : rows) sum += column.numbers[row];
+                numbers.push_back(sum / static_cast<double>(rows.size()));
+            } else {
+                numbers.push_back(one(column.numbers, rows));
+            }
+        }
+        column.numbers = std::move(numbers), column.words = std::move(words);
+    }
+}
+
+/// Sorts the rows by their times, and makes one of those with the same time, as asked.
+void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadColumns& content) {
+    if (!asked.sort && asked.duplicates == Duplicates::keep) return;
+    auto& columns = content.columns;
+    auto times = std::find_if(columns.begin(), columns.end(),
+                              [](const files::ReadColumn& column) { return column.name == "t" && !column.of_words; });
+    if (times == columns.end()) {
+        times = std::find_if(columns.begin(), columns.end(), [](const auto& column) { return !column.of_words; });
+    }
+    const char* option = asked.sort ? "sort" : "duplicates";
+    if (times == columns.end()) options.fail(option, fmt::format("{} needs a column of numbers", option));
+    const std::vector<double> t = times->numbers;
+    const auto gap = std::find_if(t.begin(), t.end(), [](double x) { return std::isnan(x); });
+    if (gap != t.end()) {
+        options.fail(option, fmt::format("{} needs a time in each row, and row {} of column '{}' is empty", option,
+                                         gap - t.begin() + 1, times->name));
+    }
+    std::vector<std::size_t> order(t.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return t[a] < t[b]; });
+    std::vector<std::vector<std::size_t>> groups;
+    for (const std::size_t row : order) {
+        const bool joins = asked.duplicates != Duplicates::keep && !groups.empty() && t[groups.back().back()] == t[row];
+        joins ? groups.back().push_back(row) : groups.push_back({row});
+    }
+    if (!asked.sort) {
+        std::sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
+    }
+    take_groups(content, groups, asked.duplicates);
+}
 
 /// The rows of a run, as run:save wrote them.
 int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
@@ -41,6 +125,12 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
     const ColumnUnits in(model::Units::from_file(content.comments));
     Data data;
+    if (content.cut > 0) {
+        const std::size_t rows = content.columns.front().of_words ? content.columns.front().words.size()
+                                                                  : content.columns.front().numbers.size();
+        data.heading = fmt::format("data: {}; line {} of the file ends in the middle and was left out",
+                                   text::counted(rows, "row"), content.cut);
+    }
     for (files::ReadColumn& column : content.columns) {
         if (column.unit.empty()) column.unit = in.of(column.name);
         data.columns.push_back(column_of(std::move(column)));
@@ -73,15 +163,35 @@ model::Units units_of(const files::ReadColumns& content) {
 }
 
 int load_file(lua_State* L, const std::string& file) {
+    const lua::Options options(L, 2, load_call);
+    LoadOptions asked;
+    options.fill(asked);
+    if (options.has("names")) {
+        options.push("names");
+        const auto count = static_cast<lua_Integer>(lua_istable(L, -1) ? lua_rawlen(L, -1) : 0);
+        if (count == 0) options.wrong("names");
+        for (lua_Integer i = 1; i <= count; ++i) {
+            if (lua_rawgeti(L, -1, i) != LUA_TSTRING) options.wrong("names");
+            asked.names.emplace_back(lua::text_at(L, -1));
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    }
     if (text::ending_of(file) == ".dat") {
+        for (const text::Option& option : load_options) {
+            if (!options.has(option.name)) continue;
+            options.fail(option.name,
+                         fmt::format("the record of 1989 (.dat) has no {}: its six columns are known", option.name));
+        }
         auto record = files::read_record1989(file);
         if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
         return push_loaded_run(L, lua::value_or_raise(L, "load", std::move(record)), {});
     }
-    auto read = files::read_columns(file);
+    auto read = files::read_columns(file, asked);
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     files::ReadColumns content = lua::value_or_raise(L, "load", std::move(read));
-    if (!is_run(content)) return push_loaded_data(L, std::move(content));
+    arrange(options, asked, content);
+    if (!is_run(content) || content.cut > 0) return push_loaded_data(L, std::move(content));
     model::Units units = units_of(content);
     return push_loaded_run(L, lua::value_or_raise(L, "load", files::table_of(std::move(content))), std::move(units));
 }
@@ -89,7 +199,8 @@ int load_file(lua_State* L, const std::string& file) {
 /// The ending of what is no Lua and may be the name of a file; "" for all else.
 std::string ending_of_file(lua_State* L, std::string_view name) {
     constexpr std::size_t longest = 4096;
-    const bool one = lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
+    const bool with_options = lua_gettop(L) == 2 && lua_istable(L, 2);
+    const bool one = (lua_gettop(L) == 1 || with_options) && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
     std::string ending = one ? text::ending_of(name) : "";
     if (ending.empty()) return "";
     const int status = luaL_loadbufferx(L, name.data(), name.size(), "=load", "t");
@@ -121,14 +232,16 @@ int load(lua_State* L) {
 
 constexpr lua::Member load_members[] = {
     {lua::a_function<load>,
-     {"load(file) -> run or data",
+     {"load(file, { OPTIONS }) -> run or data",
       "Reads a file that dinal has written, or any CSV file; the name ends in .csv, .txt, .tsv or .dat (the record "
       "of 1989). A file of run:save gives a run with the same bits, as does a table of numbers with the columns t "
       "and theta; everything else gives data.\nFields are separated by semicolons, commas, tabs or blanks. Names "
       "are in the first line (without them they are \"1\", \"2\", ...), lines with # are skipped. Numbers may be "
       "among the names, t,100,200, if the first is a word and has only numbers below it. A column with anything "
       "but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the numbers "
-      "has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one everywhere. "
+      "has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one everywhere; "
+      "in quotes \"1,5\" is one too. A last line that ends in the middle is left out, which the first line of the data "
+      "tells. "
       "With other arguments it is Lua's own load.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "file = os.tmpname() .. \".csv\"\n"
@@ -137,7 +250,13 @@ constexpr lua::Member load_members[] = {
       "run.events:save(file)\n"
       "d = load(file)\n"
       "print(#d, d.kind[1], d.t == run.events.t)  --> 2\tturn\ttrue\n"
-      "os.remove(file)"}},
+      "f = io.open(file, \"w\")\n"
+      "f:write(\"Logger 7\\nt;x\\ns;mm\\n0,2;4\\n0,1;2\\n0,1;3\\n\")\n"
+      "f:close()\n"
+      "d = load(file, { skip = 1, sort = true, duplicates = \"mean\" })\n"
+      "print(d.t, d.x, d.units.x)  --> vector{ 0.1, 0.2 }\tvector{ 2.5, 4 }\tmm\n"
+      "os.remove(file)",
+      {&load_call}}},
 };
 
 }  // namespace

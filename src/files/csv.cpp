@@ -117,7 +117,8 @@ std::string word_in(std::string_view field) {
 
 class ColumnReader {
 public:
-    ColumnReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
+    ColumnReader(std::string_view text, const std::string& file, const ReadOptions& options)
+        : lines_(text), file_(file), options_(options), is_open_(!text.empty() && text.back() != '\n') {}
 
     text::Expected<ReadColumns> read() {
         if (auto fault = collect_rows()) return *fault;
@@ -128,8 +129,14 @@ public:
             separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);
         }
         has_points_ = separator_ == Separator::tab && has_decimal_points();
+        has_quoted_commas_ = has_decimal_commas_in_quotes();
         split(rows_.front().text, separator_, fields_);
         result_.columns.resize(fields_.size());
+        if (!options_.names.empty() && options_.names.size() != fields_.size()) {
+            return error_at(file_, rows_.front().number,
+                            "found " + std::to_string(fields_.size()) + " columns, and names has " +
+                                std::to_string(options_.names.size()));
+        }
         const bool named =
             std::none_of(fields_.begin(), fields_.end(), [this](auto field) { return is_number(field); }) ||
             is_word_above_numbers(fields_.front());
@@ -139,6 +146,7 @@ public:
             take_units();
             rows_.erase(rows_.begin());
         }
+        leave_out_cut_line();
         for (std::size_t i = 0; i < rows_.size() && !fault; ++i) fault = take_numbers(rows_[i]);
         if (fault) return *fault;
         take_words();
@@ -154,6 +162,7 @@ private:
     /// All lines that are neither blank nor a comment.
     std::optional<text::Error> collect_rows() {
         while (lines_.next()) {
+            if (lines_.number() <= static_cast<std::size_t>(options_.skip)) continue;
             const std::string_view line = text::trimmed(lines_.text());
             if (line.starts_with('#')) {
                 const std::string_view comment = line.substr(1);
@@ -199,8 +208,46 @@ private:
         });
     }
 
+    /// "0,5" in quotes; with three digits behind it a comma may be one of thousands, unless others tell.
+    [[nodiscard]] bool has_decimal_commas_in_quotes() {
+        bool tells = false;
+        for (const Row& row : rows_) {
+            if (row.text.find('"') == std::string_view::npos) continue;
+            split(row.text, separator_, fields_);
+            for (const std::string_view field : fields_) {
+                const std::string_view inside = in_quotes(field);
+                const std::size_t comma = inside.find(',');
+                if (comma == std::string_view::npos || !parse_field(inside, true)) continue;
+                constexpr std::size_t thousands = 4;
+                tells = tells || inside.size() - comma != thousands;
+            }
+        }
+        return tells;
+    }
+
+    static std::string_view in_quotes(std::string_view field) {
+        const bool quoted = field.size() > 2 && field.front() == '"' && field.back() == '"';
+        return quoted ? text::trimmed(field.substr(1, field.size() - 2)) : std::string_view();
+    }
+
+    [[nodiscard]] std::optional<double> number_in(std::string_view field) const {
+        if (has_quoted_commas_ && field.starts_with('"')) {
+            if (const std::string_view inside = in_quotes(field); !inside.empty()) return parse_field(inside, true);
+        }
+        return parse_field(field, decimal_comma());
+    }
+
     [[nodiscard]] bool is_number(std::string_view field) const {
-        return !field.empty() && parse_field(field, decimal_comma()).has_value();
+        return !field.empty() && number_in(field).has_value();
+    }
+
+    /// What was written last before a logger was switched off.
+    void leave_out_cut_line() {
+        if (!is_open_ || rows_.size() < 2) return;
+        split(rows_.back().text, separator_, fields_);
+        if (fields_.size() >= result_.columns.size()) return;
+        result_.cut = rows_.back().number;
+        rows_.pop_back();
     }
 
     /// "t,100,200" is a line of names: in all other rows the first column has numbers.
@@ -217,7 +264,9 @@ private:
         std::set<std::string_view> names;
         for (std::size_t i = 0; i < fields_.size(); ++i) {
             std::string& name = result_.columns[i].name;
-            name = named ? name_in(fields_[i], i + 1) : std::to_string(i + 1);
+            name = !options_.names.empty() ? options_.names[i]
+                   : named                 ? name_in(fields_[i], i + 1)
+                                           : std::to_string(i + 1);
             if (!names.insert(name).second) {
                 return error_at(file_, rows_.front().number, "the name " + shown(name) + " belongs to two columns");
             }
@@ -289,7 +338,7 @@ private:
         for (std::size_t i = 0; i < fields_.size(); ++i) {
             ReadColumn& column = result_.columns[i];
             if (column.of_words) continue;
-            const auto number = parse_field(fields_[i], decimal_comma());
+            const auto number = number_in(fields_[i]);
             if (column.fault.empty() && !(number && std::isfinite(*number))) {
                 std::string name = std::to_string(i + 1);
                 if (column.name != name) name += " (" + column.name + ")";
@@ -318,8 +367,10 @@ private:
 
     Lines lines_;
     const std::string& file_;
+    const ReadOptions& options_;
+    bool is_open_;  // the text ends in the middle of a line
     Separator separator_ = Separator::blanks;
-    bool has_points_ = false;
+    bool has_points_ = false, has_quoted_commas_ = false;
     std::vector<Row> rows_;
     std::vector<std::string_view> fields_;
     std::vector<double> plain_;
@@ -328,14 +379,14 @@ private:
 
 }  // namespace
 
-text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name) {
+text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name, const ReadOptions& options) {
     if (std::optional<text::Error> fault = binary_fault(text, name)) return *fault;
-    return ColumnReader(text, name).read();
+    return ColumnReader(text, name, options).read();
 }
 
-text::Expected<ReadColumns> read_columns(const std::string& path) {
+text::Expected<ReadColumns> read_columns(const std::string& path, const ReadOptions& options) {
     const text::Expected<std::string> text = read_file(path);
-    return text ? parse_columns(*text, path) : text::Expected<ReadColumns>(text.error());
+    return text ? parse_columns(*text, path, options) : text::Expected<ReadColumns>(text.error());
 }
 
 text::Expected<Table> table_of(ReadColumns content) {

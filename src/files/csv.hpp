@@ -25,16 +25,25 @@ struct ReadColumn {
 struct ReadColumns {
     std::vector<ReadColumn> columns;  ///< of one length, each name once
     std::vector<std::string> comments;
+    std::size_t cut = 0;  ///< the number of the last line, where it ends in the middle and is left out; else 0
+};
+
+/// What a user says of a file that others have written.
+struct ReadOptions {
+    int skip = 0;                         ///< lines before the names
+    std::vector<std::string> names = {};  ///< of the columns, instead of those in the file
 };
 
 /// Lines that begin with # are comments and blank lines are skipped. The separator (semicolon, comma, tab or blanks) is
 /// taken from the second line; with semicolons a decimal comma is one. The first line has the names unless it has a
 /// number: then they are "1", "2", ... Where words stand under the names and numbers only in all lines below them, the
-/// words are the units. Errors name the file and the line.
-text::Expected<ReadColumns> read_columns(const std::string& path);
+/// words are the units. A number in quotes may have a decimal comma. A last line without its end and with too few
+/// fields was cut off, and is left out. Errors name the file and the line.
+text::Expected<ReadColumns> read_columns(const std::string& path, const ReadOptions& options = {});
 
 /// The same of a text in memory; `name` stands for the file in errors.
-text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name);
+text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name,
+                                          const ReadOptions& options = {});
 
 /// Fails where a field is no finite number.
 text::Expected<Table> table_of(ReadColumns content);
