@@ -9,6 +9,7 @@
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/modes.hpp"
 #include "api/response.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
@@ -147,6 +148,7 @@ constexpr lua::Member system_members[] = {
     {lua::a_method<response_of_system>, response_doc},
     {lua::a_method<steady_of_system>, steady_doc},
     {lua::a_method<simulate_system>, simulate_doc},
+    {lua::a_method<modes_of_system>, modes_doc},
     {lua::a_method<system_with>,
      {"sys:with{ OPTIONS } -> system",
       "A copy of the system with some parameters changed: the options of system{...}, of named bodies and links by their "
