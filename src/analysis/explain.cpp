@@ -243,8 +243,12 @@ private:
             if (value > 0) numbers += fmt::format("{}{} = {:.5g}", numbers.empty() ? "" : ", ", name, value);
         };
         if (is_link_) {
-            say("{} links {} and {}.", joint_.name, whole_.system.bodies[static_cast<std::size_t>(joint_.first)].name,
-                whole_.system.bodies[static_cast<std::size_t>(joint_.second)].name);
+            if (joint_.is_difference()) {
+                say("{} links {} and {}.", joint_.name, whole_.system.bodies[joint_.of[0].body].name,
+                    whole_.system.bodies[joint_.of[1].body].name);
+            } else {
+                say("The angle of {} is {}.", joint_.name, whole_.system.angle_in_words(joint_));
+            }
         } else {
             number("I", system_.inertia());
         }

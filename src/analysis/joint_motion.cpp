@@ -71,8 +71,9 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     const model::Joint& seen = system.joints[joint];
     const bool alone = question.is_plain();
     const auto of = [&](auto number) {
-        const double second = seen.second < 0 ? 0 : number(whole.bodies[static_cast<std::size_t>(seen.second)]);
-        return number(whole.bodies[static_cast<std::size_t>(seen.first)]) - second;
+        double sum = 0;
+        for (const auto& [body, by] : seen.of) sum += by * number(whole.bodies[body]);
+        return sum;
     };
     SteadyMotion facts = whole;
     if (run) {
@@ -99,8 +100,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     }
     // Of a body that goes round the angle never comes back.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
-    if (!alone && facts.is_found() &&
-        std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[static_cast<std::size_t>(seen.first)].turned)) {
+    if (!alone && facts.is_found() && std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
     }
     return facts;

@@ -71,13 +71,15 @@ Chart chart_of(Runs& runs) {
     };
     for (const model::Joint& joint : system.joints) {
         const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
-        if (!asks || joint.second < 0) continue;
-        const Index a = root(joint.first), b = root(joint.second);
-        part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        for (const model::Weight& other : joint.of) {
+            const Index a = root(static_cast<Index>(joint.first())), b = root(static_cast<Index>(other.body));
+            if (asks) part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        }
     }
     for (const model::Joint& joint : system.joints) {
         const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
-        if (asks && joint.second < 0) grounded[static_cast<std::size_t>(root(joint.first))] = true;
+        const Index own = root(static_cast<Index>(joint.first()));
+        if (asks && joint.of.size() == 1) grounded[static_cast<std::size_t>(own)] = true;
     }
     std::vector<Index> from(part.size(), -1);
     for (Index of = 0; of < n; ++of) {
@@ -244,8 +246,7 @@ Eigen::MatrixXd Runs::allowed(const HeldMode& mode, Index size) const {
             const bool holds = from == 0 ? mode.mode.leans[j] != 0 : mode.mode.holds(j) || riding;
             if (!holds) continue;
             fixed.emplace_back(VectorXd::Zero(size));
-            fixed.back()[from + joint.first] = 1;
-            if (joint.second >= 0) fixed.back()[from + joint.second] = -1;
+            for (const auto& [body, by] : joint.of) fixed.back()[from + static_cast<Index>(body)] = by;
         }
     }
     if (fixed.empty()) return Eigen::MatrixXd::Identity(size, size);
@@ -305,8 +306,8 @@ Moment Returns::moment(const VectorXd& place, const std::optional<HeldMode>& mod
     if (section_) x[section_->measured] = section_->place;
     Moment moment{chart_.state(x, there_), mode};
     for (const model::Joint& joint : runs_.system().joints) {
-        double& theta = moment.y[joint.first];
-        if (joint.walls && joint.second < 0) theta = std::clamp(theta, joint.walls->lower, joint.walls->upper);
+        double& theta = moment.y[static_cast<Index>(joint.first())];
+        if (joint.walls && joint.of.size() == 1) theta = std::clamp(theta, joint.walls->lower, joint.walls->upper);
     }
     return moment;
 }

@@ -440,11 +440,8 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
             other.drive.velocity0[i] = spot.imag() * 2 * std::numbers::pi / period;
         }
         const auto crosses = [&](const model::Joint& joint) {
-            if (!joint.walls || joint.second < 0) return false;
-            return joint.walls
-                ->crossed_by(other.drive.theta0[static_cast<std::size_t>(joint.first)] -
-                             other.drive.theta0[static_cast<std::size_t>(joint.second)])
-                .has_value();
+            if (!joint.walls || joint.of.size() == 1) return false;
+            return joint.walls->crossed_by(joint.sum(other.drive.theta0)).has_value();
         };
         if (std::any_of(question.system->joints.begin(), question.system->joints.end(), crosses)) {
             other.drive.theta0 = question.drive.theta0;

@@ -127,8 +127,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
         animation::Scene scene = asked_scene(L, options, part, take, units);
         scene.name = joint.name;
         if (system.is_link(*part->joint)) {
-            links.push_back(
-                {std::move(scene), static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second)});
+            links.push_back({std::move(scene), joint.first(), joint.of.back().body});
         } else {
             bodies.push_back(std::move(scene));
         }

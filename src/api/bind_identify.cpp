@@ -585,8 +585,7 @@ private:
     [[nodiscard]] bool place_counts(std::size_t body) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
-            const int own = static_cast<int>(body);
-            if (joint.first != own && joint.second != own) continue;
+            if (!joint.is_on(body)) continue;
             if (joint.stiffness != 0 || measured(j, Measure::theta) != nullptr) return true;
         }
         return false;
@@ -614,8 +613,7 @@ private:
             change_numbers(system_, j, [&](const std::string& own, double& number, Sign sign) {
                 known.push_back(own);
                 if (own != name || !std::isfinite(number)) return false;
-                const auto body = static_cast<std::size_t>(system_.joints[j].first);
-                const double torque = system_.bodies[body].inertia * speed_ / time_;
+                const double torque = system_.bodies[system_.joints[j].first()].inertia * speed_ / time_;
                 found = true, one.start = number;
                 one.least = sign == Sign::any ? -1e300 : sign == Sign::positive ? 1e-6 * one.start : 0;
                 one.typical = name == before + "C" ? 0.01 * torque / speed_ : 0.01 * torque;

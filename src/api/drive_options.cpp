@@ -72,8 +72,7 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const model::Joint& joint = system.joints[j];
         if (!joint.walls) continue;
-        const double angle = drive.theta0[static_cast<std::size_t>(joint.first)] -
-                             (joint.second < 0 ? 0 : drive.theta0[static_cast<std::size_t>(joint.second)]);
+        const double angle = joint.sum(drive.theta0);
         if (auto wrong = joint.walls->crossed_by(angle)) {
             if (system.is_link(j)) {
                 wrong->sentence =

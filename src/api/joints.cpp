@@ -158,17 +158,18 @@ int push_alone(lua_State* L, std::string_view call, const model::Assembly& syste
     const auto oscillator = lua::value_or_raise(L, call, engine::seen_alone(system, j));
     model::Assembly one{
         .bodies = {{"", oscillator.inertia()}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
-    one.joints[0].name.clear(), one.joints[0].first = 0, one.joints[0].second = model::Joint::ground;
+    one.joints[0].name.clear(), one.joints[0].of = {model::Weight{}};
     lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
     return 1;
 }
 
 namespace {
 
-int body_index(const lua::Options& options, const model::Assembly& system, const std::string& link, lua_State* L) {
+std::size_t body_index(const lua::Options& options, const model::Assembly& system, const std::string& link,
+                       lua_State* L) {
     const std::string name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        if (system.bodies[i].name == name) return static_cast<int>(i);
+        if (system.bodies[i].name == name) return i;
     }
     const std::vector<std::string> names = body_names(system);
     options.fail({.sentence = name.empty() ? fmt::format("links.{} must begin with the names of two bodies, such as "
@@ -203,7 +204,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
         double inertia = 0;
         model::Joint joint =
             read_joint(L, fmt::format("{}: bodies.{}", options.call(), names[i]), body_options, inertia);
-        joint.name = names[i], joint.first = static_cast<int>(i);
+        joint.name = names[i], joint.of = {{i, 1}};
         system.bodies.push_back({names[i], inertia});
         system.joints.push_back(std::move(joint));
         lua_pop(L, 1);
@@ -215,7 +216,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
                 options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
             }
             lua_getfield(L, -1, name.c_str());
-            std::array<int, 2> ends{};
+            std::array<std::size_t, 2> ends{};
             for (int end = 0; end < 2; ++end) {
                 lua_rawgeti(L, -1, end + 1);
                 ends.at(static_cast<std::size_t>(end)) = body_index(options, system, name, L);
@@ -231,7 +232,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
             lua::push_copy(L, -1, 2);
             double none = 0;
             model::Joint joint = read_joint(L, fmt::format("{}: links.{}", options.call(), name), link_options, none);
-            joint.name = name, joint.first = ends[0], joint.second = ends[1];
+            joint.name = name, joint.of = {{ends[0], 1}, {ends[1], -1}};
             system.joints.push_back(std::move(joint));
             lua_pop(L, 2);
         }
@@ -337,9 +338,9 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
     const model::ContactFriction& friction = joint.friction;
     lua_newtable(L);
     if (system.is_link(j)) {
-        for (const int end : {joint.first, joint.second}) {
-            lua::push_text(L, system.bodies[static_cast<std::size_t>(end)].name);
-            lua_rawseti(L, -2, end == joint.first ? 1 : 2);
+        for (std::size_t k = 0; k < joint.of.size(); ++k) {
+            lua::push_text(L, system.bodies[joint.of[k].body].name);
+            lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
         }
     } else {
         lua::set_number(L, "I", system.bodies[j].inertia);

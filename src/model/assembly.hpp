@@ -3,8 +3,9 @@
 //
 //     I_i theta_i'' = M_i - I_i a - sum over its joints of the torques that they take
 //
-// A joint goes from a body to another one or to the ground. It has what a system of one body has: stiffness, damping, a
-// spring, dry friction, walls; all of these act on its angle, that of its first body less that of its second.
+// A joint is a place where torque acts: a body against the ground, or a link. Its angle is a weighted sum of the angles
+// of its bodies, and a torque T on that angle acts on each of them times its weight. A joint has what a system of one
+// body has: stiffness, damping, a spring, dry friction, walls.
 #pragma once
 
 #include <algorithm>
@@ -52,15 +53,42 @@ struct Body {
     double inertia = 1;
 };
 
+struct Weight {
+    std::size_t body = 0;
+    double by = 1;
+};
+
 struct Joint {
-    static constexpr int ground = -1;
-    std::string name;  ///< of the link, or of the body whose joint with the ground it is
-    int first = 0;     ///< a body
-    int second = ground;
+    std::string name;                  ///< of the link, or of the body whose joint with the ground it is
+    std::vector<Weight> of{Weight{}};  ///< a link between two bodies: {a, 1}, {b, -1}
     double stiffness = 0, damping = 0;
     Spring spring = {};
     ContactFriction friction = {};
     std::optional<Walls> walls = {};
+
+    [[nodiscard]] std::size_t first() const { return of.front().body; }
+    /// Returns the weighted sum of what its bodies have, such as their angles.
+    template <class Values>
+    [[nodiscard]] double sum(const Values& of_bodies) const {
+        double total = 0;
+        for (const auto& [body, by] : of) total += by * of_bodies[body];
+        return total;
+    }
+    [[nodiscard]] bool is_on(std::size_t body) const {
+        return std::any_of(of.begin(), of.end(), [body](const Weight& weight) { return weight.body == body; });
+    }
+    /// Returns whether it links two bodies without a gear.
+    [[nodiscard]] bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
+    /// Returns whether sums of what its bodies have are rounded where they are 0.
+    [[nodiscard]] bool is_weighted() const {
+        return std::any_of(of.begin(), of.end(), [](const Weight& weight) { return std::fabs(weight.by) != 1; });
+    }
+    /// Returns the acceleration of its angle for a torque of 1 on it while nothing else acts.
+    [[nodiscard]] double lightness(const std::vector<Body>& bodies) const {
+        double total = 0;
+        for (const auto& [body, by] : of) total += by * by / bodies[body].inertia;
+        return total;
+    }
 };
 
 struct Assembly {
@@ -76,17 +104,16 @@ struct Assembly {
     [[nodiscard]] bool is_plain() const { return !named && joints.front().friction.is_constant(); }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     [[nodiscard]] bool is_linked(std::size_t body) const {
-        return std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
-            const int own = static_cast<int>(body);
-            return joint.second >= 0 && (joint.first == own || joint.second == own);
-        });
+        return std::any_of(joints.begin() + static_cast<std::ptrdiff_t>(bodies.size()), joints.end(),
+                           [body](const Joint& joint) { return joint.is_on(body); });
     }
+    /// "motor - 10 load"
+    [[nodiscard]] std::string angle_in_words(const Joint& joint) const;
     /// Of each body on the stiffness around it, the others being at rest; infinite where there is none.
     [[nodiscard]] std::vector<double> natural_periods() const {
         std::vector<double> stiffness(bodies.size(), 0), periods;
         for (const Joint& joint : joints) {
-            stiffness[static_cast<std::size_t>(joint.first)] += joint.stiffness;
-            if (joint.second >= 0) stiffness[static_cast<std::size_t>(joint.second)] += joint.stiffness;
+            for (const auto& [body, by] : joint.of) stiffness[body] += by * by * joint.stiffness;
         }
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             periods.push_back(2 * std::numbers::pi / std::sqrt(stiffness[i] / bodies[i].inertia));

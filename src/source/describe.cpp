@@ -48,8 +48,7 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
         if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
     };
     if (system.is_link(j)) {
-        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.first)].name));
-        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.second)].name));
+        for (const model::Weight& weight : joint.of) parts.push_back(text::quoted(system.bodies[weight.body].name));
     } else {
         number("I", system.bodies[j].inertia);
     }

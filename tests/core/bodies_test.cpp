@@ -44,9 +44,9 @@ Rig random_chain(unsigned seed, bool sticky) {
     Lot lot(seed);
     Rig rig;
     const int n = 2 + static_cast<int>(lot.between(0, 4));
-    const auto joint = [&](int first, int second, double rubs) {
+    const auto joint = [&](std::vector<model::Weight> of, double rubs) {
         Joint made;
-        made.first = first, made.second = second;
+        made.of = std::move(of);
         if (lot.chance(0.6)) made.stiffness = lot.between(0.5, 10);
         if (lot.chance(0.4)) made.damping = lot.between(0, 0.5);
         if (lot.chance(rubs)) {
@@ -59,14 +59,16 @@ Rig random_chain(unsigned seed, bool sticky) {
     for (int i = 0; i < n; ++i) rig.system.bodies.push_back({"b" + std::to_string(i), lot.between(0.3, 3)});
     rig.drive = model::Drive::at_rest(0, 0);
     for (int i = 0; i < n; ++i) {
-        rig.system.joints.push_back(joint(i, Joint::ground, 0.7));
+        rig.system.joints.push_back(joint({{static_cast<std::size_t>(i), 1}}, 0.7));
         const bool driven = lot.chance(0.7);
         rig.drive.loads.push_back(driven ? harmonic(lot.between(0.5, 4), lot.between(0.3, 3), lot.between(0, 6))
                                          : Excitation());
         rig.drive.theta0.push_back(lot.between(-1, 1));
         rig.drive.velocity0.push_back(lot.chance(0.3) ? 0 : lot.between(-1, 1));
     }
-    for (int i = 0; i + 1 < n; ++i) rig.system.joints.push_back(joint(i, i + 1, 0.5));
+    for (int i = 0; i + 1 < n; ++i)
+        rig.system.joints.push_back(
+            joint({{static_cast<std::size_t>(i), 1}, {static_cast<std::size_t>(i) + 1, -1}}, 0.5));
     rig.drive.belts.resize(rig.system.joints.size());
     return rig;
 }

@@ -76,6 +76,18 @@ const IntegrationModes& integration_modes() {
 
 }  // namespace
 
+namespace {
+
+/// Returns the weighted sum of what the groups have that move a body.
+template <class Value>
+double sum_of_groups(const Frame::Shape& shape, const Value& value) {
+    double sum = 0;
+    for (const auto& [group, by] : shape) sum += by * value(group);
+    return sum;
+}
+
+}  // namespace
+
 /// A matrix of `inner` rows, column after column, times a vector.
 void Collocation::multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
     using Column = Eigen::Matrix<double, inner, 1>;
@@ -115,9 +127,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
     for (const model::Joint& joint : mechanics.system().joints) {
         if (joint.spring.none() && joint.friction.function == nullptr && !joint.friction.law.depends_on_speed())
             continue;
-        for (const int body : {joint.first, joint.second}) {
-            if (body >= 0) may_be_rough_[index(body)] = 1;
-        }
+        for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;
     }
 }
 
@@ -220,16 +230,17 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
             });
         }
         // Of the digits that the angles have rounded off the stiffness takes notice.
-        for (const auto& [body, k] : {std::pair(own.first, own.stiffness), std::pair(own.second, -own.stiffness)}) {
-            if (body < 0 || k == 0) continue;
-            const Nodes &y = s.y[index(body)], &moved = s.moved[index(body)];
-            const double low = s.low[index(body)];
+        for (const auto& [body, by] : own.of) {
+            const double k = by * own.stiffness;
+            if (k == 0) continue;
+            const Nodes &y = s.y[body], &moved = s.moved[body];
+            const double low = s.low[body];
             for (std::size_t j = first; j < end; ++j) torque[j] += k * (low + (moved[j] - (y[j] - y[0])));
         }
-        Nodes& on_first = s.torques[index(own.first)];
-        for (std::size_t j = first; j < end; ++j) on_first[j] -= torque[j];
-        if (own.second < 0) continue;
-        for (std::size_t j = first; j < end; ++j) s.torques[index(own.second)][j] += torque[j];
+        for (const auto& [body, by] : own.of) {
+            Nodes& on_body = s.torques[body];
+            for (std::size_t j = first; j < end; ++j) on_body[j] -= by * torque[j];
+        }
     }
     for (std::size_t g = 0; g < frame.groups(); ++g) std::fill(found_[g].data() + first, found_[g].data() + end, 0.0);
     for (std::size_t i = 0; i < n_; ++i) {
@@ -237,11 +248,12 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         double sum = 0;
         for (std::size_t j = first; j < end; ++j) sum += torque[j];
         good = good && std::isfinite(sum);
-        if (frame.group[i] < 0) continue;
-        const auto g = index(frame.group[i]);
-        Nodes& found = found_[g];
-        const double share = 1 / frame.inertia[g], inertia = mechanics_.system().bodies[i].inertia;
-        for (std::size_t j = first; j < end; ++j) found[j] += share * (torque[j] - inertia * offset_rate_[i][j]);
+        const double inertia = mechanics_.system().bodies[i].inertia;
+        for (const auto& [group, by] : frame.bodies[i]) {
+            Nodes& found = found_[group];
+            const double share = by / frame.inertia[group];
+            for (std::size_t j = first; j < end; ++j) found[j] += share * (torque[j] - inertia * offset_rate_[i][j]);
+        }
     }
     if (m_ > 0) {
         each_node([&](std::size_t j, const Moment& at) {
@@ -266,10 +278,11 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
 void Collocation::guess(Segment& s, const Frame& frame) {
     const auto since = [&s](std::size_t j) { return s.h * (1 + cheb::nodes[j]); };
     for (std::size_t i = 0; i < n_; ++i) {
-        const int g = frame.group[i];
+        const Frame::Shape& shape = frame.bodies[i];
         Nodes &way = s.moved[i], &p = s.y[i], &v = s.y[n_ + i];
         const Nodes &offset = offset_[i], &offset_way = offset_way_[i];
-        const double v0 = g < 0 ? 0 : v[0] - offset[0], a = g < 0 ? 0 : unknown_[index(g)][0], p0 = p[0];
+        const double v0 = shape.empty() ? 0 : v[0] - offset[0], p0 = p[0];
+        const double a = sum_of_groups(shape, [this](std::size_t g) { return unknown_[g][0]; });
         for (std::size_t j = 1; j < node_count; ++j) {
             way[j] = since(j) * (v0 + since(j) * a / 2) + offset_way[j];
             p[j] = p0 + way[j];
@@ -285,7 +298,7 @@ void Collocation::guess(Segment& s, const Frame& frame) {
 /// The first guess where a smooth motion goes on: accelerations and rates do as they did. Whether it does.
 bool Collocation::go_on(const Segment& s, const Frame& frame) {
     constexpr double nearly = 1e-6, longer = 4;
-    const bool follows = end_.t == s.start.hi && !s.from_break && end_.groups == frame.group;
+    const bool follows = end_.t == s.start.hi && !s.from_break && end_.groups == frame.bodies;
     if (!follows || !(s.h <= longer * end_.h)) return false;
     for (std::size_t k = 0; k < end_.unknowns.size(); ++k) {
         const auto& [value, first, second, third] = end_.unknowns[k];
@@ -300,7 +313,7 @@ bool Collocation::go_on(const Segment& s, const Frame& frame) {
 }
 
 void Collocation::remember_end(const Segment& s, const Frame& frame) {
-    end_.t = s.end, end_.h = s.h, end_.groups = frame.group;
+    end_.t = s.end, end_.h = s.h, end_.groups = frame.bodies;
     end_.unknowns.resize(unknown_.size());
     for (std::size_t k = 0; k < unknown_.size(); ++k) {
         const Series series = cheb::fit(unknown_[k]);
@@ -320,20 +333,21 @@ void Collocation::remember_end(const Segment& s, const Frame& frame) {
 /// Velocities and angles from the accelerations of the groups, states from their rates.
 void Collocation::place(Segment& s, const Frame& frame) {
     Nodes velocity{}, way{};
+    of_groups_.resize(frame.groups());
+    for (std::size_t g = 0; g < frame.groups(); ++g) integrate(unknown_[g], s.h, of_groups_[g]);
     placed_.assign(n_, 0);
     for (std::size_t i = 0; i < n_; ++i) {
         if (placed_[i] != 0) continue;
-        const int g = frame.group[i];
-        if (g >= 0) {
-            integrate(unknown_[static_cast<std::size_t>(g)], s.h, velocity);
+        const Frame::Shape& shape = frame.bodies[i];
+        velocity = {}, way = {};
+        for (const auto& [group, by] : shape) add(velocity, of_groups_[group], by);
+        if (!shape.empty()) {
             const double first = s.y[n_ + i][0] - offset_[i][0];
             for (double& v : velocity) v += first;
             integrate(velocity, s.h, way);
-        } else {
-            velocity = {}, way = {};
         }
         for (std::size_t b = i; b < n_; ++b) {
-            if (frame.group[b] != g) continue;
+            if (frame.bodies[b] != shape) continue;
             placed_[b] = 1;
             for (std::size_t j = 1; j < node_count; ++j) {
                 s.moved[b][j] = way[j] + offset_way_[b][j];
@@ -356,18 +370,16 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
     factors_.clear(), last_factors_ = nullptr;
     slopes_known_ = true;
     if (!mechanics_.nonlinear()) {
-        for (const model::Joint& joint : mechanics_.system().joints) {
-            const int a = frame.group[static_cast<std::size_t>(joint.first)];
-            const int b = joint.second < 0 ? Frame::grounded : frame.group[static_cast<std::size_t>(joint.second)];
-            if (a == b) continue;
-            const auto G = static_cast<Eigen::Index>(groups);
-            for (const auto& [row, sign] : {std::pair(a, 1.0), std::pair(b, -1.0)}) {
-                if (row < 0) continue;
-                const double I = frame.inertia[static_cast<std::size_t>(row)];
-                if (a >= 0)
-                    slopes_(row, a) -= sign * joint.stiffness / I, slopes_(row, G + a) -= sign * joint.damping / I;
-                if (b >= 0)
-                    slopes_(row, b) += sign * joint.stiffness / I, slopes_(row, G + b) += sign * joint.damping / I;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const model::Joint& joint = mechanics_.system().joints[j];
+            for (const auto& [on, by] : frame.joints[j]) {
+                const auto row = static_cast<Eigen::Index>(on);
+                const double I = frame.inertia[on];
+                for (const auto& [group, turned] : frame.joints[j]) {
+                    const auto c = static_cast<Eigen::Index>(group);
+                    slopes_(row, c) -= by * turned * joint.stiffness / I;
+                    slopes_(row, static_cast<Eigen::Index>(groups) + c) -= by * turned * joint.damping / I;
+                }
             }
         }
         return true;
@@ -382,7 +394,7 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
         mechanics_.torques(at, mode, belts, loads, of_bodies);
         out.assign(rows, 0);
         for (std::size_t i = 0; i < n_; ++i) {
-            if (frame.group[i] >= 0) out[static_cast<std::size_t>(frame.group[i])] += of_bodies[i];
+            for (const auto& [group, by] : frame.bodies[i]) out[group] += by * of_bodies[i];
         }
         for (std::size_t g = 0; g < groups; ++g) out[g] /= frame.inertia[g];
         mechanics_.rates(at, out.data() + groups);
@@ -391,28 +403,30 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
     std::vector<double> above, below;
     for (std::size_t c = 0; c < columns; ++c) {
         // Which of y go together, and how widely they move on the segment.
-        std::vector<std::size_t> moved;
+        std::vector<std::pair<std::size_t, double>> moved;
         if (c < 2 * groups) {
             const std::size_t from = c < groups ? 0 : n_;
             for (std::size_t i = 0; i < n_; ++i) {
-                if (frame.group[i] == static_cast<int>(c % groups)) moved.push_back(from + i);
+                for (const auto& [group, by] : frame.bodies[i]) {
+                    if (group == c % groups) moved.emplace_back(from + i, by);
+                }
             }
         } else {
-            moved.push_back(2 * n_ + (c - 2 * groups));
+            moved.emplace_back(2 * n_ + (c - 2 * groups), 1);
         }
         double spread = 0;
-        for (const std::size_t k : moved) {
+        for (const auto& [k, by] : moved) {
             const double rate = k < n_ ? s.y[n_ + k][node] : s.f[k][node];
-            spread = std::max(spread, std::fabs(y[k]) + s.h * std::fabs(rate));
+            spread = std::max(spread, (std::fabs(y[k]) + s.h * std::fabs(rate)) / std::fabs(by));
         }
         const double rough =
             c < 2 * groups ? s.h * noise() / frame.inertia[c % groups] : s.h * floor_.noise[n_ + (c - 2 * groups)];
         const double d =
             spread > 0 ? std::max(1e-4 * spread, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
         const std::vector<double> kept = y;
-        for (const std::size_t k : moved) y[k] = kept[k] + d;
+        for (const auto& [k, by] : moved) y[k] = kept[k] + by * d;
         if (!torques(above)) return false;
-        for (const std::size_t k : moved) y[k] = kept[k] - d;
+        for (const auto& [k, by] : moved) y[k] = kept[k] - by * d;
         if (!torques(below)) return false;
         y = kept;
         for (std::size_t r = 0; r < rows; ++r) {
@@ -535,6 +549,14 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
     return made;
 }
 
+double Collocation::size_at(std::size_t joint) const {
+    double size = 0;
+    for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
+        size = std::max(size, sizes_[body] / std::fabs(by));
+    }
+    return size;
+}
+
 void Collocation::find_sizes(const Segment& s) {
     for (std::size_t i = 0; i < n_; ++i) sizes_[i] = sizes_at_start_[i] + greatest(s.torques[i]);
 }
@@ -545,8 +567,7 @@ void Collocation::find_sizes_at_start(const Segment& s, const std::vector<double
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin});
-        sizes_at_start_[index(joint.first)] += size;
-        if (joint.second >= 0) sizes_at_start_[index(joint.second)] += size;
+        for (const auto& [body, by] : joint.of) sizes_at_start_[body] += std::fabs(by) * size;
     }
 }
 
@@ -555,14 +576,14 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     const std::size_t groups = frame.groups(), count = groups + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    if (slopes_of_ != frame.group) slopes_known_ = false, slopes_of_ = frame.group;
+    if (slopes_of_ != frame.bodies) slopes_known_ = false, slopes_of_ = frame.bodies;
     enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
         for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
         for (std::size_t i = 0; i < n_; ++i) {
-            s.f[n_ + i].fill(frame.group[i] < 0 ? 0 : unknown_[index(frame.group[i])][0]);
+            s.f[n_ + i].fill(sum_of_groups(frame.bodies[i], [this](std::size_t g) { return unknown_[g][0]; }));
         }
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
         if (slopes == Slopes::known && mechanics_.nonlinear() && go_on(s, frame)) {
@@ -588,8 +609,12 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 double moves = 0, most = 0;
                 if (k < groups) {
                     for (std::size_t b = 0; b < n_; ++b) {
-                        if (frame.group[b] != static_cast<int>(k)) continue;
-                        moves = std::max(moves, greatest(s.y[n_ + b]) + s.h / frame.inertia[k] * sizes_[b]);
+                        for (const auto& [group, by] : frame.bodies[b]) {
+                            if (group != k) continue;
+                            const double share = std::fabs(by);
+                            moves = std::max(
+                                moves, greatest(s.y[n_ + b]) / share + s.h * share / frame.inertia[k] * sizes_[b]);
+                        }
                     }
                 } else {
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
@@ -648,23 +673,31 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
     const std::size_t groups = frame.groups(), size = 2 * groups + m_;
     unknown_.resize(groups + m_), found_.resize(groups + m_);
     const std::vector<double> none(size, 0);
+    std::vector<double> speeds(groups, 0);  // of the groups, at the start
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double v = s.y[n_ + i][0] - offset_[i][0], momentum = mechanics_.system().bodies[i].inertia * v;
+        for (const auto& [group, by] : frame.bodies[i]) speeds[group] += by * momentum / frame.inertia[group];
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        const Frame::Shape& shape = frame.bodies[i];
+        if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offset_[i][0]) / shape[0].by;
+    }
     /// Of groups the way and the change of velocity, of states the change.
     const auto rates = [&](std::size_t node, const std::vector<double>& change, const std::vector<double>* asked,
                            std::vector<double>& out) {
         for (std::size_t i = 0; i < n_; ++i) {
-            const int g = frame.group[i];
-            const double first = s.y[n_ + i][0] - offset_[i][0];
-            s.moved[i][node] = offset_way_[i][node] + (g < 0 ? 0 : change[index(g)]);
+            const Frame::Shape& shape = frame.bodies[i];
+            const double first = shape.empty() ? 0 : s.y[n_ + i][0] - offset_[i][0];
+            s.moved[i][node] = offset_way_[i][node] + sum_of_groups(shape, [&](std::size_t g) { return change[g]; });
             s.y[i][node] = s.y[i][0] + s.moved[i][node];
             if (node == 0) continue;
-            s.y[n_ + i][node] = offset_[i][node] + (g < 0 ? 0 : first + change[groups + index(g)]);
+            s.y[n_ + i][node] =
+                offset_[i][node] + (first + sum_of_groups(shape, [&](std::size_t g) { return change[groups + g]; }));
         }
         for (std::size_t k = 0; k < m_; ++k) s.y[2 * n_ + k][node] = s.y[2 * n_ + k][0] + change[2 * groups + k];
         if (!evaluate(s, mode, frame, node, node + 1, asked)) return false;
         out.resize(size);
-        for (std::size_t i = 0; i < n_; ++i) {
-            if (frame.group[i] >= 0) out[index(frame.group[i])] = s.y[n_ + i][node] - offset_[i][node];
-        }
+        for (std::size_t g = 0; g < groups; ++g) out[g] = speeds[g] + change[groups + g];
         for (std::size_t k = 0; k < groups + m_; ++k) out[groups + k] = found_[k][node];
         return true;
     };
@@ -713,8 +746,8 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
         for (std::size_t j = 0; j < node_count; ++j) {
-            const double of_group = frame.group[i] < 0 ? 0 : unknown_[static_cast<std::size_t>(frame.group[i])][j];
-            s.f[n_ + i][j] = of_group + offset_rate_[i][j];
+            s.f[n_ + i][j] =
+                sum_of_groups(frame.bodies[i], [&](std::size_t g) { return unknown_[g][j]; }) + offset_rate_[i][j];
         }
     }
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
@@ -748,7 +781,7 @@ void Collocation::fit_series(Segment& s, const Frame& frame, const std::vector<d
         s.series[n_ + i] = cheb::folded(v);
         v[0] += begin[n_ + i];
         for (double& c : v) c *= s.h;
-        s.series[i] = frame.group[i] < 0 ? Series{} : cheb::folded(cheb::integral(v, 0.0));
+        s.series[i] = frame.bodies[i].empty() ? Series{} : cheb::folded(cheb::integral(v, 0.0));
     }
     for (std::size_t k = integrated ? 2 * n_ : 0; k < s.y.size(); ++k) {
         Nodes change{};
@@ -792,7 +825,7 @@ double longer_by(const Series& series, double allowed) {
 /// Nothing where there is no noise.
 std::vector<double> Collocation::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
-    const bool known = slopes_of_ == frame.group && slopes_.rows() == static_cast<Eigen::Index>(count);
+    const bool known = slopes_of_ == frame.bodies && slopes_.rows() == static_cast<Eigen::Index>(count);
     if (!known || std::all_of(floor_.noise.begin(), floor_.noise.end(), [](double x) { return x == 0; })) return {};
     std::vector<double> rough(count);
     Eigen::VectorXd off(static_cast<Eigen::Index>(count));
@@ -827,14 +860,17 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_[i];
         const auto lost = [&] { return tells_rests_ ? 0 : lost_in_time(cheb::fit(s.loads[i]), late, h, torques); };
-        if (frame.group[i] >= 0) {
-            const double per_torque = h / frame.inertia[static_cast<std::size_t>(frame.group[i])];
+        if (const Frame::Shape& shape = frame.bodies[i]; !shape.empty()) {
+            double per_torque = 0, others = 0;
+            for (const auto& [group, by] : shape) {
+                per_torque += h * by * by / frame.inertia[group], others += std::fabs(by) * from_others(group);
+            }
             const Series& series = s.rates[n_ + i];
             const double size = h * cheb::size(series), tail = h * cheb::tail(series);
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
-            allowed += per_torque * noise() + from_others(index(frame.group[i]));
+            allowed += per_torque * noise() + others;
             note(series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
@@ -848,8 +884,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         // What a limit is compared with must be known as well as the motion.
         if (mode.holds(joint)) {
             const Series series = cheb::fit(s.holding[joint]);
-            const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
-            const double torques = sizes_[first],
+            const double torques = size_at(joint),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
             note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
@@ -970,11 +1005,13 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         for (std::size_t g = 0; g < frame.groups(); ++g) {
             double torque = 0, found = 0, allowed = 0;
             for (std::size_t i = 0; i < n_; ++i) {
-                if (frame.group[i] != static_cast<int>(g)) continue;
                 const double I = mechanics_.system().bodies[i].inertia;
-                torque += torques[i];
-                found += I * cheb::value(accelerations[i], x);
-                allowed += I * allowed_[i];
+                for (const auto& [group, by] : frame.bodies[i]) {
+                    if (group != g) continue;
+                    torque += by * torques[i];
+                    found += by * I * cheb::value(accelerations[i], x);
+                    allowed += std::fabs(by) * I * allowed_[i];
+                }
             }
             if (!(std::fabs(torque - found) <= clearly * allowed)) return false;
         }
@@ -1083,10 +1120,11 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     }
     for (std::size_t j = 0; j < mechanics_.joints() && good; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
-        const std::size_t body = index(joint.first);
+        const std::size_t body = joint.first();
         const auto between = [&](std::size_t from) {
-            const Series first = whole(from + body);
-            return joint.second < 0 ? first : difference(first, whole(from + index(joint.second)));
+            Series sum{};
+            for (const auto& [of, by] : joint.of) add(sum, whole(from + of), by);
+            return sum;
         };
         const double size = beside(body);
         if (mechanics_.has_belt(j)) {

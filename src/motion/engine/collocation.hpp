@@ -150,6 +150,8 @@ private:
     bool hides_nothing(Segment& segment, const Mode& mode);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     void find_sizes(const Segment& segment);
+    /// Returns how great the torques on the angle of a joint are, from those on its bodies.
+    [[nodiscard]] double size_at(std::size_t joint) const;
     /// What acts on a body, or the rate of a state.
     [[nodiscard]] const Nodes& acting(const Segment& segment, std::size_t of) const {
         return of < n_ ? segment.torques[of] : segment.f[n_ + of];
@@ -175,17 +177,18 @@ private:
     int unproven_in_a_row_ = 0;                             ///< stretches
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
+    std::vector<Nodes> of_groups_;                          ///< what the velocities of the groups change by
     std::array<std::vector<double>, node_count> points_;    ///< all of y at a node
     /// Of the last stretch: its end, and there each of the unknowns with its first three derivatives.
     struct {
         double t = -model::never, h = 0;
-        std::vector<int> groups{};
+        std::vector<Frame::Shape> groups{};
         std::vector<std::array<double, 4>> unknowns{};
     } end_;
     std::vector<double> torque_, load_, belt_, rate_, scales_;
     std::vector<char> placed_;
     Eigen::MatrixXd slopes_;
-    std::vector<int> slopes_of_;  ///< the groups that they belong to
+    std::vector<Frame::Shape> slopes_of_;  ///< the shapes of bodies for which slopes_ was computed
     bool slopes_known_ = false;
     std::map<double, Factors> factors_;
     std::pair<const double, Factors>* last_factors_ = nullptr;

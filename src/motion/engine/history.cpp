@@ -10,8 +10,8 @@ namespace {
 /// Integrals of products of series are exact.
 class StretchLeg final : public JointLeg {
 public:
-    StretchLeg(const std::vector<Between>& joints, const Kept& kept)
-        : joints_(joints), kept_(kept), works_(joints.size()) {}
+    StretchLeg(const std::vector<model::Joint>& joints, std::size_t bodies, const Kept& kept)
+        : joints_(joints), bodies_(bodies), kept_(kept), works_(joints.size()) {}
     [[nodiscard]] double length() const override { return kept_.length; }
     /// A row at the time at which the stretch ends comes after it, as it did in the run.
     [[nodiscard]] double since_start(double t) const override {
@@ -38,29 +38,21 @@ private:
         return series;
     }
     [[nodiscard]] Integrals integrals(std::size_t joint) const {
-        std::size_t bodies = 0;
-        while (bodies < joints_.size() && joints_[bodies].second < 0 &&
-               joints_[bodies].first == static_cast<int>(bodies)) {
-            ++bodies;
-        }
-        const Between& own = joints_[joint];
+        const model::Joint& own = joints_[joint];
         const Kept::Acting& at_nodes = kept_.acting[joint];
         const Series friction = cheb::fit(at_nodes.friction);
         const Series belt = at_nodes.belt != nullptr ? cheb::fit(*at_nodes.belt) : Series{};
-        Series v = whole(bodies + static_cast<std::size_t>(own.first));
+        Series v{};
+        for (const auto& [body, by] : own.of) add(v, whole(bodies_ + body), by);
         Integrals sums;
         const auto work = [&](const Series& torque, const Series& speed) {
             Integral sum = cheb::integral(cheb::product(torque, speed), 0);
             for (double& c : sum) c *= kept_.h;
             return sum;
         };
-        if (joint < bodies) {
+        if (joint < bodies_) {
             sums.input = work(cheb::fit(at_nodes.M), v);
             if (at_nodes.push != nullptr) sums.base = work(cheb::fit(*at_nodes.push), v);
-        }
-        if (own.second >= 0) {
-            const Series second = whole(bodies + static_cast<std::size_t>(own.second));
-            v = difference(v, second);
         }
         Series damping = v;
         for (double& c : damping) c *= own.damping;
@@ -70,7 +62,8 @@ private:
         return sums;
     }
 
-    const std::vector<Between>& joints_;
+    const std::vector<model::Joint>& joints_;
+    std::size_t bodies_;
     const Kept& kept_;
     mutable std::vector<std::optional<Integrals>> works_;
 };
@@ -144,7 +137,7 @@ void History::legs(const std::function<void(const JointLeg&)>& told) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= for_good_; ++i) {
         for (; jump != jumps_.end() && jump->stretch == i; ++jump) told(JumpLeg(jump->t, jump->joint, jump->work));
-        if (i < for_good_) told(StretchLeg(joints_, list_[i]));
+        if (i < for_good_) told(StretchLeg(joints_, bodies_, list_[i]));
     }
 }
 

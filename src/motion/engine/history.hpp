@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "model/assembly.hpp"
 #include "motion/clock.hpp"
 #include "motion/course.hpp"
 #include "motion/engine/nodes.hpp"
@@ -24,7 +25,7 @@ struct Kept {
     /// What acts at a joint, at the nodes. Those of the bodies with the ground have M and the push of the base on their
     /// body, too.
     struct Acting {
-        Nodes M{}, friction{};                  ///< torques on its first body
+        Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< none where there is no base, or no belt
         bool holds = false;                     ///< friction does not slip
     };
@@ -34,12 +35,6 @@ struct Kept {
         return x <= -1 ? begin[k] : begin[k] + cheb::value(series[k], std::min(x, 1.0));
     }
     [[nodiscard]] double x(double t) const { return start.until(t) / h - 1; }
-};
-
-/// Which bodies a joint is between; the second is -1 for the ground.
-struct Between {
-    int first = 0, second = -1;
-    double damping = 0;
 };
 
 /// A stretch, or what took no time, seen for the energy at its joints.
@@ -54,10 +49,12 @@ public:
 
 class History {
 public:
-    /// `before` is the past of a run that goes on, `most` what may be kept, bytes.
-    History(std::vector<Between> joints, std::vector<double> initial, double t_start,
+    /// Only the weights and the damping of the joints count; each body's with the ground is in its place. `before` is
+    /// the past of a run that goes on, `most` what may be kept, bytes.
+    History(std::vector<model::Joint> joints, std::size_t bodies, std::vector<double> initial, double t_start,
             std::shared_ptr<const History> before, std::size_t most)
         : joints_(std::move(joints)),
+          bodies_(bodies),
           initial_(std::move(initial)),
           t_start_(t_start),
           before_(std::move(before)),
@@ -93,7 +90,8 @@ private:
         std::size_t joint;
         Work work;
     };
-    std::vector<Between> joints_;
+    std::vector<model::Joint> joints_;
+    std::size_t bodies_;
     std::vector<double> initial_;
     double t_start_;
     std::shared_ptr<const History> before_;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
+#include <map>
 
 #include "algebra/decompositions.hpp"
 #include "model/laws/user_law.hpp"
@@ -20,61 +21,69 @@ std::size_t side_of(Motion way) {
     return way == Motion::forward ? 1 : 0;
 }
 
-/// Which bodies are held together, with the ground behind the last one.
-class Union {
-public:
-    explicit Union(std::size_t bodies) : parent_(bodies + 1) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    std::size_t root(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
+void add_shape(Frame::Shape& to, const Frame::Shape& what, double by) {
+    for (const Frame::Share& share : what) {
+        const auto same =
+            std::find_if(to.begin(), to.end(), [&](const Frame::Share& s) { return s.group == share.group; });
+        if (same == to.end()) {
+            to.push_back({share.group, by * share.by});
+        } else {
+            same->by += by * share.by;
+        }
     }
-    /// False when they were together already.
-    bool join(std::size_t a, std::size_t b) {
-        a = root(a), b = root(b);
-        if (a == b) return false;
-        parent_[std::min(a, b)] = std::max(a, b);  // the ground stays a root
-        return true;
-    }
+}
 
-private:
-    std::vector<std::size_t> parent_;
-};
+/// Drops what is no more than the rounding of terms so great.
+void drop_rounding(Frame::Shape& shape, double terms) {
+    constexpr double nothing = 1e-13;
+    const auto is_nothing = [terms](const Frame::Share& share) { return !(std::fabs(share.by) > nothing * terms); };
+    shape.erase(std::remove_if(shape.begin(), shape.end(), is_nothing), shape.end());
+}
+
+double greatest_share(const Frame::Shape& shape) {
+    double most = 0;
+    for (const Frame::Share& share : shape) most = std::max(most, std::fabs(share.by));
+    return most;
+}
+
+/// Returns how the bodies of a joint, but for one, turn it.
+Frame::Shape turned_by(const Joint& joint, const std::vector<Frame::Shape>& bodies,
+                       std::size_t without = ~std::size_t{0}) {
+    Frame::Shape shape;
+    double terms = 0;
+    for (const auto& [body, by] : joint.of) {
+        if (body == without) continue;
+        add_shape(shape, bodies[body], by);
+        terms += std::fabs(by) * greatest_share(bodies[body]);
+    }
+    drop_rounding(shape, terms);
+    return shape;
+}
 
 }  // namespace
 
-Frame::Frame(const model::Assembly& system, const Mode& mode) : group(system.bodies.size(), grounded) {
+Frame::Frame(const model::Assembly& system, const Mode& mode)
+    : bodies(system.bodies.size()), joints(system.joints.size()), system_(&system) {
     const std::size_t n = system.bodies.size();
-    Union together(n);
-    std::vector<std::size_t> tree;
+    std::vector<std::size_t> held;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        if (!mode.holds(j)) continue;
-        const Joint& joint = system.joints[j];
-        const std::size_t second = joint.second < 0 ? n : index(joint.second);
-        (together.join(index(joint.first), second) ? tree : closing).push_back(j);
+        if (mode.holds(j)) held.push_back(j);
     }
-    std::vector<int> of_root(n + 1, grounded);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t root = together.root(i);
-        if (root == together.root(n)) continue;
-        if (of_root[root] == grounded) {
-            of_root[root] = static_cast<int>(inertia.size());
-            inertia.push_back(0);
-        }
-        group[i] = of_root[root];
-        inertia[index(group[i])] += system.bodies[i].inertia;
-    }
-    // From the ground, and then from the first body of each group, outwards.
-    std::vector<char> reached(n, 0);
+    // From the ground, and then from the first body that is free, outwards: a joint with one body more ties that to the
+    // others.
+    std::vector<char> reached(n, 0), used(system.joints.size(), 0);
     const auto grow = [&] {
         for (bool grown = true; grown;) {
             grown = false;
-            for (const std::size_t j : tree) {
-                const Joint& joint = system.joints[j];
-                const bool first = reached[index(joint.first)] != 0;
-                const bool second = joint.second < 0 || reached[index(joint.second)] != 0;
-                if (first == second) continue;
-                edges.push_back(first ? Edge{j, joint.second, joint.first, -1} : Edge{j, joint.first, joint.second, 1});
-                reached[index(edges.back().child)] = 1;
+            for (const std::size_t j : held) {
+                if (used[j] != 0) continue;
+                const std::vector<model::Weight>& of = system.joints[j].of;
+                const auto is_new = [&](const model::Weight& weight) { return reached[weight.body] == 0; };
+                const auto child = std::find_if(of.begin(), of.end(), is_new);
+                if (child == of.end() || std::any_of(child + 1, of.end(), is_new)) continue;
+                add_shape(bodies[child->body], turned_by(system.joints[j], bodies, child->body), -1 / child->by);
+                edges.push_back({j, child->body, child->by});
+                reached[child->body] = used[j] = 1;
                 grown = true;
             }
         }
@@ -82,35 +91,150 @@ Frame::Frame(const model::Assembly& system, const Mode& mode) : group(system.bod
     grow();
     for (std::size_t i = 0; i < n; ++i) {
         if (reached[i] != 0) continue;
+        bodies[i] = {{leads_.size(), 1}};
+        leads_.push_back(i);
         reached[i] = 1;
         grow();
     }
+    std::copy_if(held.begin(), held.end(), std::back_inserter(closing), [&](std::size_t j) { return used[j] == 0; });
+    if (!closing.empty()) {
+        const auto rows = static_cast<Eigen::Index>(closing.size()), leads = static_cast<Eigen::Index>(leads_.size());
+        Eigen::MatrixXd stops = Eigen::MatrixXd::Zero(rows, leads + rows);
+        stops.rightCols(rows).setIdentity();
+        for (Eigen::Index c = 0; c < rows; ++c) {
+            for (const auto& [lead, by] : turned_by(system.joints[closing[static_cast<std::size_t>(c)]], bodies)) {
+                stops(c, static_cast<Eigen::Index>(lead)) = by;
+            }
+        }
+        close_loops(std::move(stops));
+    }
+    separate(system);
+    for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = turned_by(system.joints[j], bodies);
     if (closing.empty()) return;
     // In loops torques are shared as Engine::share_loops shares them: the least sum of squares, of each by how much it
-    // accelerates its two bodies.
-    sharing_of = tree;
+    // accelerates its bodies.
+    for (const Edge& edge : edges) sharing_of.push_back(edge.joint);
+    std::sort(sharing_of.begin(), sharing_of.end());
     sharing_of.insert(sharing_of.end(), closing.begin(), closing.end());
     Eigen::MatrixXd on_bodies =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(sharing_of.size()));
     Eigen::VectorXd weakness(on_bodies.cols());
     for (Eigen::Index c = 0; c < on_bodies.cols(); ++c) {
         const Joint& joint = system.joints[sharing_of[static_cast<std::size_t>(c)]];
-        double lightness = 1 / system.bodies[index(joint.first)].inertia;
-        if (joint.second >= 0) lightness += 1 / system.bodies[index(joint.second)].inertia;
-        weakness(c) = 1 / std::sqrt(lightness);
-        on_bodies(joint.first, c) = weakness(c);
-        if (joint.second >= 0) on_bodies(joint.second, c) = -weakness(c);
+        weakness(c) = 1 / std::sqrt(joint.lightness(system.bodies));
+        for (const auto& [body, by] : joint.of) on_bodies(static_cast<Eigen::Index>(body), c) = by * weakness(c);
     }
     sharing = weakness.asDiagonal() * algebra::pseudo_inverse(on_bodies);
 }
 
-void Frame::offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
-    of_bodies.assign(group.size(), 0);
-    for (const Edge& edge : edges) {
-        const double own = mode.leans[edge.joint] != 0 ? 0 : of_joints[edge.joint];
-        const double before = edge.parent < 0 ? 0 : of_bodies[index(edge.parent)];
-        of_bodies[index(edge.child)] = before + edge.sign * own;
+/// A joint whose angle the others do not keep stops one way to move. Each row has what such a joint says of the leads,
+/// and behind it of which of these joints that was made.
+void Frame::close_loops(Eigen::MatrixXd rows) {
+    const auto leads = static_cast<Eigen::Index>(leads_.size());
+    std::map<Eigen::Index, Eigen::Index> stopped;  // leads, and the row that tells their motion
+    constexpr double nothing = 1e-12;
+    for (Eigen::Index r = 0; r < rows.rows() && leads > 0; ++r) {
+        const double size = std::max(1.0, rows.row(r).tail(rows.rows()).cwiseAbs().maxCoeff());
+        Eigen::Index lead = 0;
+        if (!(rows.row(r).head(leads).cwiseAbs().maxCoeff(&lead) > nothing * size)) continue;
+        rows.row(r) /= rows(r, lead);
+        for (Eigen::Index other = 0; other < rows.rows(); ++other) {
+            if (other != r) rows.row(other) -= Eigen::RowVectorXd(rows(other, lead) * rows.row(r));
+        }
+        stopped[lead] = r;
     }
+    if (stopped.empty()) return;
+    anchor_ = Eigen::MatrixXd::Zero(leads, rows.rows());
+    std::vector<Shape> of_leads(leads_.size());
+    std::size_t free = 0;
+    for (Eigen::Index k = 0; k < leads; ++k) {
+        if (stopped.count(k) == 0) of_leads[static_cast<std::size_t>(k)] = {{free++, 1}};
+    }
+    for (const auto& [lead, row] : stopped) {
+        anchor_.row(lead) = rows.row(row).tail(rows.rows());
+        Shape& own = of_leads[static_cast<std::size_t>(lead)];
+        for (Eigen::Index k = 0; k < leads; ++k) {
+            if (stopped.count(k) == 0) add_shape(own, of_leads[static_cast<std::size_t>(k)], -rows(row, k));
+        }
+        drop_rounding(own, 1);
+    }
+    for (Shape& shape : bodies) {
+        Shape made;
+        double terms = 0;
+        for (const Share& share : shape) {
+            add_shape(made, of_leads[share.group], share.by);
+            terms += std::fabs(share.by) * greatest_share(of_leads[share.group]);
+        }
+        drop_rounding(made, terms);
+        shape = std::move(made);
+    }
+}
+
+/// Makes groups that share bodies orthogonal, and finds the inertia of each.
+void Frame::separate(const model::Assembly& system) {
+    std::size_t count = 0;
+    bool coupled = false;
+    for (const Shape& shape : bodies) {
+        for (const Share& share : shape) count = std::max(count, share.group + 1);
+        coupled = coupled || shape.size() > 1;
+    }
+    if (coupled) {
+        const auto n = static_cast<Eigen::Index>(bodies.size());
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(count));
+        Eigen::VectorXd weights(n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            weights(i) = system.bodies[static_cast<std::size_t>(i)].inertia;
+            for (const auto& [group, by] : bodies[static_cast<std::size_t>(i)]) {
+                columns(i, static_cast<Eigen::Index>(group)) = by;
+            }
+        }
+        constexpr double nothing = 1e-14;
+        for (Eigen::Index g = 1; g < columns.cols(); ++g) {
+            for (int again = 0; again < 2; ++again) {
+                for (Eigen::Index h = 0; h < g; ++h) {
+                    const Eigen::VectorXd other = weights.cwiseProduct(columns.col(h));
+                    const double common = other.dot(columns.col(g));
+                    if (common != 0) columns.col(g) -= common / other.dot(columns.col(h)) * columns.col(h);
+                }
+            }
+        }
+        for (Eigen::Index i = 0; i < n; ++i) {
+            Shape& shape = bodies[static_cast<std::size_t>(i)];
+            shape.clear();
+            for (Eigen::Index g = 0; g < columns.cols(); ++g) {
+                if (std::fabs(columns(i, g)) > nothing) shape.push_back({static_cast<std::size_t>(g), columns(i, g)});
+            }
+        }
+    }
+    inertia.assign(count, 0);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        for (const auto& [group, by] : bodies[i]) inertia[group] += system.bodies[i].inertia * by * by;
+    }
+}
+
+/// From the ground and the leads outwards, in the order of the edges.
+void Frame::go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
+    for (const Edge& edge : edges) {
+        double left = mode.leans[edge.joint] != 0 ? 0 : of_joints[edge.joint];
+        for (const auto& [body, by] : system_->joints[edge.joint].of) {
+            if (body != edge.child) left -= by * of_bodies[body];
+        }
+        of_bodies[edge.child] = left / edge.by;
+    }
+}
+
+void Frame::offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
+    of_bodies.assign(bodies.size(), 0);
+    go_along(of_joints, mode, of_bodies);
+    if (anchor_.size() == 0) return;
+    Eigen::VectorXd lacks(anchor_.cols());
+    for (Eigen::Index c = 0; c < lacks.size(); ++c) {
+        const std::size_t j = closing[static_cast<std::size_t>(c)];
+        lacks(c) = (mode.leans[j] != 0 ? 0 : of_joints[j]) - system_->joints[j].sum(of_bodies);
+    }
+    const Eigen::VectorXd more = anchor_ * lacks;
+    for (std::size_t k = 0; k < leads_.size(); ++k) of_bodies[leads_[k]] = more(static_cast<Eigen::Index>(k));
+    go_along(of_joints, mode, of_bodies);
 }
 
 void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const {
@@ -126,8 +250,10 @@ void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>&
     behind = lacking;
     for (std::size_t e = edges.size(); e-- > 0;) {
         const Edge& edge = edges[e];
-        of_joints[edge.joint] = edge.sign * behind[index(edge.child)];
-        if (edge.parent >= 0) behind[index(edge.parent)] += behind[index(edge.child)];
+        const double torque = of_joints[edge.joint] = behind[edge.child] / edge.by;
+        for (const auto& [body, by] : system_->joints[edge.joint].of) {
+            if (body != edge.child) behind[body] -= by * torque;
+        }
     }
 }
 
@@ -261,12 +387,17 @@ void Mechanics::sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) c
 }
 
 double Mechanics::angle(std::size_t joint, std::span<const double> y) const {
-    const Joint& own = system_.joints[joint];
-    return own.second < 0 ? y[index(own.first)] : y[index(own.first)] - y[index(own.second)];
+    return system_.joints[joint].sum(y);
 }
 
 double Mechanics::velocity(std::size_t joint, std::span<const double> y) const {
     return angle(joint, y.subspan(bodies()));
+}
+
+double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) const {
+    double sum = 0;
+    for (const auto& [body, by] : system_.joints[joint].of) sum += std::fabs(by * y[bodies() + body]);
+    return sum;
 }
 
 double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
@@ -407,8 +538,7 @@ void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<do
     for (std::size_t j = 0; j < joints(); ++j) {
         const double torque = joint_torque(j, at, mode, belts[j]);
         if (torque == 0) continue;
-        of_bodies[index(system_.joints[j].first)] -= torque;
-        if (system_.joints[j].second >= 0) of_bodies[index(system_.joints[j].second)] += torque;
+        for (const auto& [body, by] : system_.joints[j].of) of_bodies[body] -= by * torque;
     }
 }
 
@@ -435,11 +565,11 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
     double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
-    if (own.second >= 0) {  // a difference of two angles is known as well as these
-        const double known = std::fabs(at.y[index(own.first)]) + std::fabs(at.y[index(own.second)]);
+    if (own.of.size() > 1) {  // a sum of angles is known as well as these
+        double known = 0;
+        for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
         constexpr double ulps = 1024 * rounding;
-        size += own.stiffness * known + own.damping * (std::fabs(at.y[bodies() + index(own.first)]) +
-                                                       std::fabs(at.y[bodies() + index(own.second)]));
+        size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
         if (!own.spring.none()) {
             size += std::fabs(own.spring.torque(q + ulps * known) - own.spring.torque(q - ulps * known)) / (2 * ulps);
         }
@@ -504,17 +634,15 @@ double Mechanics::fastest(const Frame& frame) const {
     const auto n = static_cast<Eigen::Index>(frame.groups());
     if (n == 0) return 0;
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-    for (const Joint& joint : system_.joints) {
-        if (joint.stiffness == 0) continue;
-        const int a = frame.group[index(joint.first)];
-        const int b = joint.second < 0 ? Frame::grounded : frame.group[index(joint.second)];
-        if (a == b) continue;
-        const auto scaled = [&](int p, int q) {
-            return joint.stiffness / std::sqrt(frame.inertia[index(p)] * frame.inertia[index(q)]);
-        };
-        if (a >= 0) K(a, a) += scaled(a, a);
-        if (b >= 0) K(b, b) += scaled(b, b);
-        if (a >= 0 && b >= 0) K(a, b) -= scaled(a, b), K(b, a) -= scaled(a, b);
+    for (std::size_t j = 0; j < joints(); ++j) {
+        const double k = system_.joints[j].stiffness;
+        if (k == 0) continue;
+        for (const auto& [p, of_p] : frame.joints[j]) {
+            for (const auto& [q, of_q] : frame.joints[j]) {
+                K(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) +=
+                    of_p * of_q * (k / std::sqrt(frame.inertia[p] * frame.inertia[q]));
+            }
+        }
     }
     if (n == 1) return std::sqrt(K(0, 0));
     return std::sqrt(std::max(0.0, algebra::largest_eigenvalue_of_symmetric(K)));

@@ -15,9 +15,8 @@
 
 namespace dinal::motion::engine {
 
-/// Of a body, which is not the ground.
-constexpr std::size_t index(int body) {
-    return static_cast<std::size_t>(body);
+constexpr std::size_t index(int place) {
+    return static_cast<std::size_t>(place);
 }
 
 /// The rounding of a run: that of the torques on each body, and behind them that of the rate of each state.
@@ -49,33 +48,45 @@ struct Mode {
     std::vector<char> rubs;  ///< of each joint: it has dry friction, and something presses on it
 };
 
-/// The bodies that move together in a mode, and the joints that hold them together.
+/// The ways in which bodies can move while the joints that hold in a mode hold. A group is such a way: its bodies move
+/// in fixed proportions. A body may take part in several groups, as in a planetary gear; these are orthogonal with
+/// respect to the inertias, so that each group has an acceleration of its own.
 struct Frame {
+    struct Share {
+        std::size_t group;
+        double by;
+        bool operator==(const Share&) const = default;
+    };
+    using Shape = std::vector<Share>;  ///< how the groups move a body, or turn a joint; empty: not at all
     struct Edge {
-        std::size_t joint;
-        int child, parent;  ///< bodies; the parent may be the ground
-        double sign;        ///< 1 where the child is the first body of the joint
+        std::size_t joint, child;  ///< the body whose motion the joint ties to that of its others
+        double by;                 ///< the weight of the child
     };
     Frame(const model::Assembly& system, const Mode& mode);
 
-    static constexpr int grounded = -1;
-    std::vector<int> group;               ///< of each body
+    std::vector<Shape> bodies, joints;
     std::vector<double> inertia;          ///< of each group
-    std::vector<Edge> edges;              ///< each body's after its parent's
+    std::vector<Edge> edges;              ///< each after those whose children its others are
     std::vector<std::size_t> closing;     ///< joints that hold, and close loops
     Eigen::MatrixXd sharing;              ///< with loops: what each joint that holds takes of the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< its rows
 
     [[nodiscard]] std::size_t groups() const { return inertia.size(); }
-    [[nodiscard]] bool together(const model::Joint& joint) const {
-        const int a = group[static_cast<std::size_t>(joint.first)];
-        const int b = joint.second < 0 ? grounded : group[static_cast<std::size_t>(joint.second)];
-        return a == b;
-    }
+    /// Returns whether the joints that hold keep the angle of this one.
+    [[nodiscard]] bool keeps(std::size_t joint) const { return joints[joint].empty(); }
     /// Of each body, what it has more than its group, from what each joint has: the velocities of belts.
     void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
-    /// What each joint that holds takes: the torque on its first body. From what each body lacks, I a - torque.
+    /// What each joint that holds takes: the torque on its angle. From what each body lacks, I a - torque.
     void multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const;
+
+private:
+    void go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
+    void close_loops(Eigen::MatrixXd rows);
+    void separate(const model::Assembly& system);
+
+    const model::Assembly* system_;
+    Eigen::MatrixXd anchor_;          ///< what leads have more, by what loops lack that stop one way to move
+    std::vector<std::size_t> leads_;  ///< the first body of each way to move, before loops were closed
 };
 
 /// The least of x G x / 2 + g x within a box; G is symmetric, and not singular.
@@ -181,11 +192,13 @@ public:
     /// How great torques are at a joint: of its springs and its friction.
     [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
 
-    /// What the first body of a joint has at nodes, or as a series, less what the second one has.
+    /// The weighted sum of what the bodies of a joint have, at nodes or as a series.
     [[nodiscard]] Nodes between(std::size_t joint, std::span<const Nodes> of_bodies) const {
-        const model::Joint& own = system_.joints[joint];
-        const Nodes& first = of_bodies[index(own.first)];
-        return own.second < 0 ? first : difference(first, of_bodies[index(own.second)]);
+        const auto& of = system_.joints[joint].of;
+        Nodes sum = of_bodies[of[0].body];
+        if (of[0].by != 1) std::for_each(sum.begin(), sum.end(), [by = of[0].by](double& x) { x *= by; });
+        for (std::size_t k = 1; k < of.size(); ++k) add(sum, of_bodies[of[k].body], of[k].by);
+        return sum;
     }
     /// How fast a joint slips on its belt, at nodes.
     [[nodiscard]] Nodes slips(std::size_t joint, const std::vector<Nodes>& y, const Nodes& belt) const {
@@ -193,6 +206,8 @@ public:
     }
     [[nodiscard]] double angle(std::size_t joint, std::span<const double> y) const;
     [[nodiscard]] double velocity(std::size_t joint, std::span<const double> y) const;
+    /// Returns how great the velocities are of whose sum a joint's is made; it is known no better than their rounding.
+    [[nodiscard]] double speed_scale(std::size_t joint, std::span<const double> y) const;
 
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const;

@@ -1,7 +1,6 @@
 #include "motion/engine/modes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <complex>
 
 #include "algebra/decompositions.hpp"
@@ -14,13 +13,13 @@ std::vector<model::Oscillator> modes_of(const model::Assembly& system) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     A.topRightCorner(n, n).setIdentity();
     for (const model::Joint& joint : system.joints) {
-        const std::array<int, 2> ends{joint.first, joint.second};
-        for (const int of : ends) {
-            for (const int by : ends) {
-                if (of < 0 || by < 0) continue;
-                const double share = (of == by ? -1 : 1) / system.bodies[static_cast<std::size_t>(of)].inertia;
-                A(n + of, by) += share * joint.stiffness;
-                A(n + of, n + by) += share * joint.damping;
+        for (const model::Weight& on : joint.of) {
+            const auto row = n + static_cast<Eigen::Index>(on.body);
+            for (const model::Weight& turned : joint.of) {
+                const auto column = static_cast<Eigen::Index>(turned.body);
+                const double share = -on.by * turned.by / system.bodies[on.body].inertia;
+                A(row, column) += share * joint.stiffness;
+                A(row, n + column) += share * joint.damping;
             }
         }
     }

@@ -27,6 +27,10 @@ inline Series difference(const Series& a, const Series& b) {
     return c;
 }
 
+inline void add(Nodes& sum, const Nodes& values, double by) {
+    for (std::size_t k = 0; k < node_count; ++k) sum[k] += by * values[k];
+}
+
 /// Of a break: the limits from the left and from the right differ there.
 enum class Side { before, at, after };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace dinal::motion::engine {
@@ -21,20 +22,16 @@ private:
     std::size_t joint_;
 };
 
-/// Which numbers of a system's state make the state of a joint: that of its first body less that of its second.
+/// Makes the state of a joint from that of its bodies.
 struct Place {
-    std::size_t bodies, joint, first;
-    std::optional<std::size_t> second;
+    std::size_t bodies, joint;
+    model::Joint weights;
 
-    Place(const model::Assembly& system, std::size_t which)
-        : bodies(system.bodies.size()), joint(which), first(static_cast<std::size_t>(system.joints[which].first)) {
-        if (system.is_link(which)) second = static_cast<std::size_t>(system.joints[which].second);
-    }
-    [[nodiscard]] double difference(const std::vector<double>& values, std::size_t from) const {
-        return second ? values[from + first] - values[from + *second] : values[from + first];
+    Place(const model::Assembly& system, std::size_t which) : bodies(system.bodies.size()), joint(which) {
+        weights.of = system.joints[which].of;
     }
     [[nodiscard]] model::State state(const std::vector<double>& y) const {
-        return {difference(y, 0), difference(y, bodies)};
+        return {weights.sum(y), weights.sum(std::span(y).subspan(bodies))};
     }
 };
 
@@ -88,7 +85,7 @@ bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::
     const model::Joint& own = system.joints[joint];
     return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
         if (&other == &own) return rubs(own) || !system.is_link(joint);
-        const bool touches = other.first == own.first || other.second == own.first;
+        const bool touches = other.is_on(own.first());
         return !other.walls && (rubs(own) || !(touches && rubs(other)));
     });
 }
@@ -98,11 +95,7 @@ bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::
 text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint) {
     const model::Joint& own = system.joints[joint];
     model::OscillatorParameters parameters;
-    parameters.inertia = system.bodies[static_cast<std::size_t>(own.first)].inertia;
-    if (system.is_link(joint)) {
-        const double other = system.bodies[static_cast<std::size_t>(own.second)].inertia;
-        parameters.inertia = parameters.inertia / (parameters.inertia + other) * other;
-    }
+    parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
     parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
     parameters.spring = own.spring, parameters.walls = own.walls;
     if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
@@ -139,7 +132,7 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     part.located = run.located;
     part.t_start = run.t_start;
     part.t_stop = run.t_stop;
-    part.initial = {place.difference(drive.theta0, 0), place.difference(drive.velocity0, 0)};
+    part.initial = {place.weights.sum(drive.theta0), place.weights.sum(drive.velocity0)};
     part.state_at_stop = place.state(run.carry->y);
     part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
     part.began_stuck = run.begun.holds(joint);

@@ -133,6 +133,7 @@ private:
     bool box_of(const std::vector<std::size_t>& held, Box& box);
     bool decide_together(std::size_t full);
     void project(Side when);
+    void put_child(std::size_t joint, std::size_t child, double weight, double place);
     enum class Loads { asked, sampled };
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {},
               Loads from = Loads::asked);
@@ -326,12 +327,12 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
         if (!problem.before->watches.empty()) watches_ = problem.before->watches;
         if (!problem.before->heading.empty()) heading_ = problem.before->heading;
     }
-    std::vector<Between> between;
+    std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
-        between.push_back({joint.first, joint.second, joint.damping});
+        weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping});
         has_walls_ |= joint.walls.has_value();
     }
-    history_ = std::make_shared<History>(std::move(between), y_, now_.hi,
+    history_ = std::make_shared<History>(std::move(weights), n(), y_, now_.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
     mechanics_.for_each_signal([&](const Signal& s) {
         for (const double by : s.delays()) {
@@ -382,7 +383,7 @@ const Frame& Engine::frame() {
     return *frame_;
 }
 
-/// How great the torques at its bodies are.
+/// How great the torques at its bodies are, as torques on its angle.
 double Engine::torque_size(std::size_t joint) const {
     if (sizes_at_ != now_.hi || sizes_.empty()) {
         sizes_.assign(n(), 0);
@@ -394,13 +395,13 @@ double Engine::torque_size(std::size_t joint) const {
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const Joint& own = problem_.system.joints[j];
             const double size = mechanics_.size_of(j, here());
-            sizes_[index(own.first)] += size;
-            if (own.second >= 0) sizes_[index(own.second)] += size;
+            for (const auto& [body, by] : own.of) sizes_[body] += std::fabs(by) * size;
         }
         sizes_at_ = now_.hi;
     }
-    const Joint& own = problem_.system.joints[joint];
-    return sizes_[index(own.first)] + (own.second < 0 ? 0 : sizes_[index(own.second)]);
+    double size = 0;
+    for (const auto& [body, by] : problem_.system.joints[joint].of) size += sizes_[body] / std::fabs(by);
+    return size;
 }
 
 // ---- decisions
@@ -414,8 +415,10 @@ const std::vector<double>& Engine::departing() const {
     departing_ = y_;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!leaves(j)) continue;
-        double& v = departing_[n() + index(problem_.system.joints[j].first)];
-        if (v == 0) v = model::sign_of(mode_.friction[j].way) * std::numeric_limits<double>::min();
+        const model::Weight& first = problem_.system.joints[j].of.front();
+        double& v = departing_[n() + first.body];
+        if (v == 0)
+            v = std::copysign(std::numeric_limits<double>::min(), model::sign_of(mode_.friction[j].way) * first.by);
     }
     return departing_;
 }
@@ -449,13 +452,15 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
     of_group.assign(frame.groups(), 0), lacking.resize(n());
     for (std::size_t i = 0; i < n(); ++i) {
         const double own = problem_.system.bodies[i].inertia * offsets[i];
-        if (frame.group[i] >= 0) of_group[index(frame.group[i])] += result.torques[i] - own;
+        for (const auto& [group, by] : frame.bodies[i]) of_group[group] += by * (result.torques[i] - own);
     }
     result.accelerations.resize(n());
     bool good = true;
     for (std::size_t i = 0; i < n(); ++i) {
-        const int g = frame.group[i];
-        result.accelerations[i] = offsets[i] + (g < 0 ? 0 : of_group[index(g)] / frame.inertia[index(g)]);
+        result.accelerations[i] = offsets[i];
+        for (const auto& [group, by] : frame.bodies[i]) {
+            result.accelerations[i] += by * (of_group[group] / frame.inertia[group]);
+        }
         lacking[i] = problem_.system.bodies[i].inertia * result.accelerations[i] - result.torques[i];
         good = good && std::isfinite(lacking[i]);
     }
@@ -531,13 +536,14 @@ void Engine::find_belt_slopes(std::optional<double> x) {
 /// velocities slip.
 bool Engine::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = problem_.system.joints[joint];
-    if (!frame.together(own)) return false;
+    if (!frame.keeps(joint)) return false;
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;
         frame.offsets(of_joints, mode_, offsets);
-        const double first = offsets[index(own.first)], second = own.second < 0 ? 0 : offsets[index(own.second)];
-        return std::fabs(first - second - of_joints[joint]) <= nearly * (std::fabs(first) + std::fabs(second));
+        double size = 0;
+        for (const auto& [body, by] : own.of) size += std::fabs(by * offsets[body]);
+        return std::fabs(own.sum(offsets) - of_joints[joint]) <= nearly * size;
     };
     std::vector<double> belts(mechanics_.joints()), rates(mechanics_.joints());
     for (std::size_t j = 0; j < belts.size(); ++j) {
@@ -690,9 +696,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const bool lifted = asked_[j].leant != 0 && mode_.leans[j] == 0;
             if (!how.leaving && !lifted) continue;
             const Joint& joint = problem_.system.joints[j];
-            double rate = found.accelerations[index(joint.first)] -
-                          (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
-            const double I = problem_.system.bodies[index(joint.first)].inertia;
+            double rate = joint.sum(found.accelerations);
+            const double I = problem_.system.bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
             const double nothing = 64 * rounding * torque_size(j) + between;
             goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
             if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
@@ -793,7 +798,7 @@ void Engine::creep(std::size_t joint, Motion way, double pull) {
     crept_events_[joint] = event_at(EventKind::stick, static_cast<int>(joint), -1);
 }
 
-/// The torques of joints at slip 0 on their first bodies, within their limits, as a problem of least squares: G times
+/// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times
 /// the torques, plus slope, are the accelerations by which the joints slip.
 struct Engine::Box {
     Eigen::MatrixXd G;
@@ -811,8 +816,7 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const Joint& joint = problem_.system.joints[j];
-        D(joint.first, c) = 1;
-        if (joint.second >= 0) D(joint.second, c) = -1;
+        for (const auto& [body, by] : joint.of) D(static_cast<Eigen::Index>(body), c) = by;
         const bool sticks = rubs(j) && mode_.friction[j].way == Motion::stuck;
         box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
         box.high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
@@ -936,29 +940,37 @@ void Engine::project(Side when) {
     momentum.assign(present.groups(), 0), first.resize(present.groups());
     seen_.assign(present.groups(), 0), alike_.assign(present.groups(), 1);
     for (std::size_t i = 0; i < n(); ++i) {
-        const int g = present.group[i];
         const double v = y_[n() + i] - offsets[i];
-        if (g < 0) {
-            y_[n() + i] = offsets[i];
-            continue;
+        for (const auto& [group, by] : present.bodies[i]) {
+            momentum[group] += by * problem_.system.bodies[i].inertia * v;
+            if (seen_[group] == 0) first[group] = v / by, seen_[group] = 1;
+            if (v != by * first[group] || present.bodies[i].size() > 1) alike_[group] = 0;
         }
-        momentum[index(g)] += problem_.system.bodies[i].inertia * v;
-        if (seen_[index(g)] == 0) first[index(g)] = v, seen_[index(g)] = 1;
-        if (v != first[index(g)]) alike_[index(g)] = 0;
     }
     for (std::size_t i = 0; i < n(); ++i) {
-        const int g = present.group[i];
-        if (g < 0 || alike_[index(g)] != 0) continue;
-        y_[n() + i] = momentum[index(g)] / present.inertia[index(g)] + offsets[i];
+        const Frame::Shape& shape = present.bodies[i];
+        if (std::all_of(shape.begin(), shape.end(), [this](const auto& share) { return alike_[share.group] != 0; })) {
+            if (shape.empty()) y_[n() + i] = offsets[i];
+            continue;
+        }
+        double v = 0;
+        for (const auto& [group, by] : shape) v += by * (momentum[group] / present.inertia[group]);
+        y_[n() + i] = v + offsets[i];
     }
     for (const Frame::Edge& edge : present.edges) {
         const int wall = mode_.leans[edge.joint];
         if (wall == 0) continue;
-        const double at = problem_.system.joints[edge.joint].walls->at(wall);
-        const double base = edge.parent < 0 ? 0 : y_[index(edge.parent)];
-        low_[index(edge.child)] = edge.parent < 0 ? 0 : low_[index(edge.parent)];
-        y_[index(edge.child)] = edge.parent < 0 ? at : base + edge.sign * at;
+        put_child(edge.joint, edge.child, edge.by, problem_.system.joints[edge.joint].walls->at(wall));
     }
+}
+
+/// Puts a body where the angle of a joint is at this place.
+void Engine::put_child(std::size_t joint, std::size_t child, double weight, double place) {
+    double low = 0;
+    for (const auto& [body, by] : problem_.system.joints[joint].of) {
+        if (body != child) place -= by * y_[body], low -= by * low_[body];
+    }
+    y_[child] = place / weight, low_[child] = low / weight;
 }
 
 /// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
@@ -986,11 +998,10 @@ bool Engine::open_and_close() {
         normal_half_[j] = opens ? -1 : 1;
         const Joint& joint = problem_.system.joints[j];
         double fastest = std::fabs(mechanics_.belt(j, now_.hi, side()));
-        for (const int body : {joint.first, joint.second}) {
-            if (body < 0) continue;
-            const double v = y_[n() + index(body)];
-            fastest = std::max(fastest, std::fabs(v));
-            if (opens) heading_[index(body)] = model::motion_of(v);
+        for (const auto& [body, by] : joint.of) {
+            const double v = y_[n() + body];
+            fastest = std::max(fastest, std::fabs(by * v));
+            if (opens) heading_[body] = model::motion_of(v);
         }
         if (!opens && std::fabs(slip(j)) > 16 * rounding * fastest) {
             slide(j, model::motion_of(slip(j)), false);
@@ -1010,7 +1021,9 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
         Slipping& how = mode_.friction[j];
         const double s = slip(j);
         const double belt = mechanics_.belt(j, now_.hi, side());
-        double corner = 4 * rounding * (std::fabs(mechanics_.velocity(j, y_)) + std::fabs(belt));
+        const bool weighted = problem_.system.joints[j].is_weighted();
+        const double known = weighted ? mechanics_.speed_scale(j, y_) : std::fabs(mechanics_.velocity(j, y_));
+        double corner = 4 * rounding * (known + std::fabs(belt));
         if (why == Because::belt && mechanics_.has_belt(j)) {
             // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
             double rate = std::fabs(belt_slope(j).rate);
@@ -1067,7 +1080,8 @@ void Engine::begin() {
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (!rubs(j)) continue;
             const double s = slip(j);
-            if (s != 0) {
+            const bool weighted = problem_.system.joints[j].is_weighted();
+            if (std::fabs(s) > (weighted ? 4 * rounding * mechanics_.speed_scale(j, y_) : 0)) {
                 slide(j, model::motion_of(s), false);
             } else {
                 mode_.friction[j].way = Motion::stuck;
@@ -1116,7 +1130,7 @@ void Engine::run() {
         const Frame& present = frame();
         bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
         for (std::size_t i = 0; i < n(); ++i) {
-            still = still && present.group[i] < 0 && (y_[n() + i] == 0 || problem_.joined_elsewhere);
+            still = still && present.bodies[i].empty() && (y_[n() + i] == 0 || problem_.joined_elsewhere);
         }
         mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.hi; });
         for_good = for_good && mechanics_.states() == 0;
@@ -1201,11 +1215,11 @@ double Engine::until_wall() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         if (!joint.walls || mode_.holds(j)) continue;
-        const double second = joint.second < 0 ? 0 : look_.accelerations[index(joint.second)];
+        const double rate = joint.sum(look_.accelerations);
         for (const int wall : {1, -1}) {
             const double apart = std::max(0.0, wall * gap(j, joint.walls->at(wall)));
             const double v = wall * mechanics_.velocity(j, y_);
-            const double a = wall * (look_.accelerations[index(joint.first)] - second), root = v * v + 2 * a * apart;
+            const double a = wall * rate, root = v * v + 2 * a * apart;
             if (!(root >= 0) || !(apart < model::never)) continue;
             const double t = v > 0   ? 2 * apart / (v + std::sqrt(root))
                              : a > 0 ? (std::sqrt(root) - v) / a
@@ -1228,12 +1242,7 @@ double Engine::longest_under_friction() {
         if (!looked && !look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return longest;
         looked = true;
         const double sign = model::sign_of(how.way);
-        double lightness = 1 / problem_.system.bodies[index(joint.first)].inertia;
-        double first = look_.accelerations[index(joint.first)];
-        if (joint.second >= 0) {
-            lightness += 1 / problem_.system.bodies[index(joint.second)].inertia;
-            first -= look_.accelerations[index(joint.second)];
-        }
+        const double lightness = joint.lightness(problem_.system.bodies), first = joint.sum(look_.accelerations);
         const double C = joint.damping, v = mechanics_.velocity(j, y_);
         const double second = (std::fabs(joint.stiffness * v) + std::fabs(C * first)) * lightness;
         longest = std::min(longest, longest_step(law, law.range(how.range), std::max(0.0, sign * slip(j)), sign * first,
@@ -1548,9 +1557,7 @@ void Engine::go_to(double x) {
 
 /// From the angle of a joint to a place.
 double Engine::gap(std::size_t joint, double place) const {
-    const Joint& own = problem_.system.joints[joint];
-    const double low = own.second < 0 ? low_[index(own.first)] : low_[index(own.first)] - low_[index(own.second)];
-    return (place - mechanics_.angle(joint, y_)) - low;
+    return (place - mechanics_.angle(joint, y_)) - problem_.system.joints[joint].sum(low_);
 }
 
 void Engine::keep(double length) {
@@ -1620,9 +1627,8 @@ bool Engine::handle(const Ending& ending) {
             for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
                 const Slipping& how = mode_.friction[i];
                 if (!rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
-                double size = fastest;
-                const Joint& joint = problem_.system.joints[i];
-                size = std::max(size, greatest(segment_.y[n() + index(joint.first)]));
+                const model::Weight& first = problem_.system.joints[i].of.front();
+                const double size = std::max(fastest, std::fabs(first.by) * greatest(segment_.y[n() + first.body]));
                 if (i == j || std::fabs(slip(i)) <= 64 * rounding * size) arrived_[i] = how.way;
             }
             if (mode_.leans[j] != 0) {  // the belt turns along a mass at a wall
@@ -1699,7 +1705,7 @@ void Engine::tell_user(std::size_t event) {
 
 Event Engine::event_at(EventKind kind, int where, int user) const {
     const std::size_t joint = index(where);
-    const std::size_t body = kind == EventKind::switched ? joint : index(problem_.system.joints[joint].first);
+    const std::size_t body = kind == EventKind::switched ? joint : problem_.system.joints[joint].first();
     Event event{.t = now_.hi, .kind = kind, .M = mechanics_.load(body, here()), .user = user, .where = where};
     event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
     event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
@@ -1730,12 +1736,10 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     const Joint& own = problem_.system.joints[joint];
     const Slipping& how = mode_.friction[joint];
     const double sign = model::sign_of(how.way);
-    const Nodes none{};
-    const Nodes& a = segment_.y[n() + index(own.first)];
-    const Nodes& b = own.second < 0 ? none : segment_.y[n() + index(own.second)];
     const Nodes& belt = segment_.belts[joint];
     const bool leans = mode_.leans[joint] != 0;
-    const double first = how.leaving ? 0 : (leans ? 0 : a[0] - b[0]) - belt[0];
+    const Nodes turns = leans ? Nodes{} : mechanics_.between(joint, std::span(segment_.y).subspan(n()));
+    const double first = how.leaving ? 0 : turns[0] - belt[0];
     Series series{};
     if (!leans) series = mechanics_.between(joint, std::span(segment_.series).subspan(n()));
     if (mechanics_.has_belt(joint)) {
@@ -1744,9 +1748,12 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
         series = difference(series, cheb::fit(change));
     }
     series[0] += first;
-    const double fastest = greatest(a) + greatest(b) + greatest(belt), torques = torque_size(joint);
-    double inertia = problem_.system.bodies[index(own.first)].inertia;
-    if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);
+    double fastest = greatest(belt), inertia = model::never;
+    const double torques = torque_size(joint);
+    for (const auto& [body, by] : own.of) {
+        fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
+        inertia = std::min(inertia, problem_.system.bodies[body].inertia / (by * by));
+    }
     // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
     // the angle.
     const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
@@ -1760,17 +1767,24 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
     Nodes slips{};
     for (std::size_t j = 0; j < node_count; ++j) {
-        slips[j] = sign * (first + ((leans ? 0 : (a[j] - a[0]) - (b[j] - b[0])) - (belt[j] - belt[0])));
+        slips[j] = -(belt[j] - belt[0]);
+    }
+    for (const auto& [body, by] : own.of) {
+        const Nodes& v = segment_.y[n() + body];
+        for (std::size_t j = 0; j < node_count && !leans; ++j) slips[j] += by * (v[j] - v[0]);
+    }
+    for (double& slip : slips) {
+        slip = sign * (first + slip);
     }
     cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series), slips);
-    if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
+    if (own.of.size() > 1 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
     curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
     const auto always = [](double) { return true; };
     const auto start = how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere;
     auto zero = cheb::first_below(curve, -1, start, always);
     if (how.leaving && zero && *zero <= -1 &&
         !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
-        curve.raise_floor(solver_->uncertain(index(own.first), segment_));
+        curve.raise_floor(std::fabs(own.of.front().by) * solver_->uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, start, always);
     }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
@@ -1894,9 +1908,8 @@ void Engine::watch_corner(std::size_t joint, Ending& ending) const {
     if (law.ranges() < 2 || own.friction.function != nullptr || mode_.leans[joint] != 0) return;
     const model::SpeedRange range = law.range(how.range);
     const double sign = model::sign_of(how.way);
-    const Nodes none{};
-    const Nodes& a = segment_.y[n() + index(own.first)];
-    const Nodes& b = own.second < 0 ? none : segment_.y[n() + index(own.second)];
+    double fastest = greatest(segment_.belts[joint]);
+    for (const auto& [body, by] : own.of) fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
     Series series = cheb::fit(mechanics_.slips(joint, segment_.y, segment_.belts[joint]));
     for (double& c : series) c *= sign;
     const auto no = [](double) { return false; };
@@ -1907,7 +1920,7 @@ void Engine::watch_corner(std::size_t joint, Ending& ending) const {
         for (double& c : left) c *= -side;
         left[0] += side * corner;
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
-        curve.raise_floor(16 * rounding * (greatest(a) + greatest(b) + greatest(segment_.belts[joint])));
+        curve.raise_floor(16 * rounding * fastest);
         const bool there = edge_[joint] == side;
         const auto x = cheb::first_below(curve, -1, there ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
         if (x && *x < ending.x) ending = {*x, By::corner, joint, side};
@@ -2233,9 +2246,7 @@ void Engine::come_again(std::size_t event) {
 
 bool Engine::rubs_somewhere(std::size_t body) const {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const Joint& joint = problem_.system.joints[j];
-        const bool its = joint.first == static_cast<int>(body) || joint.second == static_cast<int>(body);
-        if (its && rubs(j)) return true;
+        if (problem_.system.joints[j].is_on(body) && rubs(j)) return true;
     }
     return false;
 }
@@ -2244,7 +2255,7 @@ bool Engine::rubs_somewhere(std::size_t body) const {
 void Engine::record_turns(double until) {
     const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
     for (std::size_t i = 0; i < n(); ++i) {
-        if (rubs_somewhere(i) || frame_->group[i] < 0) continue;
+        if (rubs_somewhere(i) || frame_->bodies[i].empty()) continue;
         const Nodes& v = segment_.y[n() + i];
         const double moving = greatest(v);
         const auto exact = [&](double x) { return segment_.at(n() + i, x); };
@@ -2310,8 +2321,7 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
         }
         Look found;
         if (!look(here(), thrown, Frame(problem_.system, thrown), found)) return -model::never;
-        const double second = own.second < 0 ? 0 : found.accelerations[index(own.second)];
-        return wall * (found.accelerations[index(own.first)] - second);
+        return wall * own.sum(found.accelerations);
     };
     const double out = back_in(true), back = back_in(false);
     if (out == -model::never || back == -model::never) return {};
@@ -2324,15 +2334,11 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
 
 bool Engine::hit(std::size_t joint, int wall) {
     const Joint& own = problem_.system.joints[joint];
-    const auto a = index(own.first);
     const double place = own.walls->at(wall), e = own.walls->restitution;
     const bool stayed = at_wall_[joint] != 0;
-    y_[a] = own.second < 0 ? place : y_[index(own.second)] + place;
-    low_[a] = own.second < 0 ? 0 : low_[index(own.second)];
+    put_child(joint, own.first(), own.of.front().by, place);
     origin_[joint] = place, reach_[joint] = 0;
     const double before = std::max(0.0, wall * mechanics_.velocity(joint, y_));
-    double lightness = 1 / problem_.system.bodies[a].inertia;
-    if (own.second >= 0) lightness += 1 / problem_.system.bodies[index(own.second)].inertia;
     at_wall_[joint] = 1;
     const auto stands = [&] {
         if (mode_.leans[joint] != wall || leaned_[joint] != 0) return;
@@ -2349,16 +2355,17 @@ bool Engine::hit(std::size_t joint, int wall) {
         return !too_often() || fail(Outcome::chattering);
     }
     tell(EventKind::impact, static_cast<int>(joint));
+    // What each body has at relative velocity 0, and how much of that it takes: an impulse conserves momentum.
+    const double lightness = own.lightness(problem_.system.bodies), speed = mechanics_.velocity(joint, y_);
+    std::vector<std::pair<double, double>> velocities;
+    for (const auto& [body, by] : own.of) {
+        const double share = own.of.size() == 1 ? 1 / by : by / problem_.system.bodies[body].inertia / lightness;
+        velocities.emplace_back(own.of.size() == 1 ? 0 : y_[n() + body] - share * speed, share);
+    }
     const auto velocity = [&](double relative) {
-        if (own.second < 0) {
-            y_[n() + a] = relative;
-            return;
+        for (std::size_t k = 0; k < velocities.size(); ++k) {
+            y_[n() + own.of[k].body] = velocities[k].first + velocities[k].second * relative;
         }
-        const auto b = index(own.second);
-        const double Ia = problem_.system.bodies[a].inertia, Ib = problem_.system.bodies[b].inertia;
-        const double middle = (Ia * y_[n() + a] + Ib * y_[n() + b]) / (Ia + Ib);
-        y_[n() + a] = middle + Ib / (Ia + Ib) * relative;
-        y_[n() + b] = middle - Ia / (Ia + Ib) * relative;
     };
     velocity(-wall * e * before);
     has_jumped_ = true;
@@ -2375,9 +2382,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     const double after = rests ? 0 : e * before;
     history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / lightness / 2});
     echo(now_.hi, 1);
-    for (const int body : {own.first, own.second}) {
-        if (body >= 0) heading_[index(body)] = model::motion_of(rests ? 0 : y_[n() + index(body)]);
-    }
+    for (const model::Weight& one : own.of) heading_[one.body] = model::motion_of(rests ? 0 : y_[n() + one.body]);
     if (rests) {
         velocity(0);
         has_jumped_ = true;
