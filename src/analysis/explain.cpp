@@ -36,10 +36,8 @@ bool tells_all(const RunToTell& whole) {
     return several(whole) && !whole.joint;
 }
 
-/// The M of a body; a link has none.
 const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
-    static const model::Excitation none;
-    return whole.system.is_link(joint) ? none : whole.drive.loads[joint];
+    return whole.drive.loads[joint];
 }
 
 /// The natural period of a joint that others do not disturb, or else the shortest in the system, as a measure of times.
@@ -665,7 +663,7 @@ private:
         say("{} and {}, from t = {} to {}.", text::counted(n, "body"), text::counted(links, "link"), time(run_.t_start),
             time(run_.t_stop));
         std::vector<std::string> driven;
-        for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t i = 0; i < n + links; ++i) {
             if (!whole_.drive.loads[i].components().empty()) driven.push_back(name(i));
         }
         driven.empty() ? say("There is no M.") : say("M acts on {}.", fmt::join(driven, " and "));

@@ -243,7 +243,7 @@ Eigen::MatrixXd Runs::allowed(const HeldMode& mode, Index size) const {
         const model::Joint& joint = system().joints[j];
         for (const Index from : {Index{0}, n}) {
             const bool riding = mode.mode.friction[j].riding;
-            const bool holds = from == 0 ? mode.mode.leans[j] != 0 : mode.mode.holds(j) || riding;
+            const bool holds = from == 0 ? mode.mode.keeps_place(j) : mode.mode.holds(j) || riding;
             if (!holds) continue;
             fixed.emplace_back(VectorXd::Zero(size));
             for (const auto& [body, by] : joint.of) fixed.back()[from + static_cast<Index>(body)] = by;

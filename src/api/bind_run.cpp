@@ -562,7 +562,9 @@ lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
 
 std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".excitation");
-    return run->of_body() ? std::optional(run->origin->drive.loads[run->place()]) : std::nullopt;
+    if (run->origin == nullptr) return {};
+    const model::Excitation& load = run->origin->drive.loads[run->place()];
+    return run->of_body() || !load.components().empty() ? std::optional(load) : std::nullopt;
 }
 
 std::optional<motion::Integrator> integrator_of_run(const Run& run) {

@@ -34,6 +34,22 @@ std::vector<std::string> names_for_relays(const model::Assembly& system, const m
     return known;
 }
 
+void check_rigid_start(const lua::Options& options, const model::Assembly& system, const model::Joint& joint,
+                       const std::vector<double>& velocities) {
+    double size = 0;
+    std::string given;
+    for (const auto& [body, by] : joint.of) {
+        size += std::fabs(by * velocities[body]);
+        given += fmt::format("{}{} = {:.6g}", given.empty() ? "" : ", ", system.bodies[body].name, velocities[body]);
+    }
+    const double speed = joint.sum(velocities);
+    constexpr double rounded = 1e-14;
+    if (std::fabs(speed) <= rounded * size) return;
+    options.fail("velocity0", fmt::format("velocity0: the rigid link {} keeps {} as it is, but {} changes it by {:.6g} "
+                                          "per time unit",
+                                          joint.name, system.angle_in_words(joint), given, speed));
+}
+
 }  // namespace
 
 model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::Assembly& system) {
@@ -41,7 +57,7 @@ model::Drive asked_acting(lua_State* L, const lua::Options& options, const model
     const auto named = [&](const char* option, std::size_t joint) {
         return fmt::format("{}: {}", options.call(), part_of_option(system, option, joint));
     };
-    for_each_named(L, options, "M", system, Names::bodies,
+    for_each_named(L, options, "M", system, Names::both,
                    [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
     for_each_named(L, options, "belt", system, Names::both, [&](std::size_t j) {
         drive.belts[j] = to_excitation(L, -1, named("belt", j), "belt");
@@ -52,7 +68,7 @@ model::Drive asked_acting(lua_State* L, const lua::Options& options, const model
     drive.base = read_motion(L, options, "base");
     drive.states = read_states(L, options);
     drive.events = read_events(L, options);
-    for (std::size_t i = 0; i < system.bodies.size(); ++i)
+    for (std::size_t i = 0; i < system.joints.size(); ++i)
         check_relays(options, drive.loads[i], names_for_relays(system, drive), part_of_option(system, "M", i));
     return drive;
 }
@@ -71,6 +87,7 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
     }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const model::Joint& joint = system.joints[j];
+        if (joint.rigid) check_rigid_start(options, system, joint, drive.velocity0);
         if (!joint.walls) continue;
         const double angle = joint.sum(drive.theta0);
         if (auto wrong = joint.walls->crossed_by(angle)) {

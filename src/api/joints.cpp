@@ -40,7 +40,19 @@ constexpr text::Option joint_options[] = {
     model::mechanical_options[7],
 };
 constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
-constexpr auto link_options = text::joined(joint_options, friction_options);
+constexpr text::Option link_numbers[] = {
+    {.name = "ratio",
+     .otherwise = "1",
+     .range = text::not_zero,
+     .meaning =
+         "of an ideal gear between two bodies: the angle is that of the first less ratio times that of the second",
+     .wanted = "a number other than 0"},
+    {.name = "rigid",
+     .otherwise = "false",
+     .meaning = "true: the link keeps the angle that it has at the start, and carries whatever torque that takes",
+     .wanted = "true or false"},
+};
+constexpr auto link_options = text::joined(link_numbers, joint_options, friction_options);
 
 }  // namespace
 
@@ -182,6 +194,78 @@ std::size_t body_index(const lua::Options& options, const model::Assembly& syste
                   .cure = name.empty() ? "" : text::did_you_mean(name, names)});
 }
 
+/// The bodies and weights of the link in the table on the top, which are removed from it.
+std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& options, const model::Assembly& system,
+                                        const std::string& link) {
+    std::vector<model::Weight> weights;
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const std::string& body = system.bodies[i].name;
+        if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL) {
+            const double by = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : 0;
+            if (!std::isfinite(by) || by == 0) {
+                options.fail("links", fmt::format("links.{}: the weight of {} must be a number other than 0, got {}",
+                                                  link, body, lua::describe(L, -1)));
+            }
+            weights.push_back({i, by});
+            lua_pushnil(L);
+            lua_setfield(L, -3, body.c_str());
+        }
+        lua_pop(L, 1);
+    }
+    return weights;
+}
+
+/// A link from the table on the top: between two bodies that it begins with, or of any by their weights.
+model::Joint read_link(lua_State* L, const lua::Options& options, const model::Assembly& system,
+                       const std::string& name) {
+    const int given = lua_gettop(L);
+    const lua_Unsigned listed = lua_rawlen(L, given);
+    lua::push_copy(L, given, static_cast<lua_Integer>(listed));
+    std::vector<model::Weight> weights = take_weights(L, options, system, name);
+    if (!weights.empty() && listed > 0) {
+        options.fail("links", fmt::format("links.{}: name two bodies, or give each body its weight, not both", name));
+    }
+    if (weights.size() == 1) {
+        options.fail("links", fmt::format("links.{} gives {} a weight, but no other body", name,
+                                          system.bodies[weights.front().body].name));
+    }
+    for (lua_Integer end = 1; end <= 2 && weights.size() < 2; ++end) {
+        lua_rawgeti(L, given, end);
+        weights.push_back({body_index(options, system, name, L), end == 1 ? 1.0 : -1.0});
+        lua_pop(L, 1);
+    }
+    if (weights[0].body == weights[1].body) {
+        options.fail("links", fmt::format("links.{} must be between two different bodies", name));
+    }
+    if (listed > 2) {
+        options.fail("links", fmt::format("links.{} is between two bodies, and names {}; give each body its weight for "
+                                          "more: {{ sun = 1, ring = 1.5, carrier = -2.5 }}",
+                                          name, listed));
+    }
+    const std::string call = fmt::format("{}: links.{}", options.call(), name);
+    const text::Call own_call{call.c_str(), "{ \"motor\", \"load\", k = 90 }", link_options};
+    const lua::Options own(L, lua_gettop(L), own_call);
+    double none = 0;
+    model::Joint joint = asked_joint(L, own, none);
+    if (own.has("ratio")) {
+        if (listed == 0) own.fail("ratio", "ratio is for a link that names two bodies; here each has its weight");
+        weights[1].by = -own.number("ratio");
+    }
+    joint.of = std::move(weights);
+    own.push("rigid");
+    if (!lua_isnil(L, -1) && !lua_isboolean(L, -1)) own.wrong("rigid");
+    joint.rigid = lua_toboolean(L, -1) != 0;
+    for (const char* idle : {"k", "C", "spring", "Rd", "Re", "friction", "normal", "walls"}) {
+        if (joint.rigid && own.has(idle)) {
+            own.fail(
+                idle,
+                fmt::format("a rigid link keeps its angle, so {} can do nothing there; leave one of them out", idle));
+        }
+    }
+    lua_pop(L, 2);
+    return joint;
+}
+
 /// Raises where a system with names is given what only a body has.
 void refuse_of_one(const lua::Options& options) {
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
@@ -216,25 +300,10 @@ int push_bodies(lua_State* L, const lua::Options& options) {
                 options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
             }
             lua_getfield(L, -1, name.c_str());
-            std::array<std::size_t, 2> ends{};
-            for (int end = 0; end < 2; ++end) {
-                lua_rawgeti(L, -1, end + 1);
-                ends.at(static_cast<std::size_t>(end)) = body_index(options, system, name, L);
-                lua_pop(L, 1);
-            }
-            if (ends[0] == ends[1]) {
-                options.fail("links", fmt::format("links.{} must be between two different bodies", name));
-            }
-            if (lua_rawlen(L, -1) > 2) {
-                options.fail("links",
-                             fmt::format("links.{} is between two bodies, and names {}", name, lua_rawlen(L, -1)));
-            }
-            lua::push_copy(L, -1, 2);
-            double none = 0;
-            model::Joint joint = read_joint(L, fmt::format("{}: links.{}", options.call(), name), link_options, none);
-            joint.name = name, joint.of = {{ends[0], 1}, {ends[1], -1}};
+            model::Joint joint = read_link(L, options, system, name);
+            joint.name = name;
             system.joints.push_back(std::move(joint));
-            lua_pop(L, 2);
+            lua_pop(L, 1);
         }
         lua_pop(L, 1);
     }
@@ -338,9 +407,21 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
     const model::ContactFriction& friction = joint.friction;
     lua_newtable(L);
     if (system.is_link(j)) {
+        const bool two = joint.of.size() == 2 && joint.of[0].by == 1;
         for (std::size_t k = 0; k < joint.of.size(); ++k) {
-            lua::push_text(L, system.bodies[joint.of[k].body].name);
-            lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
+            const std::string& body = system.bodies[joint.of[k].body].name;
+            if (two) {
+                lua::push_text(L, body);
+                lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
+            } else {
+                lua::set_number(L, body.c_str(), joint.of[k].by);
+            }
+        }
+        if (two && !joint.is_difference()) lua::set_number(L, "ratio", -joint.of[1].by);
+        if (joint.rigid) {
+            lua_pushboolean(L, 1);
+            lua_setfield(L, -2, "rigid");
+            return;
         }
     } else {
         lua::set_number(L, "I", system.bodies[j].inertia);

@@ -81,9 +81,10 @@ inline constexpr text::Option bodies_and_links[] = {
                 "system of one body, against the ground",
      .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
     {.name = "links",
-     .meaning = "connections between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
-                "the options of a body except I; the angle of a link is that of the first body minus that "
-                "of the second",
+     .meaning = "connections between bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
+                "the options of a body except I; the angle of a link is that of the first body minus ratio (1) times "
+                "that of the second, or of { sun = 1, ring = 1.5, carrier = -2.5, ... } the weighted sum; with rigid = "
+                "true the link keeps its angle: an ideal gear, or a coupling",
      .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
 };
 inline constexpr auto system_options =

@@ -65,6 +65,7 @@ struct Joint {
     Spring spring = {};
     ContactFriction friction = {};
     std::optional<Walls> walls = {};
+    bool rigid = false;  ///< holds its angle, whatever that takes
 
     [[nodiscard]] std::size_t first() const { return of.front().body; }
     /// Returns the weighted sum of what its bodies have, such as their angles.

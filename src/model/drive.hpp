@@ -52,12 +52,12 @@ struct Drive {
     /// Several bodies at rest, on which nothing acts.
     [[nodiscard]] static Drive at_rest(std::size_t bodies, std::size_t joints) {
         Drive drive;
-        drive.loads.resize(bodies), drive.belts.resize(joints);
+        drive.loads.resize(joints), drive.belts.resize(joints);
         drive.theta0.resize(bodies), drive.velocity0.resize(bodies);
         return drive;
     }
 
-    std::vector<Excitation> loads;  ///< M of each body
+    std::vector<Excitation> loads;  ///< M of each body and link
     /// The velocity of the surface that the dry friction of each body and link acts against, rad per time unit.
     std::vector<Excitation> belts;
     Excitation base = {};  ///< acceleration of the support, rad per time unit^2; angles are relative to it

@@ -48,7 +48,13 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
         if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
     };
     if (system.is_link(j)) {
-        for (const model::Weight& weight : joint.of) parts.push_back(text::quoted(system.bodies[weight.body].name));
+        const bool two = joint.of.size() == 2 && joint.of[0].by == 1;
+        for (const auto& [body, by] : joint.of) {
+            const std::string& name = system.bodies[body].name;
+            parts.push_back(two ? text::quoted(name) : fmt::format("{} = {}", name, text::number_literal(by)));
+        }
+        if (two && !joint.is_difference()) number("ratio", -joint.of[1].by);
+        if (joint.rigid) parts.emplace_back("rigid = true");
     } else {
         number("I", system.bodies[j].inertia);
     }

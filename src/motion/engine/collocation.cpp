@@ -123,9 +123,12 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       offset_way_(n_),
       rate_(m_) {
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
-    for (std::size_t i = 0; i < n_; ++i) may_be_rough_[i] = mechanics.loads()[i].asks_functions() ? 1 : 0;
-    for (const model::Joint& joint : mechanics.system().joints) {
-        if (joint.spring.none() && joint.friction.function == nullptr && !joint.friction.law.depends_on_speed())
+    may_be_rough_.assign(n_ + m_, 0);
+    std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n_), may_be_rough_.end(), 1);
+    for (std::size_t j = 0; j < mechanics.joints(); ++j) {
+        const model::Joint& joint = mechanics.system().joints[j];
+        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.function == nullptr &&
+            !joint.friction.law.depends_on_speed())
             continue;
         for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;
     }
@@ -134,8 +137,9 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
 void Collocation::make_room(Segment& s) const {
     if (!s.y.empty()) return;
     for (auto of : {&Segment::y, &Segment::f, &Segment::series, &Segment::rates}) (s.*of).resize(2 * n_ + m_);
-    for (auto of : {&Segment::moved, &Segment::loads, &Segment::driven, &Segment::torques}) (s.*of).resize(n_);
-    for (auto of : {&Segment::belts, &Segment::belt_rates, &Segment::holding}) (s.*of).resize(mechanics_.joints());
+    for (auto of : {&Segment::moved, &Segment::torques}) (s.*of).resize(n_);
+    for (auto of : {&Segment::loads, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding})
+        (s.*of).resize(mechanics_.joints());
 }
 
 /// All that depends on the time alone. False when one of the user's functions has failed.
@@ -211,13 +215,13 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         placed = true;
         for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
     };
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         std::copy(s.loads[i].data() + first, s.loads[i].data() + end, s.driven[i].data() + first);
         const Signal& load = mechanics_.loads()[i];
         if (load.asks_the_motion()) {
             each_node([&](std::size_t j, const Moment& at) { s.driven[i][j] += load.of_motion(at); });
         }
-        std::copy(s.driven[i].data() + first, s.driven[i].data() + end, s.torques[i].data() + first);
+        if (i < n_) std::copy(s.driven[i].data() + first, s.driven[i].data() + end, s.torques[i].data() + first);
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         const model::Joint& own = mechanics_.system().joints[joint];
@@ -237,6 +241,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
             const double low = s.low[body];
             for (std::size_t j = first; j < end; ++j) torque[j] += k * (low + (moved[j] - (y[j] - y[0])));
         }
+        for (std::size_t j = first; j < end && joint >= n_; ++j) torque[j] -= s.driven[joint][j];
         for (const auto& [body, by] : own.of) {
             Nodes& on_body = s.torques[body];
             for (std::size_t j = first; j < end; ++j) on_body[j] -= by * torque[j];
@@ -387,9 +392,10 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
     std::vector<double> y(s.y.size());
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][node];
     const auto torques = [&](std::vector<double>& out) {
-        std::vector<double> belts(mechanics_.joints()), loads(n_), of_bodies;
-        for (std::size_t joint = 0; joint < belts.size(); ++joint) belts[joint] = s.belts[joint][node];
-        for (std::size_t i = 0; i < n_; ++i) loads[i] = s.loads[i][node];
+        std::vector<double> belts(mechanics_.joints()), loads(mechanics_.joints()), of_bodies;
+        for (std::size_t joint = 0; joint < belts.size(); ++joint) {
+            belts[joint] = s.belts[joint][node], loads[joint] = s.loads[joint][node];
+        }
         const Moment at{s.times[node], s.side(node), y};
         mechanics_.torques(at, mode, belts, loads, of_bodies);
         out.assign(rows, 0);
@@ -566,7 +572,7 @@ void Collocation::find_sizes_at_start(const Segment& s, const std::vector<double
     for (std::size_t i = 0; i < n_; ++i) sizes_at_start_[i] = greatest(s.loads[i]);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
-        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin});
+        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin}) + (j < n_ ? 0 : greatest(s.loads[j]));
         for (const auto& [body, by] : joint.of) sizes_at_start_[body] += std::fabs(by) * size;
     }
 }
@@ -859,7 +865,14 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     }
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_[i];
-        const auto lost = [&] { return tells_rests_ ? 0 : lost_in_time(cheb::fit(s.loads[i]), late, h, torques); };
+        const auto lost = [&] {
+            double sum = 0;
+            for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
+                const bool acts = j == i || (!mechanics_.loads()[j].none() && mechanics_.system().joints[j].is_on(i));
+                if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late, h, torques);
+            }
+            return sum;
+        };
         if (const Frame::Shape& shape = frame.bodies[i]; !shape.empty()) {
             double per_torque = 0, others = 0;
             for (const auto& [group, by] : shape) {
@@ -880,11 +893,15 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             note(series, 1, allowed);
         }
     }
+    double held = 0;  // what rigid joints pass on
+    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
+        if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
+    }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         // What a limit is compared with must be known as well as the motion.
         if (mode.holds(joint)) {
             const Series series = cheb::fit(s.holding[joint]);
-            const double torques = size_at(joint),
+            const double torques = std::max(size_at(joint), held),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
             note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
@@ -978,9 +995,9 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         return load.asks_in_time() && (seen || unproven_in_a_row_ > 0 || !load.is_read());
     });
     if (!scripts && !mechanics_.nonlinear()) return true;
-    std::vector<Series> loads(n_);
+    std::vector<Series> loads(mechanics_.joints());
     std::vector<Series> accelerations(mechanics_.nonlinear() ? n_ : 0);
-    for (std::size_t i = 0; i < n_; ++i) loads[i] = cheb::fit(s.loads[i]);
+    for (std::size_t i = 0; i < loads.size(); ++i) loads[i] = cheb::fit(s.loads[i]);
     for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
@@ -990,10 +1007,11 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     for (const double x : places) {
         const double t = s.time(x);
         mechanics_.loads_of_time(t, Side::at, load_);
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < loads.size(); ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
-            const double lost = lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
-            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + floor_.noise[i] + lost + smallest;
+            const double size = size_at(i), lost = lost_in_time(loads[i], std::fabs(s.end), s.h, size);
+            const double noise = floor_.noise[mechanics_.system().joints[i].first()];
+            const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             seen_ = t;
             return false;
@@ -1107,7 +1125,10 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     double slowest = model::never;
     for (std::size_t i = 0; i < n_; ++i) {
         slowest = std::min(slowest, beside(i) / mechanics_.system().bodies[i].inertia);
-        look_at_signal(mechanics_.loads()[i], beside(i), rough(i));
+    }
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Weight& first = mechanics_.system().joints[j].of.front();
+        look_at_signal(mechanics_.loads()[j], beside(first.body) / std::fabs(first.by), rough(first.body));
     }
     look_at_signal(mechanics_.base_signal(), slowest, 0);
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
@@ -1212,12 +1233,12 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
     const auto of_motion = [&](const Signal& signal, double t, Side side) {
         return signal.samples_the_motion() ? signal.of_motion({t, side, begin}) : 0;
     };
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const Signal& load = mechanics_.loads()[i];
         if (!load.has_script()) continue;
         Nodes values = s.loads[i];
         for (std::size_t j = 0; j < node_count; ++j) values[j] += of_motion(load, s.times[j], s.side(j));
-        look(values, sizes_[i], [&](double t) {
+        look(values, size_at(i), [&](double t) {
             mechanics_.loads_of_time(t, Side::at, loads);
             return loads[i] + of_motion(load, t, Side::at);
         });

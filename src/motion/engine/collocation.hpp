@@ -30,7 +30,7 @@ struct Segment : NodeTimes {
     std::vector<double> low{};     ///< of each body: what its angle at the beginning has rounded off
     std::vector<Series> series{};  ///< of y, each less its first
     std::vector<Series> rates{};   ///< of f, but for those of the angles
-    std::vector<Nodes> loads{};    ///< of each body: what depends on the time alone
+    std::vector<Nodes> loads{};    ///< of each joint: what depends on the time alone
     std::vector<Nodes> driven{};   ///< of each body: all of its load, and the push of the base
     std::vector<Nodes> torques{};  ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint

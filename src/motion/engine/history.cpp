@@ -50,7 +50,7 @@ private:
             for (double& c : sum) c *= kept_.h;
             return sum;
         };
-        if (joint < bodies_) {
+        if (joint < bodies_ || greatest(at_nodes.M) > 0) {
             sums.input = work(cheb::fit(at_nodes.M), v);
             if (at_nodes.push != nullptr) sums.base = work(cheb::fit(*at_nodes.push), v);
         }

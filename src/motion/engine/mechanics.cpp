@@ -302,8 +302,8 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 
 Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, const Asking& asking)
     : system_(system), drive_(drive), base_(drive.base, &asking) {
-    for (const model::Excitation& load : drive.loads) {
-        loads_.emplace_back(load, &asking);
+    for (std::size_t j = 0; j < joints(); ++j) {
+        loads_.emplace_back(j < drive.loads.size() ? drive.loads[j] : model::Excitation(), &asking);
         nonlinear_ |= loads_.back().asks_the_motion();
     }
     for (const model::OwnState& state : drive.states) rates_.emplace_back(&asking, state.rate.get(), 0);
@@ -375,13 +375,13 @@ double Mechanics::belt(std::size_t joint, double t, Side side) const {
 void Mechanics::sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const {
     Nodes push{};
     if (!base_.none()) base_.sample(when, push);
-    for (std::size_t i = 0; i < bodies(); ++i) {
+    for (std::size_t i = 0; i < joints(); ++i) {
         if (loads_[i].none()) {
             loads[i].fill(0);
         } else {
             loads_[i].sample(when, loads[i]);
         }
-        for (std::size_t j = 0; j < node_count && !base_.none(); ++j)
+        for (std::size_t j = 0; j < node_count && i < bodies() && !base_.none(); ++j)
             loads[i][j] -= system_.bodies[i].inertia * push[j];
     }
 }
@@ -531,12 +531,13 @@ void Mechanics::add_native_friction(std::size_t joint, const Mode& mode, const N
 
 void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<double>& belts,
                         std::vector<double>& loads, std::vector<double>& of_bodies) const {
-    for (std::size_t i = 0; i < bodies(); ++i) {
-        if (loads_[i].asks_the_motion()) loads[i] += loads_[i].of_motion(at);
-    }
-    of_bodies = loads;
     for (std::size_t j = 0; j < joints(); ++j) {
-        const double torque = joint_torque(j, at, mode, belts[j]);
+        if (loads_[j].asks_the_motion()) loads[j] += loads_[j].of_motion(at);
+    }
+    of_bodies.assign(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(bodies()));
+    for (std::size_t j = 0; j < joints(); ++j) {
+        double torque = joint_torque(j, at, mode, belts[j]);
+        if (j >= bodies()) torque -= loads[j];
         if (torque == 0) continue;
         for (const auto& [body, by] : system_.joints[j].of) of_bodies[body] -= by * torque;
     }

@@ -43,9 +43,12 @@ struct Mode {
     std::vector<int> leans;          ///< of each joint: 1 at its upper wall, -1 at its lower one, else 0
 
     [[nodiscard]] bool holds(std::size_t joint) const {
-        return leans[joint] != 0 || (friction[joint].way == model::Motion::stuck && rubs[joint]);
+        return keeps_place(joint) || (friction[joint].way == model::Motion::stuck && rubs[joint]);
     }
-    std::vector<char> rubs;  ///< of each joint: it has dry friction, and something presses on it
+    /// Returns whether the joint holds an angle, not only a velocity.
+    [[nodiscard]] bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
+    std::vector<char> rubs;   ///< of each joint: it has dry friction, and something presses on it
+    std::vector<char> rigid;  ///< of each joint: it holds for ever
 };
 
 /// The ways in which bodies can move while the joints that hold in a mode hold. A group is such a way: its bodies move
@@ -139,24 +142,24 @@ public:
     /// Jumps before this time are behind.
     void forget_jumps(double t) { jumps_.erase(jumps_.begin(), std::lower_bound(jumps_.begin(), jumps_.end(), t)); }
 
-    /// The loads that depend on the time alone, the push of the base among them, on each body. Those that somebody
+    /// The loads that depend on the time alone, of each joint, the push of the base among them. Those that somebody
     /// knows are not asked for.
     template <class Known>
     void loads_of_time(double t, Side side, std::vector<double>& loads, const Known& known) const {
         const double push = base(t, side);
-        loads.resize(bodies());
+        loads.resize(joints());
         for (std::size_t i = 0; i < loads.size(); ++i) {
             const std::optional<double> load = known(i);
             loads[i] = load ? *load : loads_[i].of_time({t, side, {}});
-            if (has_base()) loads[i] -= system_.bodies[i].inertia * push;
+            if (has_base() && i < bodies()) loads[i] -= system_.bodies[i].inertia * push;
         }
     }
     void loads_of_time(double t, Side side, std::vector<double>& loads) const {
         loads_of_time(t, side, loads, [](std::size_t) { return std::optional<double>(); });
     }
     void sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const;
-    /// M of each body.
-    [[nodiscard]] double load(std::size_t body, const Moment& at) const { return loads_[body].value(at); }
+    /// M of each body or link.
+    [[nodiscard]] double load(std::size_t joint, const Moment& at) const { return loads_[joint].value(at); }
     /// All torques on each body but those of what holds; `belts` are the velocities of each joint's. What of the loads
     /// depends on the motion is added to them.
     void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, std::vector<double>& loads,

@@ -133,6 +133,7 @@ private:
     bool box_of(const std::vector<std::size_t>& held, Box& box);
     bool decide_together(std::size_t full);
     void project(Side when);
+    void keep_rigid_places();
     void put_child(std::size_t joint, std::size_t child, double weight, double place);
     enum class Loads { asked, sampled };
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {},
@@ -229,6 +230,8 @@ private:
     Clock now_;
     std::vector<double> y_, low_;         ///< what the angles have rounded off
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
+    std::vector<double> rigid_at_;        ///< the angle that a rigid joint keeps
+    std::optional<Frame> rigid_;          ///< what moves where nothing but rigid joints hold
     Mode mode_, entered_, left_;          ///< now, when the decision in progress began, and before a release
     /// What a decision knows of a joint.
     struct Asked {
@@ -312,7 +315,8 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     y_.resize(y_.size() + mechanics_.bristles().size(), 0);
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
     low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
-    mode_.rubs = mechanics_.rubbing();
+    mode_.rubs = mechanics_.rubbing(), mode_.rigid.assign(joints, 0), rigid_at_.assign(joints, 0);
+    for (std::size_t j = 0; j < joints; ++j) mode_.rigid[j] = problem.system.joints[j].rigid ? 1 : 0;
     arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
     edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
     heading_.assign(n(), Motion::stuck);
@@ -322,11 +326,12 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
         if (!problem.before->low.empty()) low_ = problem.before->low;
         mode_ = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
-        for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
+        for (std::size_t j = 0; j < joints; ++j) mechanics_.loads()[j].remember(problem.before->controllers[j]);
         echoes_ = problem.before->echoes;
         if (!problem.before->watches.empty()) watches_ = problem.before->watches;
         if (!problem.before->heading.empty()) heading_ = problem.before->heading;
     }
+    keep_rigid_places();
     std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
         weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping});
@@ -387,14 +392,14 @@ const Frame& Engine::frame() {
 double Engine::torque_size(std::size_t joint) const {
     if (sizes_at_ != now_.hi || sizes_.empty()) {
         sizes_.assign(n(), 0);
-        for (std::size_t i = 0; i < n() && !segment_.loads.empty(); ++i) {
-            sizes_[i] = greatest(segment_.loads[i]);
-            // What depends on the motion may be 0 here, and would be a little later.
-            if (mechanics_.loads()[i].asks_the_motion()) sizes_[i] = std::max(sizes_[i], greatest(segment_.driven[i]));
-        }
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const Joint& own = problem_.system.joints[j];
-            const double size = mechanics_.size_of(j, here());
+            double load = segment_.loads.empty() ? 0 : greatest(segment_.loads[j]);
+            // What depends on the motion may be 0 here, and would be a little later.
+            if (!segment_.loads.empty() && mechanics_.loads()[j].asks_the_motion()) {
+                load = std::max(load, greatest(segment_.driven[j]));
+            }
+            const double size = load + mechanics_.size_of(j, here());
             for (const auto& [body, by] : own.of) sizes_[body] += std::fabs(by) * size;
         }
         sizes_at_ = now_.hi;
@@ -481,6 +486,7 @@ std::optional<double> Engine::sampled_load(std::size_t body, double x) {
 
 /// How far what holds a joint is beyond what it can hold, and which way it would go.
 double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at, Motion& towards) const {
+    if (mode.rigid[joint] != 0) return -model::never;
     const double pull = -look.holding[joint] * known();  // what only touches a limit holds
     if (const int wall = mode.leans[joint]; wall != 0) {
         towards = wall > 0 ? Motion::backward : Motion::forward;
@@ -821,8 +827,8 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
         box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
         box.high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
-        if (mode_.leans[j] > 0) box.low(c) = -wall;
-        if (mode_.leans[j] < 0) box.high(c) = wall;
+        if (mode_.leans[j] > 0 || mode_.rigid[j] != 0) box.low(c) = -wall;
+        if (mode_.leans[j] < 0 || mode_.rigid[j] != 0) box.high(c) = wall;
         box.slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
     }
     Eigen::VectorXd lightness(static_cast<Eigen::Index>(n())), torques(static_cast<Eigen::Index>(n()));
@@ -844,7 +850,7 @@ bool Engine::decide_together(std::size_t full) {
     mode_ = entered_;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (asked_[j].asked || mode_.leans[j] != 0) held.push_back(j);
+        if (asked_[j].asked || mode_.keeps_place(j)) held.push_back(j);
     }
     Box box;
     if (!box_of(held, box)) return false;
@@ -958,9 +964,17 @@ void Engine::project(Side when) {
         y_[n() + i] = v + offsets[i];
     }
     for (const Frame::Edge& edge : present.edges) {
+        if (!mode_.keeps_place(edge.joint)) continue;
         const int wall = mode_.leans[edge.joint];
-        if (wall == 0) continue;
-        put_child(edge.joint, edge.child, edge.by, problem_.system.joints[edge.joint].walls->at(wall));
+        put_child(edge.joint, edge.child, edge.by,
+                  wall != 0 ? problem_.system.joints[edge.joint].walls->at(wall) : rigid_at_[edge.joint]);
+    }
+}
+
+/// Rigid joints keep the angles that they have now.
+void Engine::keep_rigid_places() {
+    for (std::size_t j = 0; j < rigid_at_.size(); ++j) {
+        if (mode_.rigid[j] != 0) rigid_at_[j] = mechanics_.angle(j, y_) + problem_.system.joints[j].sum(low_);
     }
 }
 
@@ -1351,9 +1365,9 @@ void Engine::explain_end() {
     const auto of = [&](const char* what, const std::string& who) {
         return problem_.system.named ? fmt::format("{} of {}", what, who) : std::string(what);
     };
-    for (std::size_t i = 0; i < n(); ++i) {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const auto load = [this, i](double t) { return mechanics_.load(i, {t, Side::at, y_}); };
-        sources.push_back({of("M", problem_.system.bodies[i].name), load, mechanics_.size_of(i, here())});
+        sources.push_back({of("M", problem_.system.joints[i].name), load, mechanics_.size_of(i, here())});
     }
     sources.push_back({"the base", [&](double t) { return mechanics_.base(t, Side::at); }, 0});
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -1399,16 +1413,17 @@ bool Engine::stands_for_good() {
     bool constant = true;
     mechanics_.for_each_signal([&](const Signal& s) { constant = constant && s.constant_from() <= now_.hi; });
     std::vector<double> greatest_pull(mechanics_.joints()), lacking(n()), held(mechanics_.joints());
-    std::vector<double> none(n()), torques;
+    std::vector<double> none(mechanics_.joints()), torques;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!mechanics_.is_native(j) || mode_.friction[j].riding) return false;
         if (!constant && (mode_.leans[j] != 0 || mode_.friction[j].creeps != Motion::stuck)) return false;
     }
     if (constant) return true;
-    for (std::size_t i = 0; i < n(); ++i) {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const double most = mechanics_.loads()[i].most();
         if (!(most < model::never)) return false;
-        lacking.assign(n(), 0), lacking[i] = 1;
+        lacking.assign(n(), 0);
+        for (const auto& [body, by] : problem_.system.joints[i].of) lacking[body] = by;
         present.multipliers(lacking, held);
         for (std::size_t j = 0; j < held.size(); ++j) greatest_pull[j] += most * std::fabs(held[j]);
     }
@@ -1416,7 +1431,7 @@ bool Engine::stands_for_good() {
     for (std::size_t i = 0; i < n(); ++i) lacking[i] = -torques[i];
     present.multipliers(lacking, held);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!mode_.holds(j)) continue;
+        if (!mode_.holds(j) || mode_.rigid[j] != 0) continue;
         if (!(greatest_pull[j] - held[j] <= mechanics_.holding(j, Motion::forward, here()))) return false;
         if (!(greatest_pull[j] + held[j] <= mechanics_.holding(j, Motion::backward, here()))) return false;
     }
@@ -1573,8 +1588,8 @@ void Engine::keep(double length) {
 std::vector<Kept::Acting> Engine::acting() {
     std::vector<Kept::Acting> all(mechanics_.joints());
     for (std::size_t j = 0; j < all.size(); ++j) {
+        all[j].M = segment_.driven[j];
         if (j < n()) {
-            all[j].M = segment_.driven[j];
             if (mechanics_.has_base()) all[j].push = std::make_unique<Nodes>();
             for (std::size_t node = 0; node < node_count && mechanics_.has_base(); ++node) {
                 double& push = (*all[j].push)[node];
@@ -1705,11 +1720,14 @@ void Engine::tell_user(std::size_t event) {
 
 Event Engine::event_at(EventKind kind, int where, int user) const {
     const std::size_t joint = index(where);
-    const std::size_t body = kind == EventKind::switched ? joint : problem_.system.joints[joint].first();
-    Event event{.t = now_.hi, .kind = kind, .M = mechanics_.load(body, here()), .user = user, .where = where};
-    event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
-    event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
-    return event;
+    const std::size_t loaded = kind == EventKind::switched ? joint : problem_.system.joints[joint].first();
+    return {.t = now_.hi,
+            .kind = kind,
+            .theta = mechanics_.angle(joint, y_),
+            .M = mechanics_.load(loaded, here()),
+            .user = user,
+            .where = where,
+            .velocity = mechanics_.velocity(joint, y_)};
 }
 
 // ---- guards
@@ -1717,7 +1735,7 @@ Event Engine::event_at(EventKind kind, int where, int user) const {
 void Engine::watch(Ending& ending) {
     std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (mode_.holds(j)) watch_release(j, ending);
+        if (mode_.holds(j) && mode_.rigid[j] == 0) watch_release(j, ending);
         if (rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
             watch_slip(j, ending);
             watch_corner(j, ending);
@@ -1976,7 +1994,7 @@ void Engine::watch_normal(std::size_t joint, Ending& ending) {
 }
 
 void Engine::watch_relays(Ending& ending) {
-    for (std::size_t i = 0; i < n(); ++i) {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const Signal& load = mechanics_.loads()[i];
         for (std::size_t r = 0; r < load.relays(); ++r) {
             Nodes values{};
@@ -2355,16 +2373,30 @@ bool Engine::hit(std::size_t joint, int wall) {
         return !too_often() || fail(Outcome::chattering);
     }
     tell(EventKind::impact, static_cast<int>(joint));
-    // What each body has at relative velocity 0, and how much of that it takes: an impulse conserves momentum.
-    const double lightness = own.lightness(problem_.system.bodies), speed = mechanics_.velocity(joint, y_);
-    std::vector<std::pair<double, double>> velocities;
-    for (const auto& [body, by] : own.of) {
-        const double share = own.of.size() == 1 ? 1 / by : by / problem_.system.bodies[body].inertia / lightness;
-        velocities.emplace_back(own.of.size() == 1 ? 0 : y_[n() + body] - share * speed, share);
+    // What each body has at relative velocity 0, and how much of that it takes: an impulse conserves momentum, and what
+    // is linked rigidly takes its part.
+    if (!rigid_) {
+        Mode free = mode_;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) free.leans[j] = 0, free.rubs[j] = 0;
+        rigid_.emplace(problem_.system, free);
+    }
+    double lightness = 0;
+    for (const auto& [group, by] : rigid_->joints[joint]) lightness += by * by / rigid_->inertia[group];
+    const double speed = mechanics_.velocity(joint, y_);
+    std::vector<std::pair<double, double>> velocities(n());
+    for (std::size_t i = 0; i < n(); ++i) {
+        double share = 0;
+        for (const auto& [group, by] : rigid_->bodies[i]) {
+            for (const auto& [own_group, turned] : rigid_->joints[joint]) {
+                if (own_group == group) share += by * turned / rigid_->inertia[group] / lightness;
+            }
+        }
+        velocities[i] = {y_[n() + i] - share * speed, share};
     }
     const auto velocity = [&](double relative) {
-        for (std::size_t k = 0; k < velocities.size(); ++k) {
-            y_[n() + own.of[k].body] = velocities[k].first + velocities[k].second * relative;
+        for (std::size_t i = 0; i < n(); ++i) {
+            const auto& [still, share] = velocities[i];
+            if (share != 0) y_[n() + i] = still + share * relative;
         }
     };
     velocity(-wall * e * before);
@@ -2382,7 +2414,9 @@ bool Engine::hit(std::size_t joint, int wall) {
     const double after = rests ? 0 : e * before;
     history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / lightness / 2});
     echo(now_.hi, 1);
-    for (const model::Weight& one : own.of) heading_[one.body] = model::motion_of(rests ? 0 : y_[n() + one.body]);
+    for (std::size_t i = 0; i < n(); ++i) {
+        if (velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : y_[n() + i]);
+    }
     if (rests) {
         velocity(0);
         has_jumped_ = true;
@@ -2449,6 +2483,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         keep_within_walls(y_);
         has_jumped_ = true;
         if (y_ != before) low_.assign(n(), 0);  // what the user was given is what he goes on from
+        keep_rigid_places();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const double work = energy_at(j, y_) - energy_at(j, before);
             if (work != 0 || j == 0) history_->add_jump(now_.hi, j, {.acts = work});
@@ -2596,9 +2631,11 @@ bool Engine::put_row(double t, double x) {
     for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
         double torque = -mechanics_.joint_torque(j, at, mode_, belt);
+        if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
         if (mode_.holds(j)) torque += look_.holding[j];
-        good = put(mechanics_.angle(j, y)) && good;
-        good = put(mechanics_.velocity(j, y)) && good;
+        const bool kept = mode_.rigid[j] != 0;  // to the letter
+        good = put(kept ? rigid_at_[j] : mechanics_.angle(j, y)) && good;
+        good = put(kept ? 0 : mechanics_.velocity(j, y)) && good;
         good = put(torque) && good;
         good = put(friction(j, at, look_)) && good;
     }

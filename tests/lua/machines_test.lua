@@ -1,0 +1,209 @@
+-- Machines: gears, planetary sets and couplings, torques on links.
+dofile "tests/lua/support.lua"
+
+-- What does not add up is rounding of all that flows.
+local function closes(run)
+    local total = run:energy().total
+    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.viscous), 1))
+end
+
+local M = excitation.harmonic { amplitude = 3, omega = 1.3 }
+
+test("an elastic gear acts like a shaft of the reflected load", function()
+    local n = 4
+    local geared = system { bodies = { motor = { I = 2, C = 0.1 }, load = { I = 5, k = 2, Rd = 0.8 } },
+        links = { gear = { "motor", "load", ratio = n, k = 30, C = 0.2 } } }
+    -- The load turns n times as far on the side of the motor.
+    local shaft = system { bodies = { motor = { I = 2, C = 0.1 }, load = { I = 5 / n ^ 2, k = 2 / n ^ 2, Rd = 0.8 / n } },
+        links = { gear = { "motor", "load", k = 30, C = 0.2 } } }
+    local a, b = geared:simulate { M = { motor = M }, t_end = 20 }, shaft:simulate { M = { motor = M }, t_end = 20 }
+    near(a.motor.theta, b.motor.theta, 1e-12)
+    near(a.load.theta * n, b.load.theta, 1e-12)
+    near(a.gear.torque, b.gear.torque, 1e-11)
+    same_events(a, b, 1e-10)
+    closes(a)
+    equal(geared.gear.k, 30)
+end)
+
+test("a rigid gear is one body of the reflected inertia", function()
+    local n = 3
+    local geared = system { bodies = { motor = { I = 2, C = 0.1 }, load = { I = 5, k = 3, Rd = 0.7, walls = { lower = -0.3, upper = 0.4, restitution = 0.5 } } },
+        links = { gear = { "motor", "load", ratio = n, rigid = true } } }
+    local one = system { I = 5 + 2 * n ^ 2, k = 3, C = 0.1 * n ^ 2, Rd = 0.7, walls = { lower = -0.3, upper = 0.4, restitution = 0.5 } }
+    local start = { theta0 = { motor = 0.1 }, velocity0 = { motor = n, load = 1 } }
+    local run = geared:simulate { M = { motor = M }, t_end = 40, theta0 = start.theta0, velocity0 = start.velocity0 }
+    local reflected = one:simulate { M = n * M, t_end = 40, velocity0 = 1, integrator = integrator.spectral {} }
+    near(run.load.theta, reflected.theta, 1e-11)
+    near(run.motor.theta - 0.1, n * reflected.theta, 3e-11)
+    equal(run.gear.theta:max(), 0.1)
+    equal(run.gear.theta:min(), 0.1)
+    equal(run.gear.velocity:max(), 0)
+    -- It carries what the motor is short of: I a = M - C v + torque.
+    near(run.gear.torque, run.motor.acceleration * 2 - run.motor.M + 0.1 * run.motor.velocity, 1e-11)
+    same_events(run.load, reflected, 1e-10)
+    assert(#reflected.events > 10)
+    closes(run)
+    local again = geared:simulate { M = { motor = M }, t_end = 17.3, theta0 = start.theta0, velocity0 = start.velocity0 }:continue(40)
+    near(again.load.theta[#again], run.load.theta[#run], 1e-11)
+end)
+
+test("friction on both sides of a rigid gear adds up", function()
+    local n = 2
+    local geared = system { bodies = { motor = { I = 1, Rd = 0.2 }, load = { I = 4, k = 6, Rd = 0.5 } },
+        links = { gear = { "motor", "load", ratio = n, rigid = true } } }
+    local one = system { I = 4 + n ^ 2, k = 6, Rd = 0.5 + 0.2 * n }
+    local run = geared:simulate { M = { load = M }, t_end = 30 }
+    local reflected = one:simulate { M = M, t_end = 30 }
+    near(run.load.theta, reflected.theta, 1e-11)
+    same_events(run.load, reflected, 1e-10)
+    closes(run)
+end)
+
+test("a planetary gear shares torques as its formula says", function()
+    local weights = { carrier = 2.5, sun = -1, ring = -1.5 }
+    local I = { carrier = 3, sun = 0.5, ring = 1.2 }
+    local torques = { carrier = -0.7, sun = 2, ring = 0.3 }
+    local set = system { bodies = { carrier = { I = I.carrier }, sun = { I = I.sun }, ring = { I = I.ring } },
+        links = { planet = { carrier = 2.5, sun = -1, ring = -1.5, rigid = true } } }
+    local above, below = 0, 0
+    for name, by in pairs(weights) do
+        above, below = above + by * torques[name] / I[name], below + by ^ 2 / I[name]
+    end
+    local run = set:simulate { M = torques, t_end = 2 }
+    for name, by in pairs(weights) do
+        local a = (torques[name] - by * above / below) / I[name]
+        near(run[name].acceleration[5], a, 1e-14)
+        near(run[name].velocity[#run], 2 * a, 1e-13)
+        near(run[name].theta[#run], 2 * a, 1e-13)
+    end
+    near(run.planet.torque[5], -above / below, 1e-14)
+    closes(run)
+end)
+
+test("a brake on the ring makes a planetary gear a gear, and lets it go", function()
+    local bodies = { carrier = { I = 3, C = 0.3 }, sun = { I = 0.5 }, ring = { I = 1.2, Rd = 5 } }
+    local planet = { planet = { carrier = 2.5, sun = -1, ring = -1.5, rigid = true } }
+    local run = system { bodies = bodies, links = planet }:simulate { M = { sun = M }, t_end = 10 }
+    local n = 2.5
+    local one = system { I = 3 + 0.5 * n ^ 2, k = 0, C = 0.3 }:simulate { M = n * M, t_end = 10 }
+    near(run.carrier.theta, one.theta, 1e-12)
+    equal(run.ring.velocity:max(), 0)
+    equal(#run.ring.events, 0)
+    -- Under the carrier's C and a strong sun the ring slips; its friction then acts by its weight.
+    bodies.ring = { I = 1.2, Rd = 1 }
+    local slips = system { bodies = bodies, links = planet }:simulate { M = { sun = 2 * M }, t_end = 20 }
+    assert(#slips.ring.events > 3)
+    closes(slips)
+    near(2.5 * slips.carrier.velocity, slips.sun.velocity + 1.5 * slips.ring.velocity, 1e-12)
+end)
+
+test("a chain of rigid gears is one body, and loops that agree change nothing", function()
+    local bodies, links, I, ratio = {}, {}, 0, 1
+    for i = 1, 12 do
+        bodies["b" .. i] = { I = 1 + i / 10 }
+        I = I + (1 + i / 10) * ratio ^ 2
+        if i < 12 then
+            local n = i % 2 == 0 and 0.5 or 1.5
+            links["g" .. i] = { "b" .. i, "b" .. i + 1, ratio = n, rigid = true }
+            ratio = ratio / n
+        end
+    end
+    bodies.b1.k, bodies.b1.Rd = 20, 0.4
+    local run = system { bodies = bodies, links = links }:simulate { M = { b12 = M }, t_end = 10 }
+    local one = system { I = I, k = 20, Rd = 0.4 }:simulate { M = ratio * M, t_end = 10 }
+    near(run.b1.theta, one.theta, 1e-12)
+    links.back = { "b1", "b12", ratio = 1 / ratio, rigid = true }
+    local loop = system { bodies = bodies, links = links }:simulate { M = { b12 = M }, t_end = 10 }
+    near(loop.b1.theta, one.theta, 1e-11)
+    closes(loop)
+end)
+
+test("loops of rigid links that disagree lock", function()
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 2 }, c = { I = 1 } },
+        links = { ab = { "a", "b", ratio = 2, rigid = true }, bc = { "b", "c", rigid = true }, ac = { "a", "c", ratio = 3, rigid = true } } }
+    local run = rig:simulate { M = { a = M, c = 1 }, t_end = 5 }
+    for _, name in ipairs { "a", "b", "c" } do
+        equal(run[name].theta:max(), 0)
+        equal(run[name].velocity:min(), 0)
+    end
+    -- a: M + ab + ac = 0, b: -2 ab + bc = 0, c: 1 - bc - 3 ac = 0
+    near(run.ab.torque + run.ac.torque, -run.a.M, 1e-12)
+    near(2 * run.ab.torque, run.bc.torque, 1e-12)
+    near(run.bc.torque + 3 * run.ac.torque, run.c.M, 1e-12)
+end)
+
+test("an impact passes through rigid gears and conserves weighted momentum", function()
+    -- c and b are geared; a strikes b by a link with walls.
+    local n, e = 2, 0.6
+    local rig = system { bodies = { a = { I = 1.5 }, b = { I = 1 }, c = { I = 3 } },
+        links = { play = { "a", "b", walls = { lower = -0.1, upper = 0.1, restitution = e } }, gear = { "b", "c", ratio = n, rigid = true } } }
+    local run = rig:simulate { velocity0 = { a = 1 }, t_end = 0.4 }
+    equal(run.events[1].kind, "impact")
+    local reflected = 1 + 3 / n ^ 2
+    local together = 1.5 / (1.5 + reflected)
+    near(run.a.velocity[#run], together - e * reflected / (1.5 + reflected), 1e-13)
+    near(run.b.velocity[#run], together + e * 1.5 / (1.5 + reflected), 1e-13)
+    near(run.c.velocity[#run], run.b.velocity[#run] / n, 1e-14)
+    closes(run)
+end)
+
+test("a weighted link has friction, walls and belts on its angle", function()
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 4 } }, links = { slip = { "a", "b", ratio = 2, Rd = 0.5 } } }
+    local run = rig:simulate { velocity0 = { a = 3 }, t_end = 6 }
+    -- The slip a - 2 b loses 0.5 (1 + 4/4) a unit of time.
+    equal(#run.events, 1)
+    equal(run.events[1].kind, "stick")
+    near(run.events[1].t, 3, 1e-13)
+    near(run.a.velocity[#run], 1.5, 1e-13)
+    near(run.b.velocity[#run], 0.75, 1e-13)
+    closes(run)
+    local belt = rig:simulate { belt = { slip = 1 }, t_end = 6 }
+    near(belt.a.velocity[#belt] - 2 * belt.b.velocity[#belt], 1, 1e-13)
+    near(belt.events[1].t, 1, 1e-13)
+end)
+
+test("M on a link acts on each body times its weight", function()
+    local n = 3
+    local f = function(t, theta, velocity) return math.sin(t) - 0.3 * (velocity.a - n * velocity.b) end
+    for _, M in ipairs { f, unread(f) } do
+        local linked = system { bodies = { a = { I = 1, k = 2 }, b = { I = 2 } }, links = { gear = { "a", "b", ratio = n } } }
+        local by_hand = system { bodies = { a = { I = 1, k = 2 }, b = { I = 2 } } }
+        local one = linked:simulate { M = { gear = M }, t_end = 10 }
+        local two = by_hand:simulate { M = { a = M, b = function(...) return -n * f(...) end }, t_end = 10 }
+        near(one.a.theta, two.a.theta, 1e-12)
+        near(one.b.theta, two.b.theta, 1e-12)
+        near(one.gear.torque[#one], f(10, nil, { a = one.a.velocity[#one], b = one.b.velocity[#one] }), 1e-11)
+        near(one:energy().input, two:energy().input, 1e-11)
+    end
+    local rigid = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { shaft = { "a", "b", rigid = true } } }
+    local run = rigid:simulate { M = { shaft = 5, a = 3 }, t_end = 1 }
+    near(run.a.velocity[#run], 1, 1e-15)
+    near(run.shaft.torque[1], -2, 1e-14) -- all that it carries, M among it
+    has(tostring(run:explain()), "M acts on")
+end)
+
+test("a machine is written as it was typed, changed and saved", function()
+    local rig = system { bodies = { carrier = { I = 3 }, sun = { I = 0.5 }, ring = { I = 1.2, Rd = 5 } },
+        links = { planet = { carrier = 2.5, sun = -1, ring = -1.5, rigid = true }, gear = { "sun", "ring", ratio = -2, k = 3 } } }
+    has(tostring(rig), "planet = { carrier = 2.5, ring = -1.5, sun = -1, rigid = true }", '"sun", "ring", ratio = -2, k = 3')
+    local softer = rig:with { links = { gear = { k = 1 } } }
+    has(tostring(softer), "carrier = 2.5", '"sun", "ring", ratio = -2, k = 1')
+    equal(tostring(load("return " .. tostring(rig))()), tostring(rig))
+    has(rig:simulate { t_end = 1 }:explain(), "2.5 carrier - 1.5 ring - sun", "sun + 2 ring")
+end)
+
+test("what a gear can not be is said", function()
+    local function links(of) return function() system { bodies = { a = { I = 1 }, b = { I = 1 }, c = { I = 1 } }, links = { l = of } } end end
+    raises(links { "a", "b", ratio = 0 }, "ratio = 0 must not be zero")
+    raises(links { "a", "b", c = 1 }, "name two bodies, or give each body its weight, not both")
+    raises(links { "a", "b", "c" }, "give each body its weight for more")
+    raises(links { a = 1, b = 0 }, "the weight of b must be a number other than 0")
+    raises(links { a = 1 }, "gives a a weight, but no other body")
+    raises(links { a = 1, b = 1, ratio = 2 }, "ratio is for a link that names two bodies")
+    raises(links { "a", "b", rigid = true, k = 1 }, "a rigid link keeps its angle, so k can do nothing there")
+    raises(links { "a", "b", rigid = 1 }, "rigid must be true or false")
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { gear = { "a", "b", ratio = 10, rigid = true } } }
+    raises(function() rig:simulate { velocity0 = { a = 1, b = 0.5 }, t_end = 1 } end, "velocity0: the rigid link gear keeps a - 10 b", "a = 1, b = 0.5", "by -4")
+end)
+
+finish()
