@@ -90,6 +90,7 @@ public:
     }
 
     std::string told() {
+        if (joint_.rigid) return tell_rigid();
         tell_setting();
         tell_start();
         tell_counts();
@@ -166,14 +167,29 @@ private:
         }
     }
 
+    std::string tell_rigid() {
+        say("{} is rigid: it keeps the angle {} at {:.5g}.", joint_.name, whole_.system.angle_in_words(joint_),
+            run_.initial.theta);
+        const auto redundant = motion::engine::redundant_rigid(whole_.system);
+        const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
+        if (std::find(redundant.begin(), redundant.end(), own) != redundant.end()) {
+            say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
+                "with the least sum of squares are told.");
+        }
+        end_paragraph();
+        return std::move(text_);
+    }
+
     void tell_walls() {
-        const auto& walls = system_.walls();
-        if (!walls) return;
+        const model::Walls* walls = joint_.any_walls();
+        if (walls == nullptr) return;
         const bool both = std::isfinite(walls->lower) && std::isfinite(walls->upper);
         say("{} at theta = {}", both ? "There are walls" : "There is a wall",
             both ? fmt::format("{:.5g} and {:.5g}", walls->lower, walls->upper)
                  : fmt::format("{:.5g}", std::isfinite(walls->lower) ? walls->lower : walls->upper));
-        if (walls->restitution == 0) {
+        if (walls->is_elastic()) {
+            add(" that push back with stiffness {:.5g} and damping {:.5g}.", walls->stiffness, walls->damping);
+        } else if (walls->restitution == 0) {
             add(", where an impact stops the mass.");
         } else {
             add("; an impact keeps {} of the speed.", text::percent(walls->restitution));
@@ -191,7 +207,8 @@ private:
         }
         if (impacts == 0) return;
         say("It hit {} {}, first at t = {}",
-            std::isfinite(system_.walls()->lower) && std::isfinite(system_.walls()->upper) ? "the walls" : "the wall",
+            std::isfinite(joint_.any_walls()->lower) && std::isfinite(joint_.any_walls()->upper) ? "the walls"
+                                                                                                 : "the wall",
             text::counted(impacts, "time"), at(first->t));
         add("; the hardest impact had velocity {:.5g}, at t = {}.", hardest->velocity, at(hardest->t));
     }

@@ -29,8 +29,7 @@ bool has_acts(const model::Drive& drive) {
 bool is_linear(const model::Assembly& system, const model::Drive& drive) {
     const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
     const auto bends = [](const model::Joint& joint) {
-        return !joint.spring.none() || joint.walls || !joint.friction.is_constant() ||
-               joint.friction.law.depends_on_speed();
+        return !joint.spring.none() || joint.walls || !joint.is_plain() || joint.friction.law.depends_on_speed();
     };
     return std::none_of(drive.loads.begin(), drive.loads.end(), loaded) &&
            std::none_of(system.joints.begin(), system.joints.end(), bends);

@@ -70,14 +70,14 @@ Chart chart_of(Runs& runs) {
         return i;
     };
     for (const model::Joint& joint : system.joints) {
-        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.any_walls() != nullptr;
         for (const model::Weight& other : joint.of) {
             const Index a = root(static_cast<Index>(joint.first())), b = root(static_cast<Index>(other.body));
             if (asks) part[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
         }
     }
     for (const model::Joint& joint : system.joints) {
-        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.walls.has_value();
+        const bool asks = joint.stiffness != 0 || !joint.spring.none() || joint.any_walls() != nullptr;
         const Index own = root(static_cast<Index>(joint.first()));
         if (asks && joint.of.size() == 1) grounded[static_cast<std::size_t>(own)] = true;
     }

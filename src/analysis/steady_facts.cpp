@@ -97,7 +97,7 @@ bool contracts(const SteadyQuestion& question) {
            std::none_of(drive.loads.begin(), drive.loads.end(), asks) &&
            std::none_of(drive.belts.begin(), drive.belts.end(), asks) &&
            std::all_of(joints.begin(), joints.end(), [](const model::Joint& joint) {
-               return joint.friction.is_constant() && is_monotone(joint.friction.law, joint.spring, joint.walls);
+               return joint.is_plain() && is_monotone(joint.friction.law, joint.spring, joint.walls);
            });
 }
 

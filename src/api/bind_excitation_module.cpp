@@ -224,9 +224,10 @@ int samples_from_file(lua_State* L) {
     options.fill(points);
     points.t = numbers(time);
     points.M = numbers(value);
-    const bool cubic = points.interpolation == model::Interpolation::cubic;
+    const auto between = model::terms::interpolation_names[static_cast<std::size_t>(points.interpolation)];
+    const bool linear = points.interpolation == model::Interpolation::linear;
     points.origin = fmt::format("{}, {{ time = {}, value = {}{}{} }}", text::quoted(file), name(time), name(value),
-                                cubic ? ", interpolation = \"cubic\"" : "",
+                                linear ? "" : fmt::format(", interpolation = \"{}\"", between),
                                 points.period ? ", period = " + text::number_literal(*points.period) : std::string());
     return push_term(L, std::make_shared<const model::Samples>(std::move(points)));
 }

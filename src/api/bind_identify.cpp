@@ -324,6 +324,12 @@ void change_numbers(model::Assembly& system, std::size_t j, const Change& change
         }
         joint.spring = spring;
     }
+    if (joint.stops) {
+        change("walls.lower", joint.stops->lower, Sign::any);
+        change("walls.upper", joint.stops->upper, Sign::any);
+        change("walls.stiffness", joint.stops->stiffness, Sign::positive);
+        change("walls.damping", joint.stops->damping, Sign::not_negative);
+    }
     if (joint.walls) {
         change("walls.lower", joint.walls->lower, Sign::any);
         change("walls.upper", joint.walls->upper, Sign::any);

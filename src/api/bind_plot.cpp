@@ -411,7 +411,7 @@ int plot_run(lua_State* L) {
 int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
-    if (run->origin && !(run->system().joints.size() == 1 && run->system().joints.front().friction.is_constant())) {
+    if (run->origin && !(run->system().joints.size() == 1 && run->system().joints.front().is_plain())) {
         options.fail({fmt::format(
             "the phase plane is that of a system of one body with constant Rd and Re; use run{}:plot{{ x = "
             "\"theta\", y = \"velocity\" }}",

@@ -388,7 +388,12 @@ const model::Units& units_of(const Run& run) {
 
 std::optional<lua::NamedNumbers> walls_by_name(const std::optional<model::Walls>& walls) {
     if (!walls) return {};
-    lua::NamedNumbers numbers{{"lower", walls->lower}, {"upper", walls->upper}, {"restitution", walls->restitution}};
+    lua::NamedNumbers numbers{{"lower", walls->lower}, {"upper", walls->upper}};
+    if (walls->is_elastic()) {
+        numbers.insert(numbers.end(), {{"stiffness", walls->stiffness}, {"damping", walls->damping}});
+    } else {
+        numbers.emplace_back("restitution", walls->restitution);
+    }
     std::erase_if(numbers, [](const auto& one) { return std::isinf(one.second); });
     return numbers;
 }

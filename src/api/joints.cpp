@@ -146,6 +146,7 @@ model::Joint asked_joint(lua_State* L, const lua::Options& options, double& iner
     joint.spring = asked_spring(L, options).value_or(model::Spring());
     joint.walls = asked_walls(L, options);
     if (const auto wrong = joint.walls ? joint.walls->complaint() : std::nullopt) options.fail(*wrong);
+    if (joint.walls && joint.walls->is_elastic()) std::swap(joint.walls, joint.stops);
     return joint;
 }
 
@@ -162,7 +163,11 @@ text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system) {
         return text::Error{fmt::format("needs one body, and this system has names: take one of them, such as sys.{}",
                                        system.joints.front().name)};
     }
-    if (!system.is_plain()) return text::Error{"needs constant friction, and that of this system varies"};
+    if (!system.is_plain()) {
+        return text::Error{system.joints.front().friction.is_constant()
+                               ? "needs rigid walls, and those of this system are elastic"
+                               : "needs constant friction, and that of this system varies"};
+    }
     return engine::seen_alone(system, 0);
 }
 
@@ -449,7 +454,7 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
     acting("Re", friction.holding[1]);
     acting("normal", friction.normal);
     if (!joint.spring.none()) lua::set_value(L, "spring", joint.spring);
-    lua::set_value(L, "walls", walls_by_name(joint.walls));
+    lua::set_value(L, "walls", walls_by_name(joint.stops ? joint.stops : joint.walls));
 }
 
 namespace {

@@ -230,7 +230,7 @@ public:
         choose();
         function_ = options.has("at");
         if (!system_->is_plain() && !function_) {
-            options.fail("at", "a system of bodies with names, or with a friction that varies, needs at, such as " +
+            options.fail("at", "a system with names, elastic walls or a friction that varies needs at, such as " +
                                    std::string(at_call.example));
         }
         if (function_) place_ = push_function(L, options, "at");

@@ -64,8 +64,9 @@ struct Joint {
     double stiffness = 0, damping = 0;
     Spring spring = {};
     ContactFriction friction = {};
-    std::optional<Walls> walls = {};
-    bool rigid = false;  ///< holds its angle, whatever that takes
+    std::optional<Walls> walls = {};  ///< rigid ones
+    std::optional<Walls> stops = {};  ///< elastic ones
+    bool rigid = false;               ///< holds its angle, whatever that takes
 
     [[nodiscard]] std::size_t first() const { return of.front().body; }
     /// Returns the weighted sum of what its bodies have, such as their angles.
@@ -78,6 +79,9 @@ struct Joint {
     [[nodiscard]] bool is_on(std::size_t body) const {
         return std::any_of(of.begin(), of.end(), [body](const Weight& weight) { return weight.body == body; });
     }
+    [[nodiscard]] const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
+    /// Returns whether it is what an Oscillator can be.
+    [[nodiscard]] bool is_plain() const { return friction.is_constant() && !stops; }
     /// Returns whether it links two bodies without a gear.
     [[nodiscard]] bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
     /// Returns whether sums of what its bodies have are rounded where they are 0.
@@ -101,8 +105,8 @@ struct Assembly {
     bool named = true;
     Units units = {};
 
-    /// One body without a name, whose friction depends on its speed alone: an Oscillator says all of it.
-    [[nodiscard]] bool is_plain() const { return !named && joints.front().friction.is_constant(); }
+    /// One body without a name, of which an Oscillator says all.
+    [[nodiscard]] bool is_plain() const { return !named && joints.front().is_plain(); }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     [[nodiscard]] bool is_linked(std::size_t body) const {
         return std::any_of(joints.begin() + static_cast<std::ptrdiff_t>(bodies.size()), joints.end(),

@@ -16,8 +16,9 @@ enum class EventKind {
     user,      ///< what a user asked for, by its name
     opened,    ///< nothing presses on the contact any more
     closed,    ///< something presses on it again
+    released,  ///< an elastic wall pushes no more
 };
-inline constexpr int event_kind_count = 9;
+inline constexpr int event_kind_count = 10;
 
 constexpr std::string_view name(EventKind kind) {
     switch (kind) {
@@ -39,6 +40,8 @@ constexpr std::string_view name(EventKind kind) {
             return "open";
         case EventKind::closed:
             return "close";
+        case EventKind::released:
+            return "release";
     }
     return "";
 }

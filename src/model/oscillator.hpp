@@ -60,7 +60,9 @@ inline constexpr text::Option mechanical_options[] = {
      .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
     {.name = "walls",
      .unit = "rad",
-     .meaning = "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given",
+     .meaning =
+         "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given; elastic "
+         "ones are { lower, upper, stiffness, damping }",
      .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
      .fields = {&walls_call}},
 };

@@ -18,6 +18,12 @@ std::optional<text::Error> Walls::complaint() const {
             .sentence = fmt::format("walls: lower = {:.6g} must be less than upper = {:.6g}", lower, upper),
             .option = "lower"};
     }
+    if (is_elastic() ? restitution != 1 : damping != 0) {
+        return text::Error{
+            .sentence = is_elastic() ? "walls: restitution is of rigid walls, stiffness and damping of elastic ones"
+                                     : "walls: damping needs stiffness, which makes walls elastic",
+            .option = is_elastic() ? "restitution" : "damping"};
+    }
     if (!from_0_to_1.holds(restitution)) {
         return text::Error{
             .sentence = fmt::format("walls: restitution = {:.6g} must {}", restitution, from_0_to_1.must),
@@ -37,6 +43,10 @@ std::string Walls::lua_text() const {
     std::string text;
     if (std::isfinite(lower)) text += fmt::format("lower = {}, ", text::number_literal(lower));
     if (std::isfinite(upper)) text += fmt::format("upper = {}, ", text::number_literal(upper));
+    if (is_elastic()) {
+        text += "stiffness = " + text::number_literal(stiffness);
+        return "{ " + text + (damping != 0 ? ", damping = " + text::number_literal(damping) : "") + " }";
+    }
     return "{ " + text + "restitution = " + text::number_literal(restitution) + " }";
 }
 

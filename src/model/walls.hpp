@@ -1,4 +1,5 @@
-// End stops: two walls, or one, between which the mass moves, and what an impact leaves of its velocity.
+// End stops: two walls, or one, between which the mass moves. Rigid ones leave a part of its velocity after an impact,
+// elastic ones push back: the torque k x + C x' at the depth x, where that is positive.
 #pragma once
 
 #include <limits>
@@ -10,13 +11,20 @@ namespace dinal::model {
 
 /// velocity+ = -restitution velocity-, against the ground.
 struct Walls {
-    double lower = -std::numeric_limits<double>::infinity();  ///< rad; -infinity is none
-    double upper = std::numeric_limits<double>::infinity();   ///< rad, above lower; infinity is none
-    double restitution = 1;                                   ///< 0 ... 1
+    double lower = -std::numeric_limits<double>::infinity();     ///< rad; -infinity is none
+    double upper = std::numeric_limits<double>::infinity();      ///< rad, above lower; infinity is none
+    double restitution = 1;                                      ///< 0 ... 1
+    double stiffness = std::numeric_limits<double>::infinity();  ///< torque per rad; infinite: rigid
+    double damping = 0;                                          ///< torque time per rad, of elastic walls
 
     /// The wall in the way of a motion towards positive angles, or of the other one.
     [[nodiscard]] double at(int side) const { return side > 0 ? upper : lower; }
     [[nodiscard]] bool alike() const { return lower == -upper; }
+    [[nodiscard]] bool is_elastic() const { return stiffness < std::numeric_limits<double>::infinity(); }
+    /// The torque that the wall on this side takes from what presses on it there.
+    [[nodiscard]] double torque(int side, double theta, double velocity) const {
+        return stiffness * (theta - at(side)) + damping * velocity;
+    }
 
     /// What is wrong with them, for the person who gave them.
     [[nodiscard]] std::optional<text::Error> complaint() const;
@@ -33,6 +41,12 @@ inline constexpr text::Option wall_options[] = {
      text::fills<&Walls::upper>},
     {"restitution", "", text::its_own, from_0_to_1,
      "ratio of the speeds after and before an impact; 0: the mass stops at the wall", text::fills<&Walls::restitution>},
+    {"stiffness", "torque per rad", text::its_own, text::positive,
+     "of elastic walls, which take the torque stiffness x + damping x' at the depth x while that is positive; rigid if "
+     "not given",
+     text::fills<&Walls::stiffness>},
+    {"damping", "torque time per rad", text::its_own, text::not_negative, "of elastic walls",
+     text::fills<&Walls::damping>},
 };
 inline constexpr text::Call walls_call{"walls", "walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }",
                                        wall_options};

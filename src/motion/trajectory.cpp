@@ -63,9 +63,10 @@ std::string events_text(std::span<const model::Event> events) {
     std::array<std::size_t, model::event_kind_count> counts{};
     for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
     std::string parts;
-    for (const model::EventKind kind : {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip,
-                                        model::EventKind::rest, model::EventKind::impact, model::EventKind::switched,
-                                        model::EventKind::opened, model::EventKind::closed, model::EventKind::user}) {
+    for (const model::EventKind kind :
+         {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest,
+          model::EventKind::impact, model::EventKind::released, model::EventKind::switched, model::EventKind::opened,
+          model::EventKind::closed, model::EventKind::user}) {
         const std::size_t n = counts.at(static_cast<std::size_t>(kind));
         if (n == 0) continue;
         if (!parts.empty()) parts += ", ";

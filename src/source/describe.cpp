@@ -65,7 +65,7 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
     }
     number("C", joint.damping);
     if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
-    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
+    if (const model::Walls* walls = joint.any_walls()) parts.push_back("walls = " + walls->lua_text());
     const model::ContactFriction& friction = joint.friction;
     const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
         if (value) parts.push_back(fmt::format("{} = {}", name, describe(L, *value, whole)));
@@ -131,7 +131,11 @@ std::string text_of(const Context& context, const model::Polyline& line) {
     if (!s.origin.empty()) {
         return fmt::format("excitation.samples({}){}", s.origin, delay_text(s.delay));
     }
-    std::string between = s.interpolation == model::Interpolation::cubic ? ", interpolation = \"cubic\"" : "";
+    std::string between;
+    if (s.interpolation != model::Interpolation::linear) {
+        between = fmt::format(", interpolation = \"{}\"",
+                              model::terms::interpolation_names[static_cast<std::size_t>(s.interpolation)]);
+    }
     if (s.period) between += ", period = " + text::number_literal(*s.period);
     if (s.t.size() <= most_written_out) {
         return fmt::format("excitation.samples{{ t = {}, M = {}{} }}", text::list_literal(s.t), text::list_literal(s.M),

@@ -115,6 +115,7 @@ test("a chain of rigid gears is one body, and loops that agree change nothing", 
     links.back = { "b1", "b12", ratio = 1 / ratio, rigid = true }
     local loop = system { bodies = bodies, links = links }:simulate { M = { b12 = M }, t_end = 10 }
     near(loop.b1.theta, one.theta, 1e-11)
+    says(loop, "It closes a loop of rigid links")
     closes(loop)
 end)
 
@@ -172,6 +173,7 @@ test("M on a link acts on each body times its weight", function()
         local two = by_hand:simulate { M = { a = M, b = function(...) return -n * f(...) end }, t_end = 10 }
         near(one.a.theta, two.a.theta, 1e-12)
         near(one.b.theta, two.b.theta, 1e-12)
+        closes(one)
         near(one.gear.torque[#one], f(10, nil, { a = one.a.velocity[#one], b = one.b.velocity[#one] }), 1e-11)
         near(one:energy().input, two:energy().input, 1e-11)
     end

@@ -108,7 +108,7 @@ test("what is wrong with walls is one sentence with the name of the option", fun
         { { restitution = 0.5 }, "walls needs lower, upper or both" },
         { { upper = 1, restitution = 1.5 }, "walls: restitution = 1.5 must be from 0 to 1" },
         { { upper = 1, restitution = -0.5 }, "walls: restitution = -0.5 must be from 0 to 1" },
-        { { uper = 1 }, "walls has no option 'uper' among lower, upper and restitution; did you mean 'upper'?" },
+        { { uper = 1 }, "walls has no option 'uper' among lower, upper, restitution, stiffness and damping; did you mean 'upper'?" },
         { { upper = "1" }, "walls: upper must be a finite number" },
     })
     local sys = system { I = 1, k = 1, walls = walls }

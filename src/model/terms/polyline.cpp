@@ -92,7 +92,9 @@ void Polyline::delay_by(double d) {
 std::string Polyline::formula(double gain) const {
     const Samples& s = *samples;
     return (gain == 1 ? "" : factor(gain) + "* ") +
-           (s.interpolation == Interpolation::cubic ? "a cubic spline through " : "straight lines through ") +
+           (s.interpolation == Interpolation::cubic  ? "a cubic spline through "
+            : s.interpolation == Interpolation::hold ? "steps at "
+                                                     : "straight lines through ") +
            std::to_string(s.t.size()) + " points, t " + number(s.t.front()) + " ... " + number(s.t.back()) +
            (s.period ? ", again every " + number(*s.period) : "") +
            (s.origin.empty() ? "" : ", of " + s.origin.substr(0, s.origin.find(", {")));

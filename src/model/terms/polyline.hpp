@@ -1,4 +1,4 @@
-// excitation.samples: straight lines or a cubic spline between points, once or again and again.
+// excitation.samples: straight lines, a cubic spline or held values between points, once or again and again.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace dinal::model::terms {
 
-enum class Interpolation { linear, cubic };
-inline constexpr const char* interpolation_names[] = {"linear", "cubic"};
+enum class Interpolation { linear, cubic, hold };
+inline constexpr const char* interpolation_names[] = {"linear", "cubic", "hold"};
 
 /// Times strictly increasing, at least one point.
 struct Samples {
@@ -25,7 +25,9 @@ struct Samples {
 };
 inline constexpr text::Option between_options[] = {
     {.name = "interpolation",
-     .meaning = "interpolation between the points: straight lines, or a cubic spline (not-a-knot, or periodic)",
+     .meaning =
+         "interpolation between the points: straight lines, a cubic spline (not-a-knot, or periodic), or each value "
+         "held until the next time",
      .filled = text::fills<&Samples::interpolation>,
      .choices = interpolation_names},
     {.name = "period",
@@ -59,6 +61,7 @@ struct Polyline {
             return s.M.back();
         }
         const std::size_t i = segment(t);
+        if (holds()) return s.M[i];
         if (!s.slopes.empty()) return on_piece(piece_of(i), t, rest);
         return s.M[i] + (s.M[i + 1] - s.M[i]) * (((t - s.t[i]) + rest) / (s.t[i + 1] - s.t[i]));
     }
@@ -85,7 +88,9 @@ struct Polyline {
             return;
         }
         const Piece now = s.period ? piece(inside) : piece_of(segment(inside));
-        if (s.slopes.empty()) {
+        if (holds()) {
+            sum.add_constant(s.M[now.first]);
+        } else if (s.slopes.empty()) {
             sum.add_line(now.from, s.M[now.first], (s.M[now.second] - s.M[now.first]) / (now.to - now.from));
         } else {
             sum.add_powers(now.from, powers(now));
@@ -96,6 +101,7 @@ struct Polyline {
     [[nodiscard]] std::string formula(double gain) const;
 
 private:
+    [[nodiscard]] bool holds() const { return samples->interpolation == Interpolation::hold; }
     /// From one point to the next one.
     struct Piece {
         double from, to;
@@ -114,6 +120,7 @@ private:
     [[nodiscard]] double on_piece(const Piece& now, double t, double rest) const {
         const Samples& s = *samples;
         if (now.first == now.second) return s.M.front();
+        if (holds()) return s.M[now.first];
         const double d = (t - now.from) + rest;
         if (s.slopes.empty()) return s.M[now.first] + (s.M[now.second] - s.M[now.first]) * (d / (now.to - now.from));
         const std::array<double, 4> c = powers(now);
@@ -142,12 +149,14 @@ private:
 
 inline constexpr TermText Polyline::about{
     {"excitation.samples", "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }", samples_options},
-    "Straight lines or a cubic spline between points, from two columns of a CSV file or from two tables (or "
+    "Straight lines, a cubic spline or held values between points, from two columns of a CSV file or from two tables (or "
     "vectors). Outside the points the first and the last value hold, unless a period is given. time and value "
     "name or number the columns; by default t (or time) and M, otherwise the first and the second column. Each "
     "point is a break.",
     "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0\n"
     "M = excitation.samples{ t = { 0, 1, 2, 3 }, M = { 0, 1, 0, -1 }, interpolation = \"cubic\", period = 4 }\n"
-    "print(M(0.5), M(4.5))  --> 0.6875\t0.6875"};
+    "print(M(0.5), M(4.5))  --> 0.6875\t0.6875\n"
+    "M = excitation.samples{ t = { 0, 1, 2 }, M = { 5, 7, 6 }, interpolation = \"hold\" }\n"
+    "print(M(0.9), M(1), M(9))  --> 5.0\t7.0\t6.0"};
 
 }  // namespace dinal::model::terms

@@ -582,7 +582,9 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     const std::size_t groups = frame.groups(), count = groups + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    if (slopes_of_ != frame.bodies) slopes_known_ = false, slopes_of_ = frame.bodies;
+    if (slopes_of_ != frame.bodies || slopes_pressed_ != mode.presses) {
+        slopes_known_ = false, slopes_of_ = frame.bodies, slopes_pressed_ = mode.presses;
+    }
     enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {

@@ -24,13 +24,14 @@ public:
         const Integrals& own = *works_[joint];
         const double x = std::min(std::min(since_start, kept_.length) / kept_.h - 1, 1.0);
         return {cheb::value(own.input, x), cheb::value(own.viscous, x), cheb::value(own.dry, x),
-                cheb::value(own.belt, x), cheb::value(own.base, x)};
+                cheb::value(own.belt, x),  cheb::value(own.base, x),    0,
+                cheb::value(own.stop, x)};
     }
 
 private:
     using Integral = cheb::Series<2 * node_count>;
     struct Integrals {
-        Integral input{}, viscous{}, dry{}, belt{}, base{};
+        Integral input{}, viscous{}, dry{}, belt{}, base{}, stop{};
     };
     [[nodiscard]] Series whole(std::size_t k) const {
         Series series = kept_.series[k];
@@ -57,6 +58,7 @@ private:
         Series damping = v;
         for (double& c : damping) c *= own.damping;
         sums.viscous = work(damping, v);
+        if (at_nodes.stop != nullptr) sums.stop = work(cheb::fit(*at_nodes.stop), v);
         if (at_nodes.belt != nullptr) sums.belt = work(friction, belt);
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
         return sums;

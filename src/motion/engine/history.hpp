@@ -27,6 +27,7 @@ struct Kept {
     struct Acting {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< none where there is no base, or no belt
+        std::unique_ptr<Nodes> stop{};          ///< what an elastic wall takes that is pressed
         bool holds = false;                     ///< friction does not slip
     };
     std::vector<Acting> acting{};

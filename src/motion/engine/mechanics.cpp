@@ -133,10 +133,13 @@ void Frame::close_loops(Eigen::MatrixXd rows) {
     const auto leads = static_cast<Eigen::Index>(leads_.size());
     std::map<Eigen::Index, Eigen::Index> stopped;  // leads, and the row that tells their motion
     constexpr double nothing = 1e-12;
-    for (Eigen::Index r = 0; r < rows.rows() && leads > 0; ++r) {
+    for (Eigen::Index r = 0; r < rows.rows(); ++r) {
         const double size = std::max(1.0, rows.row(r).tail(rows.rows()).cwiseAbs().maxCoeff());
         Eigen::Index lead = 0;
-        if (!(rows.row(r).head(leads).cwiseAbs().maxCoeff(&lead) > nothing * size)) continue;
+        if (leads == 0 || !(rows.row(r).head(leads).cwiseAbs().maxCoeff(&lead) > nothing * size)) {
+            redundant.push_back(closing[static_cast<std::size_t>(r)]);
+            continue;
+        }
         rows.row(r) /= rows(r, lead);
         for (Eigen::Index other = 0; other < rows.rows(); ++other) {
             if (other != r) rows.row(other) -= Eigen::RowVectorXd(rows(other, lead) * rows.row(r));
@@ -257,6 +260,14 @@ void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>&
     }
 }
 
+std::vector<std::size_t> redundant_rigid(const model::Assembly& system) {
+    Mode mode;
+    const std::size_t joints = system.joints.size();
+    mode.friction.resize(joints), mode.leans.resize(joints), mode.rubs.resize(joints);
+    for (const Joint& joint : system.joints) mode.rigid.push_back(joint.rigid ? 1 : 0);
+    return Frame(system, mode).redundant;
+}
+
 /// By exchanging at once all that are on the wrong side of their condition, and, where that goes round, one at a time.
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high) {
@@ -324,7 +335,7 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         if (friction.normal) contact.normal = Signal(*friction.normal, &asking);
         contact.varies |= !friction.is_constant();
         nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
-                      friction.law.depends_on_speed() || !joint.spring.none();
+                      friction.law.depends_on_speed() || !joint.spring.none() || joint.stops;
         const auto* user = friction.law.as<laws::UserLaw>();
         const auto slip = [this, j](const Moment& at) { return velocity(j, at.y) - belt(j, at.t, at.side); };
         if (friction.function != nullptr) {
@@ -343,7 +354,8 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         const auto varies = [](const Signal& limit) { return !limit.none(); };
         contact.may_open =
             !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
-        all_linear_ = all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none();
+        all_linear_ =
+            all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none() && !joint.stops;
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
@@ -496,6 +508,7 @@ double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& 
     if (own.damping != 0) torque += own.damping * s;
     if (own.stiffness != 0) torque += own.stiffness * q;
     if (!own.spring.none()) torque += spring_torque(joint, q);
+    if (mode.presses[joint] != 0) torque += own.stops->torque(mode.presses[joint], q, s);
     return torque;
 }
 
@@ -507,6 +520,9 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
     for (std::size_t j = first; j < end; ++j) out[j] = C * velocity[j] + k * angle[j];
     if (!own.spring.none()) {
         for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
+    }
+    if (const int side = mode.presses[joint]; side != 0) {
+        for (std::size_t j = first; j < end; ++j) out[j] += own.stops->torque(side, angle[j], velocity[j]);
     }
     add_native_friction(joint, mode, has_belt(joint) ? difference(velocity, belt) : velocity, first, end, out);
 }
@@ -566,6 +582,10 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
     double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
+    if (own.stops) {
+        const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
+        if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
+    }
     if (own.of.size() > 1) {  // a sum of angles is known as well as these
         double known = 0;
         for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);

@@ -47,8 +47,9 @@ struct Mode {
     }
     /// Returns whether the joint holds an angle, not only a velocity.
     [[nodiscard]] bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
-    std::vector<char> rubs;   ///< of each joint: it has dry friction, and something presses on it
-    std::vector<char> rigid;  ///< of each joint: it holds for ever
+    std::vector<char> rubs;    ///< of each joint: it has dry friction, and something presses on it
+    std::vector<char> rigid;   ///< of each joint: it holds for ever
+    std::vector<int> presses;  ///< of each joint: 1 on its upper elastic wall, -1 on its lower one, else 0
 };
 
 /// The ways in which bodies can move while the joints that hold in a mode hold. A group is such a way: its bodies move
@@ -71,6 +72,7 @@ struct Frame {
     std::vector<double> inertia;          ///< of each group
     std::vector<Edge> edges;              ///< each after those whose children its others are
     std::vector<std::size_t> closing;     ///< joints that hold, and close loops
+    std::vector<std::size_t> redundant;   ///< those of them that follow from the others
     Eigen::MatrixXd sharing;              ///< with loops: what each joint that holds takes of the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< its rows
 
@@ -91,6 +93,9 @@ private:
     Eigen::MatrixXd anchor_;          ///< what leads have more, by what loops lack that stop one way to move
     std::vector<std::size_t> leads_;  ///< the first body of each way to move, before loops were closed
 };
+
+/// Returns the rigid links that other rigid links make redundant.
+std::vector<std::size_t> redundant_rigid(const model::Assembly& system);
 
 /// The least of x G x / 2 + g x within a box; G is symmetric, and not singular.
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,

@@ -139,6 +139,7 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
     part.on_belt = !tells_turns(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
+    if (system.joints[joint].stops) part.restitution = -1;  // where contact begins the velocity goes on
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
     return part;
 }

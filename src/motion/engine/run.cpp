@@ -83,12 +83,12 @@ public:
     void run();
 
 private:
-    enum class By { nobody, slip, release, wall, corner, relay, user, kink, stays, condition };
+    enum class By { nobody, slip, release, wall, stop, corner, relay, user, kink, stays, condition };
     struct Ending {
         double x = 1;
         By by = By::nobody;
-        std::size_t which = 0;                ///< the joint, or the body of a relay
-        int side = 0;                         ///< of a wall or corner, or the way of a release; or which relay
+        std::size_t which = 0;  ///< the joint, or the body of a relay
+        int side = 0;  ///< of a wall, a stop (0: it is left) or a corner, or the way of a release; or which relay
         std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
         std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};  ///< of functions that were read
     };
@@ -167,7 +167,8 @@ private:
     void settle_at_limit(std::size_t joint);
     bool only_touched(std::size_t joint, Motion way);
     void watch_release(std::size_t joint, Ending& ending);
-    void watch_walls(std::size_t joint, Ending& ending) const;
+    void watch_walls(std::size_t joint, const model::Walls& walls, By by, Ending& ending) const;
+    void watch_stop(std::size_t joint, Ending& ending) const;
     void watch_corner(std::size_t joint, Ending& ending) const;
     void watch_normal(std::size_t joint, Ending& ending);
     void watch_bristles(std::size_t joint, Ending& ending);
@@ -189,6 +190,7 @@ private:
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t event, const std::vector<std::size_t>& told);
     void touch_walls();
+    bool press_stops();
     void keep_within_walls(std::vector<double>& y) const;
     void see_flight();
     [[nodiscard]] double watched(std::size_t event, const Moment& at) const;
@@ -315,6 +317,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     y_.resize(y_.size() + mechanics_.bristles().size(), 0);
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
     low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
+    mode_.presses.assign(joints, 0);
     mode_.rubs = mechanics_.rubbing(), mode_.rigid.assign(joints, 0), rigid_at_.assign(joints, 0);
     for (std::size_t j = 0; j < joints; ++j) mode_.rigid[j] = problem.system.joints[j].rigid ? 1 : 0;
     arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
@@ -335,7 +338,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
         weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping});
-        has_walls_ |= joint.walls.has_value();
+        has_walls_ |= joint.any_walls() != nullptr;
     }
     history_ = std::make_shared<History>(std::move(weights), n(), y_, now_.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
@@ -1030,6 +1033,7 @@ bool Engine::open_and_close() {
 /// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
 bool Engine::restart_contacts(Because why, std::size_t at) {
     open_and_close();
+    press_stops();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!rubs(j) || mode_.leans[j] != 0) continue;
         Slipping& how = mode_.friction[j];
@@ -1091,6 +1095,7 @@ void Engine::begin() {
         if (!good) fail(Outcome::excitation_not_finite);
         echo(now_.hi, 1);
         open_and_close();
+        press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (!rubs(j)) continue;
             const double s = slip(j);
@@ -1228,10 +1233,11 @@ double Engine::until_wall() {
     if (!look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return first;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
-        if (!joint.walls || mode_.holds(j)) continue;
+        const model::Walls* walls = joint.any_walls();
+        if (walls == nullptr || mode_.holds(j) || mode_.presses[j] != 0) continue;
         const double rate = joint.sum(look_.accelerations);
         for (const int wall : {1, -1}) {
-            const double apart = std::max(0.0, wall * gap(j, joint.walls->at(wall)));
+            const double apart = std::max(0.0, wall * gap(j, walls->at(wall)));
             const double v = wall * mechanics_.velocity(j, y_);
             const double a = wall * rate, root = v * v + 2 * a * apart;
             if (!(root >= 0) || !(apart < model::never)) continue;
@@ -1566,7 +1572,8 @@ void Engine::go_to(double x) {
         low_[i] = (begin[i] - (y_[i] - added)) + (moved - added);
     }
     for (std::size_t j = 0; has_walls_ && j < mechanics_.joints(); ++j) {
-        if (problem_.system.joints[j].walls) reach_[j] = std::max(reach_[j], std::fabs(gap(j, origin_[j])));
+        if (problem_.system.joints[j].any_walls() != nullptr)
+            reach_[j] = std::max(reach_[j], std::fabs(gap(j, origin_[j])));
     }
 }
 
@@ -1589,6 +1596,10 @@ std::vector<Kept::Acting> Engine::acting() {
     std::vector<Kept::Acting> all(mechanics_.joints());
     for (std::size_t j = 0; j < all.size(); ++j) {
         all[j].M = segment_.driven[j];
+        // What depends on the motion was evaluated before the last step of the iteration.
+        for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].asks_the_motion(); ++node) {
+            all[j].M[node] = segment_.loads[j][node] + mechanics_.loads()[j].of_motion(segment_.moment(node, point_));
+        }
         if (j < n()) {
             if (mechanics_.has_base()) all[j].push = std::make_unique<Nodes>();
             for (std::size_t node = 0; node < node_count && mechanics_.has_base(); ++node) {
@@ -1598,6 +1609,15 @@ std::vector<Kept::Acting> Engine::acting() {
             }
         }
         all[j].holds = rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
+        if (mode_.presses[j] != 0) {
+            const Nodes angle = mechanics_.between(j, segment_.y),
+                        velocity = mechanics_.between(j, std::span(segment_.y).subspan(n()));
+            all[j].stop = std::make_unique<Nodes>();
+            for (std::size_t node = 0; node < node_count; ++node) {
+                (*all[j].stop)[node] =
+                    problem_.system.joints[j].stops->torque(mode_.presses[j], angle[node], velocity[node]);
+            }
+        }
         if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
@@ -1672,6 +1692,17 @@ bool Engine::handle(const Ending& ending) {
         }
         case By::wall:
             return hit(j, ending.side);
+        case By::stop: {
+            const model::Walls& stops = *problem_.system.joints[j].stops;
+            const int side = ending.side != 0 ? ending.side : mode_.presses[j];
+            origin_[j] = stops.at(side), reach_[j] = 0;
+            at_wall_[j] = ending.side == 0 && std::fabs(gap(j, origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
+            mode_.presses[j] = ending.side;
+            has_jumped_ = true;
+            tell(ending.side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(j));
+            echo(now_.hi, 1);
+            return decide(true) && (!too_often() || fail(Outcome::chattering));
+        }
         case By::corner: {
             Slipping& how = mode_.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
@@ -1740,7 +1771,9 @@ void Engine::watch(Ending& ending) {
             watch_slip(j, ending);
             watch_corner(j, ending);
         }
-        if (problem_.system.joints[j].walls && mode_.leans[j] == 0) watch_walls(j, ending);
+        const auto& [walls, stops] = std::tie(problem_.system.joints[j].walls, problem_.system.joints[j].stops);
+        if (walls && mode_.leans[j] == 0) watch_walls(j, *walls, By::wall, ending);
+        if (stops) watch_stop(j, ending);
         if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !rubs(j))) watch_normal(j, ending);
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
@@ -1897,11 +1930,10 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
     }
 }
 
-void Engine::watch_walls(std::size_t joint, Ending& ending) const {
-    const Joint& own = problem_.system.joints[joint];
+void Engine::watch_walls(std::size_t joint, const model::Walls& walls, By by, Ending& ending) const {
     const auto no = [](double) { return false; };
     for (const int wall : {1, -1}) {
-        const double place = own.walls->at(wall);
+        const double place = walls.at(wall);
         if (!std::isfinite(place)) continue;
         const double begin = wall * gap(joint, place);
         Nodes change = mechanics_.between(joint, segment_.moved);
@@ -1914,8 +1946,34 @@ void Engine::watch_walls(std::size_t joint, Ending& ending) const {
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
         curve.raise_floor(64 * rounding * far);
         const auto x = cheb::first_below(curve, -1, leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
-        if (x && *x < ending.x) ending = {*x, By::wall, joint, wall};
+        if (x && *x < ending.x) ending = {*x, by, joint, wall};
     }
+}
+
+/// An elastic wall is pressed while its depth and its torque are both positive. Before it is, the depth is, or, where
+/// it was left before the motion came back to its place, the torque will be.
+void Engine::watch_stop(std::size_t joint, Ending& ending) const {
+    const model::Walls& stops = *problem_.system.joints[joint].stops;
+    const Nodes angle = mechanics_.between(joint, segment_.y),
+                velocity = mechanics_.between(joint, std::span(segment_.y).subspan(n()));
+    const int pressed = mode_.presses[joint];
+    const int deep = pressed != 0 ? pressed : angle[0] > stops.upper ? 1 : angle[0] < stops.lower ? -1 : 0;
+    if (deep == 0 || (pressed == 0 && at_wall_[joint] != 0)) return watch_walls(joint, stops, By::stop, ending);
+    std::vector<double> y;
+    const auto value = [&](double q, double v) {
+        const double torque = deep * stops.torque(deep, q, v);
+        return pressed != 0 ? torque : std::min(torque, stops.stiffness * deep * (q - stops.at(deep)));
+    };
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return value(mechanics_.angle(joint, y), mechanics_.velocity(joint, y));
+    };
+    Nodes values{};
+    for (std::size_t j = 0; j < node_count; ++j) values[j] = value(angle[j], velocity[j]);
+    Half half = pressed != 0 ? 1 : -1;
+    const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
+    const auto x = Watched(values, exact, pressed != 0 ? 0 : rounded).leaves(half, -1);
+    if (x && *x < ending.x) ending = {*x, By::stop, joint, pressed != 0 ? 0 : deep};
 }
 
 /// Where a law of friction goes on with another formula.
@@ -2507,6 +2565,30 @@ void Engine::keep_within_walls(std::vector<double>& y) const {
     for (std::size_t i = 0; i < n(); ++i) {
         if (const auto& walls = problem_.system.joints[i].walls) y[i] = std::clamp(y[i], walls->lower, walls->upper);
     }
+}
+
+/// Elastic walls that are pressed after the state was set, or velocities have jumped. Whether one has changed.
+bool Engine::press_stops() {
+    bool changed = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const auto& stops = problem_.system.joints[j].stops;
+        if (!stops) continue;
+        const double q = mechanics_.angle(j, y_), v = mechanics_.velocity(j, y_);
+        int side = 0;
+        for (const int wall : {1, -1}) {
+            if (!std::isfinite(stops->at(wall))) continue;
+            const double nothing = 64 * rounding * std::fabs(stops->at(wall));
+            const double depth = wall * (q - stops->at(wall)), torque = wall * stops->torque(wall, q, v);
+            const bool before = mode_.presses[j] == wall;
+            const double least = before ? -nothing : nothing;
+            if (depth > least && torque > least * stops->stiffness) side = wall;
+        }
+        if (side == mode_.presses[j]) continue;
+        changed = true;
+        mode_.presses[j] = side;
+        if (begun()) tell(side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(j));
+    }
+    return changed;
 }
 
 /// What stands at a wall, and does not move away from it, leans there.

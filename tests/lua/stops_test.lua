@@ -1,0 +1,101 @@
+-- Elastic stops, which push back with k x + C x' at the depth x and never pull.
+dofile "tests/lua/support.lua"
+
+local function closes(run)
+    local total = run:energy().total
+    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.impacts), 1))
+end
+
+test("a block on a damped stop leaves it where the stop would begin to pull", function()
+    local k, C = 4, 1
+    local run = system { I = 1, k = 0, walls = { upper = 1, stiffness = k, damping = C } }:simulate { velocity0 = 1, t_end = 5 }
+    local w = math.sqrt(k - C ^ 2 / 4)
+    local lasts = (math.pi - math.atan(w, k - C / 2)) / w
+    equal(table.concat({ run.events[1].kind, run.events[2].kind, run.events[3].kind }, " "), "impact turn release")
+    near(run.events[1].t, 1, 1e-15)
+    near(run.events[3].t, 1 + lasts, 1e-13)
+    local v = math.exp(-lasts / 2) * (math.cos(w * lasts) - math.sin(w * lasts) / (2 * w))
+    near(run.velocity[#run], v, 1e-13)
+    near(run:energy().total.impacts, (1 - v ^ 2) / 2, 1e-13)
+    closes(run)
+    says(run, "wall at theta = 1 that push", "hit the wall 1 time")
+end)
+
+test("elastic stops are the torque that anybody can write as M", function()
+    for _, C in ipairs { 0, 3 } do
+        local walls = { lower = -0.5, upper = 0.3, stiffness = 60, damping = C }
+        local f = function(t) return 2 * math.sin(1.7 * t) end
+        local run = system { I = 1, k = 2, C = 0.1, walls = walls }:simulate { M = f, t_end = 30 }
+        local by_hand = system { I = 1, k = 2, C = 0.1 }:simulate { t_end = 30, M = function(t, theta, velocity)
+            local up, down = 60 * (theta - 0.3) + C * velocity, 60 * (theta + 0.5) + C * velocity
+            return f(t) - (theta > 0.3 and math.max(0, up) or 0) - (theta < -0.5 and math.min(0, down) or 0)
+        end }
+        near(run.theta, by_hand.theta, 1e-9)
+        assert(#of_kind(run, "impact") > 5)
+        near(#of_kind(run, "impact"), #of_kind(run, "release"), 1)
+        closes(run)
+        local again = system { I = 1, k = 2, C = 0.1, walls = walls }:simulate { M = f, t_end = run.events[1].t + 0.01 }:continue(30)
+        near(again.theta[#again], run.theta[#run], 1e-10)
+    end
+end)
+
+test("stiff stops are rigid walls", function()
+    local function run(walls) return system { I = 1, k = 4, walls = walls }:simulate { theta0 = -1, t_end = 10 } end
+    local stiff, rigid = run { upper = 0.5, stiffness = 1e10 }, run { upper = 0.5 }
+    near(stiff.theta, rigid.theta, 1e-3)
+    equal(#of_kind(stiff, "impact"), #of_kind(rigid, "impact"))
+end)
+
+test("a link has elastic stops, and a body on them may stand", function()
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { gap = { "a", "b", walls = { lower = -0.1, upper = 0.1, stiffness = 50, damping = 1 } } } }
+    local run = rig:simulate { velocity0 = { a = 1 }, t_end = 3 }
+    near(run.a.velocity[#run] + 2 * run.b.velocity[#run], 1, 1e-13)
+    equal(run.gap.events.kind[1], "impact")
+    closes(run)
+    -- A block that rests on a stop: k x = M; friction holds it there.
+    local block = system { I = 1, k = 0, Rd = 0.5, walls = { upper = 0, stiffness = 10, damping = 2 } }
+    local rest = block:simulate { M = 2, t_end = 30 }
+    assert(rest.theta[#rest] > 0.15 and rest.theta[#rest] < 0.25)
+    equal(rest.velocity[#rest], 0)
+    local inside = block:simulate { theta0 = 0.2, M = 2, t_end = 1 }
+    equal(inside.theta[#inside], 0.2)
+end)
+
+test("elastic stops are written, changed and refused like rigid ones", function()
+    local sys = system { I = 1, k = 1, walls = { upper = 1, stiffness = 100, damping = 2 } }
+    has(tostring(sys), "walls = { upper = 1, stiffness = 100, damping = 2 }")
+    has(tostring(sys:with { walls = { upper = 2, stiffness = 5 } }), "walls = { upper = 2, stiffness = 5 }")
+    raises(function() system { I = 1, k = 1, walls = { upper = 1, stiffness = 1, restitution = 0.5 } } end, "restitution is of rigid walls")
+    raises(function() system { I = 1, k = 1, walls = { upper = 1, damping = 1 } } end, "damping needs stiffness")
+    raises(function() sys:simulate { t_end = 1, integrator = integrator.exact {} } end, "exact")
+    local steady = sys:steady { M = excitation.harmonic { amplitude = 3, omega = 1.5 } }
+    equal(steady.status, "steady")
+end)
+
+test("held samples keep each value until the next time", function()
+    local t, M = { 0, 1, 2.5, 4 }, { 1, -2, 3, 0.5 }
+    local held = excitation.samples { t = t, M = M, interpolation = "hold" }
+    for at, value in pairs { [-1] = 1, [0] = 1, [0.999] = 1, [1] = -2, [2.4] = -2, [2.5] = 3, [4] = 0.5, [100] = 0.5 } do
+        equal(held(at), value + 0.0)
+    end
+    local steps = excitation.constant(1) + excitation.step { amplitude = -3, at = 1 } + excitation.step { amplitude = 5, at = 2.5 } + excitation.step { amplitude = -2.5, at = 4 }
+    for _, sys in ipairs { system { I = 1, k = 3, Rd = 0.5 }, system { I = 1, k = 3, friction = friction.stribeck { Rd = 0.5, Re = 0.6, speed = 0.1 } } } do
+        local a, b = sys:simulate { M = held, t_end = 8 }, sys:simulate { M = steps, t_end = 8 }
+        near(a.theta, b.theta, 1e-13)
+        same_events(a, b, 1e-12)
+    end
+    local again = excitation.samples { t = { 0, 1 }, M = { 1, -1 }, interpolation = "hold", period = 2 }
+    local square = excitation.square { amplitude = 1, period = 2 }
+    near(system { I = 1, k = 3, C = 0.3 }:simulate { M = again, t_end = 9 }.theta, system { I = 1, k = 3, C = 0.3 }:simulate { M = square, t_end = 9 }.theta, 1e-13)
+    equal(again(1), -1.0)
+    equal(again(2), 1.0)
+    equal(again:delay(0.5)(2.4), -1.0)
+    has(tostring(held), 'interpolation = "hold"')
+    local name = temporary(".csv")
+    write(name, "t,M\n0,1\n1,-2\n2.5,3\n4,0.5\n")
+    local of_file = excitation.samples(name, { interpolation = "hold" })
+    equal(of_file(2.4), -2.0)
+    has(tostring(of_file), 'interpolation = "hold"')
+end)
+
+finish()
