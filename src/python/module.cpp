@@ -24,19 +24,27 @@ namespace {
 /// What Python is told of a member. `number` is its place in all_members().
 py::dict description_of(const lua::Member& member, std::size_t number) {
     constexpr const char* kinds[] = {"function", "method", "field", "metamethod"};
+    constexpr const char* option_kinds[] = {"other", "number", "flag", "choice", "text", "numbers"};
     const help::Section* result = help::result_class(member.doc.signature);
     py::list options;
     for (const text::Call* call : help::calls_of(member.doc)) {
         const auto lines = help::option_lines(call->options);
         for (std::size_t i = 0; i < lines.size(); ++i) {
-            const bool needed = call->options[i].otherwise == text::needed;
-            options.append(py::make_tuple(lines[i].option, lines[i].name, lines[i].meaning, needed));
+            const text::Option& option = call->options[i];
+            const bool others = i + 1 < lines.size() && call->options[i + 1].instead_of_previous;
+            const bool needed = option.otherwise == text::needed && !option.instead_of_previous && !others;
+            py::list choices;
+            for (const char* choice : option.choices) choices.append(choice);
+            options.append(py::make_tuple(lines[i].option, lines[i].name, lines[i].meaning, needed,
+                                          option_kinds[static_cast<std::size_t>(option.filled.kind)], choices,
+                                          option.wanted));
         }
     }
     py::dict told;
     told["number"] = number;
     told["name"] = std::string(member.name);
     told["kind"] = kinds[static_cast<std::size_t>(member.kind)];
+    told["form"] = member.doc.signature;
     told["signature"] = help::signature(member.doc);
     told["summary"] = member.doc.summary;
     told["example"] = member.doc.example;

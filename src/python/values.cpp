@@ -260,7 +260,8 @@ void text_to_lua(lua_State* L, PyObject* value) {
 
 /// Whatever is no type of Python itself for numbers, text, lists and dictionaries.
 void other_to_lua(lua_State* L, py::handle value, int depth) {
-    if (py::isinstance<py::array_t<double>>(value) && py::reinterpret_borrow<py::array>(value).ndim() == 1) {
+    const bool is_array = py::isinstance<py::array_t<double>>(value) && !py::hasattr(value, "filled");  // no masked one
+    if (is_array && py::reinterpret_borrow<py::array>(value).ndim() == 1) {
         const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
         if (!array) throw py::error_already_set();
         std::vector<double> numbers = lua::new_numbers(L, static_cast<std::size_t>(array.size()));
@@ -271,6 +272,14 @@ void other_to_lua(lua_State* L, py::handle value, int depth) {
     if (!plain.is(value)) return to_lua(L, plain, depth + 1);
     if (PyCallable_Check(value.ptr()) != 0) return function_to_lua(L, value);
     lua::push<py::object>(L, plain);
+}
+
+/// A tuple that ends with a dictionary has named entries, too: ("motor", "load", dict(k=90)), (x, y, dict(label="y")).
+void list_to_lua(lua_State* L, const py::tuple& list, bool is_tuple, int depth) {
+    const std::size_t last = list.empty() ? 0 : list.size() - 1;
+    const bool named = is_tuple && last > 0 && PyDict_Check(list[last].ptr()) != 0 && PyDict_Check(list[0].ptr()) == 0;
+    table_to_lua(L, named ? py::tuple(list[py::slice(0, static_cast<py::ssize_t>(last), 1)]) : list,
+                 named ? py::dict(list[last]) : py::dict(), depth);
 }
 
 }  // namespace
@@ -307,7 +316,7 @@ void to_lua(lua_State* L, py::handle value, int depth) {
     } else if (PyDict_Check(own)) {
         table_to_lua(L, py::tuple(), py::reinterpret_borrow<py::dict>(value), depth);
     } else if (PyList_Check(own) || PyTuple_Check(own)) {
-        table_to_lua(L, py::tuple(py::reinterpret_borrow<py::object>(value)), py::dict(), depth);
+        list_to_lua(L, py::tuple(py::reinterpret_borrow<py::object>(value)), PyTuple_Check(own) != 0, depth);
     } else {
         PyFunction_Check(own) ? function_to_lua(L, value) : other_to_lua(L, value, depth);
     }

@@ -3,8 +3,10 @@
 Run by ctest with PYTHONPATH set to the module's folder: python3 module_test.py SOURCE PROGRAM.
 """
 
+import contextlib
 import gc
 import inspect
+import io
 import math
 import multiprocessing
 import os
@@ -58,6 +60,8 @@ class Objects(unittest.TestCase):
         self.assertIn("rows", repr(self.run))
         self.assertIn("simulate", dir(self.sys))
         self.assertIn("kind", dir(self.run.events))
+        for value in (self.run, self.run.events, dinal, self.run[0]):
+            self.assertEqual(len(dir(value)), len(set(dir(value))))
 
     def test_events_and_data(self):
         events = self.run.events
@@ -94,6 +98,29 @@ class Objects(unittest.TestCase):
         self.assertEqual(list(dinal.lua("(function() local row = d[1] row.t, row.new, row.also = nil, 1, 2 return row end)()",
                                         d=self.run)), [*self.run.names[1:], "also", "new"])
         self.assertEqual(dinal.lua("{ 1, nil, 3, x = 5 }"), {1: 1, 3: 3, "x": 5})
+
+    def test_order_in_each_process(self):
+        said = {python("import pandas; r = dinal.system(I=1, k=4, Rd=.3).simulate(theta0=1, t_end=5)\n"
+                       "s = dinal.system(bodies=dict(z=dict(I=1), a=dict(I=1)), links=dict(y=('z', 'a', dict(k=1)), b=('a', 'z', dict(C=1))))\n"
+                       "print(list(pandas.DataFrame(r)), list(r[0]), list(r.events[0]), list(dict(r)), list(r.energy().total), r.energy().half_cycles[0],"
+                       "list(pandas.DataFrame(r.events)), s.bodies, s.links, dinal.nondimensional(zeta=.1).steady(M=dinal.excitation.harmonic(frequency=1))"
+                       ".multipliers)", env={**os.environ, "PYTHONHASHSEED": seed}).stdout for seed in "123"}
+        self.assertEqual(len(said), 1)
+        self.assertNotEqual(said, {""})
+
+    def test_links(self):
+        links = dict(clutch=("motor", "load", dict(Rd=2)))
+        rig = dinal.system(bodies=dict(motor=dict(I=1), load=dict(I=3)), links=links)
+        self.assertAlmostEqual(rig.simulate(velocity0=dict(motor=3), t_end=4).motor.velocity[-1], .75, 12)
+        self.assertEqual(links, dict(clutch=("motor", "load", dict(Rd=2))))
+        weights = dinal._objects.link_of(({"carrier": 2.5, "sun": -1}, dict(rigid=True)))
+        self.assertEqual(weights, {"carrier": 2.5, "sun": -1, "rigid": True})
+        self.assertEqual(dinal.lua("#t, t.k, #u", t=("a", "b", dict(k=3)), u=(dict(a=1), dict(b=2))), (2, 3, 2))
+
+    def test_curves(self):
+        x = np.linspace(0, 1, 5)
+        for curves in ((x, x**2), ([x, x],), ((x, x, dict(label="twice")), [x, 2 * x]), (self.run, (self.run, dict(label="twice")))):
+            self.assertIn("<svg", dinal.plot(*curves, title="two", show=False)._repr_svg_())
 
     def test_excitations(self):
         e = dinal.excitation.harmonic(amplitude=2, frequency=1)
@@ -158,7 +185,11 @@ class Objects(unittest.TestCase):
         picture = self.run.plot(show=False)
         self.assertIsInstance(picture, dinal.Picture)
         self.assertIn("<svg", self.run._repr_svg_())
-        self.assertEqual(set(picture._repr_mimebundle_()), {"image/svg+xml", "text/html"})
+        self.assertIn("<svg", picture._repr_svg_())
+        self.assertIn("data:image/svg+xml;base64,", picture._repr_html_())
+        for shown in (self.sys, self.run.energy(), dinal.nondimensional(zeta=.1).steady(M=dinal.excitation.harmonic(frequency=1))):
+            self.assertTrue(shown._repr_html_().startswith("<pre>"), shown)
+        self.assertEqual(self.run._ipython_key_completions_(), self.run.names)
         self.assertIn("stuck", python("dinal.system(I=1, k=4, Rd=1).simulate(theta0=1, t_end=9).plot()").stdout)
 
 
@@ -190,7 +221,9 @@ class Arrays(unittest.TestCase):
                       memoryview(np.array(times)), (ctypes.c_double * 3)(*times), pandas.Series(times), np.array([9, 0, 1, 9, 2.5])[[1, 2, 4]],
                       np.array([0, 7, 1, 7, 2.5])[::2]):
             self.assertEqual(sys.simulate(times=given, theta0=1).t.tolist(), times)
-        self.assertEqual(dinal.lua("v[2] ~= v[2]", v=np.ma.array([1, 2], mask=[False, True])), True)
+        for kind in (int, float):
+            masked = np.ma.array([1, 2], mask=[False, True], dtype=kind)
+            self.assertEqual(dinal.lua("v[1], v[2] ~= v[2]", v=masked), (1, True))
         self.assertEqual(sys.simulate(times=range(3), theta0=1).t.tolist(), [0, 1, 2])
         self.assertEqual(dinal.lua("#v[1], v[2][3]", v=np.arange(6.).reshape(2, 3)), (3, 5.0))
         self.assertEqual(dinal.lua("w[2]", w=np.array(["a", "b"])), "b")
@@ -296,8 +329,41 @@ class Errors(unittest.TestCase):
             dinal.system(I=1, k=4).simulate(tend=20)
         self.assertIn("has no option 'tend'", str(caught.exception))
         self.assertIn("did you mean 't_end'", str(caught.exception))
-        self.assertEqual(caught.exception.call, "sys:simulate")
+        self.assertEqual(caught.exception.call, "osc.simulate")
         self.assertEqual(caught.exception.culprit, "tend")
+
+    def test_kinds(self):
+        osc = dinal.system(I=1, k=4)
+        run = osc.simulate(t_end=1)
+        for kind, call in ((TypeError, lambda: osc.simulate(tend=20)), (TypeError, lambda: dinal.excitation.pulse(at=1)),
+                           (TypeError, lambda: osc.simulate(t_end="20")), (ValueError, lambda: osc.simulate(t_end=-1)),
+                           (ValueError, lambda: dinal.integrator.rk4(h=0)), (KeyError, lambda: run["tetha"]),
+                           (ValueError, lambda: dinal.integrator.dinal1989(h=1, stop="no"))):
+            with self.assertRaises(kind) as caught:
+                call()
+            self.assertIsInstance(caught.exception, dinal.Error)
+            self.assertEqual(type(caught.exception).__name__, "Error")
+            self.assertNotIn("'\"", str(caught.exception))
+
+    def test_words(self):
+        """Messages show Python: no tables, nil, colons and braces of Lua."""
+        osc = dinal.system(I=1, k=4)
+        for words, call in (("needs k, for example dinal.system(I=1, k=39.5", lambda: dinal.system(I=1)),
+                            ("got None", lambda: dinal.lua("f(nil)", f=lambda x: osc.simulate(t_end=1).column(None))),
+                            ("walls must be a dict such as dict(lower=-0.8", lambda: dinal.system(I=1, k=1, walls=3)),
+                            ("osc.simulate has no option", lambda: osc.simulate(tend=1))):
+            with self.assertRaises(dinal.Error) as caught:
+                call()
+            self.assertIn(words, str(caught.exception))
+            self.assertNotRegex(str(caught.exception), r"\{|nil|a table|[a-z]:[a-z]")
+
+    def test_a_run_that_fails_warns(self):
+        with self.assertWarnsRegex(dinal.RunWarning, "simulate: ") as caught:
+            run = dinal.system(I=1, k=4).simulate(M=lambda t, theta: 9 * theta, theta0=1, t_end=1000)
+        self.assertEqual((run.status, caught.filename), ("failed", __file__))
+        with warnings.catch_warnings(), self.assertRaises(dinal.RunWarning):
+            warnings.simplefilter("error")
+            dinal.system(I=1, k=4).simulate(M=lambda t, theta: 9 * theta, theta0=1, t_end=1000)
 
     def test_exceptions_travel(self):
         class Own(Exception):
@@ -539,15 +605,30 @@ class Help(unittest.TestCase):
         self.assertIn("system(I, k, C = 0", text)
         self.assertIn("moment of inertia", text)
         simulate = dinal.system(I=1, k=4).simulate
-        self.assertIn("sys.simulate(", simulate.__doc__)
+        self.assertIn("osc.simulate(", simulate.__doc__)
+        self.assertIn("Example:", simulate.__doc__)
         names = list(inspect.signature(simulate).parameters)
         self.assertTrue({"M", "theta0", "t_end"} <= set(names))
         self.assertIn("T0", dinal.System.T0.__doc__)
         self.assertEqual(str(inspect.signature(dinal.excitation.harmonic).parameters["amplitude"].default), "1")
+        parameters = inspect.signature(simulate).parameters.values()
+        self.assertEqual({p.kind for p in parameters}, {inspect.Parameter.KEYWORD_ONLY})
+        self.assertEqual(str(inspect.signature(dinal.integrator.rk4)), "(*, h: Number) -> Integrator")
         import pydoc
         self.assertIn("moment of inertia", pydoc.render_doc(dinal.system))
         self.assertIn("harmonic", pydoc.render_doc(dinal.excitation))
         self.assertIn("simulate", pydoc.render_doc(dinal.System))
+
+    def test_examples(self):
+        """Those that are shown in Python are Python."""
+        shown = 0
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
+            for *_, members in dinal._dinal.sections:
+                for text in filter(None, (dinal._words.python(member["example"]) for member in members)):
+                    if "dinal." in text and "dinal.vector" not in text and "dinal.version" not in text:
+                        exec(text, {"dinal": dinal, "numpy": np, "math": math})
+                        shown += 1
+        self.assertGreater(shown, 140)
 
     def test_every_member_is_there(self):
         manual = pathlib.Path(SOURCE, "docs/manual.md").read_text()
@@ -582,8 +663,8 @@ print(shell.object_inspect_text("sys_.simulate"))
     def test_stubs(self):
         stub = pathlib.Path(dinal.__file__).with_name("__init__.pyi").read_text()
         compile(stub, "__init__.pyi", "exec")
-        self.assertRegex(stub, r"def simulate\(self, .*t_end=..., .*-> Run: ...")
-        self.assertIn("def theta(self) -> numpy.ndarray", stub)
+        self.assertIn("def theta(self) -> Vector", stub)
+        self.assertTrue(pathlib.Path(dinal.__file__).with_name("py.typed").exists())
         printed = subprocess.run([sys.executable, "-m", "dinal.stubs"], capture_output=True, text=True)
         self.assertEqual(printed.stdout, stub)
 

@@ -1,19 +1,19 @@
 """dinal: a laboratory for oscillators with dry friction.
 
     import dinal, numpy as np
-    sys = dinal.system(I=1, k=4, Rd=.3, Re=.4)
-    run = sys.simulate(M=lambda t: np.sin(t), theta0=1, t_end=20)
-    run.theta, run.events.kind, sys.steady(M=dinal.excitation.harmonic(frequency=.4)).amplitude
+    osc = dinal.system(I=1, k=4, Rd=.3, Re=.4)
+    run = osc.simulate(M=lambda t: np.sin(t), theta0=1, t_end=20)
+    run.theta, run.events.kind, osc.steady(M=dinal.excitation.harmonic(frequency=.4)).amplitude
 
-These are the objects of Lua: sys:simulate{ M = M, t_end = 20 } there is sys.simulate(M=M, t_end=20) here. Named arguments
-are the options, columns are NumPy arrays. Names that are keywords of Python end in an underscore: sys.with_(k=5). Each
+These are the objects of Lua: sys:simulate{ M = M, t_end = 20 } there is osc.simulate(M=M, t_end=20) here. Named arguments
+are the options, columns are NumPy arrays. Names that are keywords of Python end in an underscore: osc.with_(k=5). Each
 function has its help: help(dinal.system), dinal.help("dead zone").
 """
 
 import os as _os
 
-from . import _dinal, _objects
-from ._objects import Error, Function, Object, Record
+from . import _dinal, _objects, _words
+from ._objects import Error, Function, Object, Record, RunWarning
 
 __version__ = _dinal.__version__
 
@@ -38,7 +38,7 @@ def __dir__():
 _dinal.set_up(_objects, _objects.in_notebook())
 _members = _objects.build()
 globals().update(_members)
-__all__ = ["Error", "Function", "Object", "Record", "lua", "partial", *_members]
-for _class in (Error, Function, Object, Record):
+__all__ = ["Error", "Function", "Object", "Record", "RunWarning", "lua", "partial", *_members]
+for _class in (Error, Function, Object, Record, RunWarning):
     _class.__module__ = "dinal"
 _os.register_at_fork(after_in_child=_dinal.after_fork)

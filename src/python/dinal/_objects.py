@@ -2,20 +2,31 @@
 
 import base64
 import difflib
+import html
 import inspect
-import keyword
 import re
 import sys
 import types
+import warnings
 
-from . import _dinal
+from . import _dinal, _words
+from ._words import python_name
 
 
 class Error(Exception):
     """What is wrong, where the limit is and what to do, in one sentence; and facts: call, option, culprit."""
 
     call = option = culprit = ""
+    __str__ = Exception.__str__  # that of KeyError has quotes
 
+
+class RunWarning(RuntimeWarning):
+    """A run ended before its time. run.status says how, run.outcome where and why."""
+
+
+# What a sentence says, as kinds of exceptions: an unknown or missing option, a name that is not there, a wrong value.
+KINDS = [(r"has no option| needs |takes |must be [a-zT].*, got (None|True|False|an? |the string)", TypeError),
+         (r"has no (field|column|row)|there is no ", KeyError), (r" must |at most|exclude each other|of another sweep", ValueError)]
 
 class Record(dict):
     """A table with named fields: p["r"] and p.r are the same."""
@@ -28,7 +39,7 @@ class Record(dict):
     __setattr__ = dict.__setitem__
 
     def __dir__(self):
-        return [*super().__dir__(), *map(str, self)]
+        return sorted({*super().__dir__(), *map(str, self)})
 
 
 class Object(_dinal.Reference):
@@ -69,16 +80,21 @@ class Object(_dinal.Reference):
         return _dinal.operated("text", self, None)
 
     def __dir__(self):
-        return [*super().__dir__(), *(self.names if hasattr(type(self), "names") else ())]
+        return sorted({*super().__dir__(), *self._ipython_key_completions_()})
+
+    def _ipython_key_completions_(self):
+        names = [getattr(self, name) for name in ("names", "bodies", "links") if hasattr(type(self), name)]
+        return [str(name) for some in names for name in some]
 
     def _repr_svg_(self):
         return _dinal.drawn(self.plot(show=False)) if hasattr(type(self), "plot") else None
 
-    def _repr_mimebundle_(self, include=None, exclude=None):
-        """The SVG as an image of HTML, too: Debian 12's nbconvert takes the lines out of an SVG in the page."""
+    def _repr_html_(self):
+        """What it says at the prompt, and its picture: Debian 12's nbconvert takes the lines out of an SVG in the page."""
         svg = self._repr_svg_()
         image = svg and "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
-        return {"image/svg+xml": svg, "text/html": f'<img style="max-width: 100%" src="{image}">'} if svg else {}
+        text = "" if svg and type(self).__name__ in ("Run", "Picture") else f"<pre>{html.escape(repr(self))}</pre>"
+        return text + (f'<img style="max-width: 100%" src="{image}">' if svg else "")
 
 
 class Function(Object):
@@ -97,21 +113,14 @@ class Module(types.ModuleType):
         return self._call(*arguments, **options)
 
 
-class Default:
-    """What an option is when it is not given, in the words of its documentation."""
-
-    def __init__(self, text):
-        self.text = text
-
-    def __repr__(self):
-        return self.text
-
-
 # ---- for the C++ side
 
 def error_of(cause, message, *facts):
-    error = Error(message.decode(errors="replace"))
-    error.call, error.option, error.culprit = (fact.decode(errors="replace") for fact in facts)
+    call, option, culprit = (fact.decode(errors="replace") for fact in facts)
+    message = _words.in_sentence(message.decode(errors="replace"))
+    kind = next((kind for said, kind in KINDS if (call or culprit) and re.search(said, message)), None)
+    error = (Error if kind is None else ERRORS[kind])(message)
+    error.call, error.option, error.culprit = _words.in_sentence(call), option, culprit
     error.__cause__ = cause
     return error
 
@@ -179,10 +188,6 @@ def show_animation(svg):
 
 # ---- members
 
-def python_name(name):
-    return name + "_" if keyword.iskeyword(name) else name
-
-
 def class_name(name):
     return "".join(word.capitalize() for word in name.split())
 
@@ -192,50 +197,12 @@ def meant(name, known):
     return f"; did you mean {likely[0]!r}?" if likely else ""
 
 
-def takes_one_table(member):
-    """f{ ... }, not f(...)"""
-    bracket = re.search("[({]", member["signature"].partition(" ->")[0])
-    return bracket is not None and bracket[0] == "{"
-
-
-def in_python(signature):
-    """sys:simulate{ M } -> run as sys.simulate(M) -> run."""
-    head, arrow, result = signature.partition(" ->")
-    head = re.sub(r"^(\w+):(\w)", r"\1.\2", head)
-    return re.sub(r"^([\w.]+)\{ ?(.*?) ?\}$", r"\1(\2)", head) + arrow + result
-
-
-def documentation(member):
-    options = "".join(f"    {name}: {meaning}\n" for _, name, meaning, _ in member["options"])
-    example = "In Lua:\n\n    " + member["example"].replace("\n", "\n    ")
-    return f"{in_python(member['signature'])}\n\n{member['summary']}\n\n{options}\n{example}"
-
-
-def positional_names(member):
-    """The names in the brackets of the call, where they are names: t of e:value(t, theta)."""
-    inner = re.match(r"[\w.:]+\(([^{}\[\]]*?)[,\[ ]*(\[?, )?(\{.*)?\)", member["signature"])
-    names = [part.partition("=")[0].strip() for part in inner[1].split(",")] if inner and inner[1].strip() else []
-    return [python_name(name) for name in names] if all(name.isidentifier() for name in names) else []
-
-
-def signature_of(member, has_self):
-    """What editors and help() show; what is right is for Lua to say."""
-    P = inspect.Parameter
-    shown = {"self": P("self", P.POSITIONAL_ONLY)} if has_self else {}
-    for name in positional_names(member):
-        shown[name] = P(name, P.POSITIONAL_ONLY, default=Default("..."))
-    if len(shown) == has_self:
-        shown["arguments"] = P("arguments", P.VAR_POSITIONAL)
-    for name, words, _, needed in member["options"]:
-        default = P.empty if needed else Default(words.partition(" = ")[2] or "...")
-        shown.setdefault(python_name(name), P(python_name(name), P.KEYWORD_ONLY, default=default))
-    return inspect.Signature(list(shown.values()))
-
-
 def callable_of(member, has_self, owner):
     """The function for a member. Named arguments of one that takes no options are put in their places."""
-    number, one_table, call = member["number"], takes_one_table(member), _dinal.call
-    names = positional_names(member) if not member["options"] else []
+    number, one_table, call = member["number"], _words.takes_one_table(member), _dinal.call
+    names = _words.positional_names(member) if not member["options"] else []
+    is_run, with_curves = member["result"] == "run", member["form"].startswith("plot(")
+    one_table = one_table or with_curves
     renamed = {python_name(name): name for name, *_ in member["options"] if python_name(name) != name}
 
     def called(self, arguments, options):
@@ -243,7 +210,15 @@ def callable_of(member, has_self, owner):
             arguments += (options.pop(names[len(arguments)]),)
         if renamed:
             options = {renamed.get(name, name): value for name, value in options.items()}
-        return call(number, self, arguments, options, one_table)
+        if "links" in options and hasattr(options["links"], "items"):
+            options["links"] = {name: link_of(link) for name, link in options["links"].items()}
+        if with_curves:
+            is_one = len(arguments) == 2 and all(map(is_row, arguments))
+            arguments = ([arguments] if is_one else list(arguments),)
+        result = call(number, self, arguments, options, one_table)
+        if is_run and getattr(result, "status", None) == "failed":
+            warnings.warn(f"{member['name']}: {result.outcome}", RunWarning, stacklevel=3)
+        return result
 
     if has_self:
         def function(self, *arguments, **options):
@@ -254,9 +229,23 @@ def callable_of(member, has_self, owner):
     function.__name__ = python_name(member["name"])
     function.__qualname__ = f"{owner}.{function.__name__}" if owner else function.__name__
     function.__module__ = "dinal"
-    function.__doc__ = documentation(member)
-    function.__signature__ = signature_of(member, has_self)
+    function.__doc__ = _words.documentation(member)
+    function.__signature__ = _words.signature_of(member, has_self, owner)
     return function
+
+
+def is_row(value):
+    """x of plot(x, y), and not a curve (x, y)."""
+    import numpy
+    try:
+        return not isinstance(value, Object) and numpy.ndim(value) == 1
+    except ValueError:  # rows of several lengths
+        return False
+
+
+def link_of(link):
+    """(weights, options) as one table; ("motor", "load", options) is one anyway."""
+    return {**link[0], **link[1]} if isinstance(link, (list, tuple)) and len(link) == 2 and all(isinstance(part, dict) for part in link) else link
 
 
 def operators(name):
@@ -276,11 +265,11 @@ def operators(name):
 
 def field_of(member):
     number = member["number"]
-    return property(lambda self: _dinal.call(number, self, (), {}, False), doc=documentation(member))
+    return property(lambda self: _dinal.call(number, self, (), {}, False), doc=_words.documentation(member))
 
 
 def class_of(title, name, signature, summary, members):
-    own = {"__slots__": (), "__doc__": f"{title}: {in_python(signature)}\n\n{summary}", "__module__": "dinal"}
+    own = {"__slots__": (), "__doc__": f"{title}: {_words.in_python(signature)}\n\n{summary}", "__module__": "dinal"}
     for member in members:
         if member["kind"] == "metamethod":
             own.update(operators(member["name"]))
@@ -299,6 +288,11 @@ def class_of(title, name, signature, summary, members):
 def build():
     """All that Lua has, by its names here. Vectors are arrays, and loops of Python show no progress."""
     made = {}
+    _words.members.update(name for section in _dinal.sections if not section[5]
+                          for name in [member["name"] for member in section[6]])
+    _words.members.update(section[1] for section in _dinal.sections if any(m["kind"] == "function" for m in section[6]))
+    _words.members.add("data")
+    _words.members.difference_update(("vector", "dinal"))
     for title, name, signature, summary, example, prefix, members in _dinal.sections:
         is_module = bool(prefix) and any(m["kind"] == "function" or (prefix, m["name"]) == (name, "__call") for m in members)
         functions = {python_name(m["name"]): callable_of(m, False, name if is_module else "") for m in members
@@ -315,3 +309,5 @@ def build():
 
 
 CLASSES = {"function": Function}
+ERRORS = {kind: type("Error", (Error, kind), {"__module__": "dinal"}) for kind in (TypeError, KeyError, ValueError)}
+_words.classes.update((section[1], class_name(section[1])) for section in _dinal.sections)

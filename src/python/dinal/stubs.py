@@ -8,60 +8,107 @@ import types
 import dinal
 
 HEAD = '''"""Written by python3 -m dinal.stubs."""
-from typing import Any
-import numpy
+from collections.abc import Iterable, Iterator
+from typing import Any, Literal, overload
+from .types import Callback, Columns, Number, Numbers, Options, Path, Vector
 
 __version__: str
-partial: Any
+partial: Run | Data | None
 class Error(Exception):
     call: str
     option: str
     culprit: str
-class Object:
+class RunWarning(RuntimeWarning): ...
+class Record(dict[Any, Any]):
     def __getattr__(self, name: str) -> Any: ...
-    def __getitem__(self, key: Any) -> Any: ...
-class Record(dict[str, Any]):
-    def __getattr__(self, name: str) -> Any: ...
+class Object: ...
 class Function(Object):
-    def __call__(self, *arguments, **options) -> Any: ...
+    def __call__(self, *arguments: Any, **options: Any) -> Any: ...
 def lua(text: str, **variables: Any) -> Any: ...
 '''
-TYPES = {"number": "float", "string": "str", "vector": "numpy.ndarray", "boolean": "bool"}
+COLUMNS = "t theta velocity M friction damping acceleration".split()
+# More than the tables of the program say: fields with names of the user's, results that depend on the arguments.
+MORE = {"Run": f'''    @overload
+    def at(self, t: Number) -> tuple[float, ...]: ...
+    @overload
+    def at(self, t: Numbers) -> tuple[Vector, ...]: ...
+    @overload
+    def __getitem__(self, key: Literal[{", ".join(map(repr, COLUMNS))}], /) -> Vector: ...
+    @overload
+    def __getitem__(self, key: int, /) -> Record: ...
+    @overload
+    def __getitem__(self, key: slice, /) -> list[Record]: ...
+    @overload
+    def __getitem__(self, key: str, /) -> Any: ...
+    def keys(self) -> list[str]: ...
+''', "Data": '''    def __getattr__(self, name: str) -> Vector: ...
+    @overload
+    def __getitem__(self, key: str, /) -> Vector: ...
+    @overload
+    def __getitem__(self, key: int, /) -> Record: ...
+    @overload
+    def __getitem__(self, key: slice, /) -> list[Record]: ...
+    def keys(self) -> list[str]: ...
+''', "Rig": '''    def __getattr__(self, name: str) -> System: ...
+    def __getitem__(self, key: str, /) -> System: ...
+''', "Fit": "".join(f"    {name}: float\n" for name in "I k C Rd Re omega0 zeta dead_zone theta0 velocity0 offset".split()) + '''
+    def __getitem__(self, key: str, /) -> float: ...
+''', "SteadyMotion": '''    def __getitem__(self, key: str, /) -> SteadyMotion: ...
+'''}
+AFTER = '''class RigRun(Run):
+    def __getattr__(self, name: str) -> Run: ...
+'''
 
 
-def result_of(documentation):
-    """The type behind the arrow of the first line."""
-    name = documentation.partition("\n")[0].partition("-> ")[2].strip()
-    made = dinal._objects.CLASSES.get(name)
-    return TYPES.get(name) or (made.__name__ if made else "Any")
+def function(name, value, indent="", result=None):
+    signature = inspect.signature(value)
+    signature = signature.replace(return_annotation=dinal._words.Type(result)) if result else signature
+    return f"{indent}def {name}{signature}: ...\n"
 
 
-def function(name, value, indent=""):
-    return f"{indent}def {name}{inspect.signature(value)} -> {result_of(value.__doc__ or '')}: ...\n"
+def operator(name):
+    other = "" if name == "__neg__" else ", other: Number" if name in ("__mul__", "__rmul__", "__truediv__", "__rtruediv__") else \
+        ", other: Excitation | Number"
+    return f"    def {name}(self{other}, /) -> Excitation: ...\n"
 
 
-def body(members, is_class):
-    text = ""
-    for name, value in vars(members).items():
+def body(name, members):
+    text = more = MORE.get(name, "")
+    for own, value in vars(members).items():
+        if f"def {own}(" in more or f"    {own}: " in more:
+            continue
         if isinstance(value, property):
-            text += f"    @property\n    def {name}(self) -> {result_of(value.__doc__)}: ...\n"
-        elif isinstance(value, types.FunctionType):
-            name = "__call__" if name == "_call" else name
-            text += ("" if is_class else "    @staticmethod\n") + function(name, value, "    ")
+            text += f"    @property\n    def {own}(self) -> {dinal._words.type_of_field(value)}: ...\n"
+        elif own in ("__len__", "__iter__"):
+            text += "    def __len__(self) -> int: ...\n" if own == "__len__" else "    def __iter__(self) -> Iterator[Record]: ...\n"
+        elif isinstance(value, types.FunctionType) and own.startswith("__") and own != "__call__":
+            text += operator(own)
+        elif isinstance(value, types.FunctionType) and hasattr(value, "__signature__"):
+            if own == "_call":
+                text += f"    def __call__(self, *arguments: Any, **options: Any) -> {inspect.signature(value).return_annotation}: ...\n"
+                continue
+            text += ("" if isinstance(members, type) else "    @staticmethod\n") + \
+                function(own, value, "    ", "RigRun" if (name, own) == ("Rig", "simulate") else None)
+        elif own == "__call__":
+            text += "    def __call__(self, t: Any, theta: Number = ..., velocity: Number = ...) -> Any: ...\n"
     return text or "    pass\n"
 
 
 def stubs():
-    dinal._objects.Default.__repr__ = lambda self: "..."  # the words of the documentation are no Python
+    dinal._words.Default.__repr__ = lambda self: "..."  # the words of the documentation are no Python
     text = HEAD
     for name, value in dinal._members.items():
-        if isinstance(value, type):
-            text += f"class {name}(Object):\n{body(value, True)}"
+        if name == "system":
+            one = str(inspect.signature(value)).replace("k: Number = ...", "k: Number")
+            text += f"@overload\ndef system{one}: ...\n@overload\n"
+            text += "def system(*, bodies: Options, links: Options = ..., units: Options = ...) -> Rig: ...\n"
+        elif isinstance(value, type):
+            text += f"class {name}(Object):\n{body(name, value)}"
         elif isinstance(value, types.ModuleType):
-            text += f"class _{name}:\n{body(value, False)}{name}: _{name}\n"
+            text += f"class _{name}:\n{body(name, value)}{name}: _{name}\n"
         else:
             text += function(name, value)
-    return text
+    return text + AFTER
 
 
 if __name__ == "__main__":
