@@ -7,6 +7,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -580,8 +581,8 @@ constexpr lua::Member run_members[] = {
     {lua::a_method<run_at>,
      {"run:at(t) -> theta, velocity, z",
       "Angle (rad) and velocity (rad per time unit) at any time of the run, at the accuracy of the integrator; in "
-      "a run with states also the table z. Of several bodies tables by body. A run read from a file is interpolated by "
-      "cubics.",
+      "a run with states also the table z. Of several bodies tables by body. For a vector of times all are vectors. A run "
+      "read from a file is interpolated by cubics.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {lua::a_method<columns>,
      {"run:columns(name, ...) -> vector, ...",
@@ -814,7 +815,9 @@ void push_by_name(lua_State* L, const std::vector<Named>& named, const std::vect
 
 }  // namespace
 
-int run_at(lua_State* L) {
+namespace {
+
+int at_one_time(lua_State* L) {
     const RunHandle run =
         lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
@@ -846,6 +849,42 @@ int run_at(lua_State* L) {
         lua::set_value(L, trajectory.names()[trajectory.first_state() + i].c_str(), states[i]);
     }
     return 3;
+}
+
+}  // namespace
+
+/// At each of several times: vectors in place of the numbers, also in tables by name.
+int run_at(lua_State* L) {
+    if (lua::test<lua::Vector>(L, 2) == nullptr && !lua_istable(L, 2)) return at_one_time(L);
+    lua_settop(L, 2);
+    std::map<std::pair<int, std::string>, std::vector<double>> found;  // by the result and the name in it
+    int results = 0;
+    for (const double t : lua::numbers_at(L, 2, "run:at(t)", "t")) {
+        lua_settop(L, 2);
+        lua_pushcfunction(L, lua::guarded<at_one_time>);
+        lua_pushvalue(L, 1);
+        lua_pushnumber(L, t);
+        lua_call(L, 2, LUA_MULTRET);
+        results = lua_gettop(L) - 2;
+        for (int i = 1; i <= results; ++i) {
+            if (!lua_istable(L, i + 2)) found[{i, ""}].push_back(lua_tonumber(L, i + 2));
+            for (const std::string& name :
+                 lua_istable(L, i + 2) ? lua::text_keys(L, i + 2) : std::vector<std::string>()) {
+                lua_getfield(L, i + 2, name.c_str());
+                found[{i, name}].push_back(lua_tonumber(L, -1));
+                lua_pop(L, 1);
+            }
+        }
+    }
+    lua_settop(L, 2);
+    for (; found.empty() && results < 2; ++results) lua::push_vector(L, {});
+    for (auto& [place, numbers] : found) {
+        const bool is_first = lua_gettop(L) < place.first + 2;
+        if (!place.second.empty() && is_first) lua_newtable(L);
+        lua::push_vector(L, std::move(numbers));
+        if (!place.second.empty()) lua_setfield(L, -2, place.second.c_str());
+    }
+    return results;
 }
 
 /// From the equation of motion at the rows.

@@ -1,6 +1,7 @@
 // The module dinal._dinal: a Lua state with all of dinal in it, and the tables that describe its members. The package
 // in dinal/ makes classes and functions of Python out of these.
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <string>
@@ -160,6 +161,34 @@ py::object drawn(py::handle self) {
     });
 }
 
+/// For other programs that draw: of each figure of a picture its axes, curves and the intervals of sticking.
+py::object figures(py::handle self) {
+    return in_lua([&](lua_State* L) -> py::object {
+        to_lua(L, self);
+        const auto array = [](const plots::Numbers& numbers) {
+            return py::array_t<double>(static_cast<py::ssize_t>(numbers.values.size()), numbers.values.data());
+        };
+        const auto axis = [](const plots::Axis& own) {
+            const auto limits = own.limits ? py::object(py::make_tuple(own.limits->low, own.limits->high)) : py::none();
+            return py::make_tuple(own.label, own.logarithmic, limits);
+        };
+        py::list all;
+        for (const plots::Figure& figure : lua::self<api::Picture>(L, 1, "plot").figures) {
+            py::list curves, stuck;
+            for (const plots::Curve& curve : figure.curves) {
+                curves.append(py::make_tuple(array(curve.x), array(curve.y), curve.label,
+                                             plots::style_names[static_cast<std::size_t>(curve.style)],
+                                             curve.base ? py::object(array(*curve.base)) : py::none()));
+            }
+            for (const plots::Interval& interval : figure.stuck)
+                stuck.append(py::make_tuple(interval.low, interval.high));
+            all.append(
+                py::make_tuple(figure.title, axis(figure.x), axis(figure.y), curves, stuck, figure.shades != nullptr));
+        }
+        return all;
+    });
+}
+
 /// The values of a piece of Lua, an expression if it is one; the names are local variables in it.
 py::object run_text(const std::string& text, const py::dict& variables) {
     constexpr const char* name = "=dinal.lua";
@@ -217,6 +246,7 @@ PYBIND11_MODULE(_dinal, module) {
     module.def("call_value", call_value);
     module.def("operated", operated);
     module.def("drawn", drawn);
+    module.def("figures", figures);
     module.def("run_text", run_text);
     module.def("set_up", set_up);
     module.def("after_fork", after_fork);

@@ -69,6 +69,24 @@ test("events are a list of tables, the same list each time", function()
     equal(run.events, events)
 end)
 
+test("run:at gives vectors at several times, of one body and of several", function()
+    local times = vector { 0.5, 1.25, 2 }
+    local theta, velocity = run:at(times)
+    for i = 1, 3 do
+        local x, v = run:at(times[i])
+        equal(theta[i], x)
+        equal(velocity[i], v)
+    end
+    equal(run:at { 0.5, 1.25, 2 }, theta)
+    equal(#run:at {}, 0)
+    local rig = system { bodies = { a = { I = 1, k = 1 }, b = { I = 2, k = 3 } }, links = { l = { "a", "b", k = 1 } } }
+    local both = rig:simulate { theta0 = { a = 1 }, states = { z = { rate = function(t) return 2 end } }, t_end = 3 }
+    local angles, speeds, z = both:at(times)
+    equal(angles.b[2], (both:at(1.25)).b)
+    equal(speeds.a[3], select(2, both:at(2)).a)
+    near(z.z[3], 4, 1e-12)
+end)
+
 test("run:at gives theta and velocity at rows and between them", function()
     local theta, velocity = run:at(run.t[200])
     near(theta, run.theta[200], 1e-12)

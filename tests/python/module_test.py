@@ -180,6 +180,39 @@ class Objects(unittest.TestCase):
                        "dinal.sweep(over={'r': [7]}, run=dinal.lua('function(p) print(p.r) return { A = 1 } end'))", env=buffered)
         self.assertEqual(shown.stdout, "1\n2\n3\n4\n5\n6\n7.0\n", shown.stderr)
 
+    def test_axes(self):
+        """The figure goes to axes of Matplotlib; here to something that notes what they are told."""
+        class Axes:
+            def __init__(self):
+                self.told = {}
+
+            def __getattr__(self, name):
+                if name.startswith("_"):
+                    raise AttributeError(name)
+                return lambda *arguments, **options: self.told.setdefault(name, []).append((arguments, options))
+        ax = Axes()
+        self.assertIs(self.run.plot(ax=ax, title="a run"), ax)
+        (t, theta, form), options = ax.told["plot"][0]
+        self.assertLess(np.abs(theta - self.run.at(t)[0]).max(), 1e-9)
+        self.assertEqual((form, ax.told["set_title"][0][0][0], ax.told["set_xscale"][0][0][0]), ("-", "a run", "linear"))
+        self.assertEqual(len(ax.told["axvspan"]), len(self.run.events.t[self.run.events.kind == "rest"]))
+        two = [Axes(), Axes()]
+        self.run.plot(y=["theta", "velocity"], ax=two)
+        self.assertEqual([len(one.told["plot"]) for one in two], [1, 1])
+        with self.assertRaisesRegex(ValueError, "has 2 parts, and ax 1"):
+            self.run.plot(y=["theta", "velocity"], ax=ax)
+        dinal.plot([[0, 1], [1, 2]], ([0, 1], [2, 3], dict(style="fill")), ax=ax)
+        self.assertEqual(len(ax.told["fill_between"]), 1)
+
+    def test_at(self):
+        times = np.linspace(0, 20, 7)
+        theta, velocity = self.run.at(times)
+        self.assertEqual(theta.tolist(), [self.run.at(t)[0] for t in times])
+        self.assertEqual(self.run.at([1, 2])[1].tolist(), [self.run.at(1)[1], self.run.at(2)[1]])
+        self.assertEqual([len(part) for part in self.run.at([])], [0, 0])
+        run = self.sys.simulate(states={"e": {"rate": lambda t: 1}}, t_end=5)
+        self.assertLess(np.abs(run.at(times / 5)[2].e - times / 5).max(), 1e-12)
+
     def test_pages(self):
         self.assertIn("<table", self.run.events._repr_html_())
         picture = self.run.plot(show=False)

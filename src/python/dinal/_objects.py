@@ -215,6 +215,10 @@ def callable_of(member, has_self, owner):
         if with_curves:
             is_one = len(arguments) == 2 and all(map(is_row, arguments))
             arguments = ([arguments] if is_one else list(arguments),)
+        axes = options.pop("ax", None)
+        if axes is not None:
+            draw(axes, call(number, self, arguments, {**options, "show": False}, one_table))
+            return axes
         result = call(number, self, arguments, options, one_table)
         if is_run and getattr(result, "status", None) == "failed":
             warnings.warn(f"{member['name']}: {result.outcome}", RunWarning, stacklevel=3)
@@ -232,6 +236,32 @@ def callable_of(member, has_self, owner):
     function.__doc__ = _words.documentation(member)
     function.__signature__ = _words.signature_of(member, has_self, owner)
     return function
+
+
+def draw(axes, picture):
+    """With Matplotlib: each figure into axes of its own."""
+    import numpy
+    figures, several = _dinal.figures(picture), numpy.ravel(axes)
+    if len(figures) != len(several):
+        raise ValueError(f"this picture has {len(figures)} parts, and ax {len(several)}: give a list of as many axes")
+    for ax, (title, x, y, curves, stuck, is_map) in zip(several, figures):
+        if is_map:
+            raise ValueError("a map is not drawn into axes: use ax.pcolormesh with the columns of the data")
+        for times, values, label, style, base in curves:
+            name = label or "_nolegend_"
+            if style == "fill":
+                ax.fill_between(times, values, 0 if base is None else base, label=name, alpha=.5)
+            else:
+                ax.plot(times, values, "." if style == "points" else "-", label=name)
+        for low, high in stuck:
+            ax.axvspan(low, high, alpha=.1)
+        for of, (label, is_log, limits) in zip("xy", (x, y)):
+            getattr(ax, f"set_{of}label")(label)
+            getattr(ax, f"set_{of}scale")("log" if is_log else "linear")
+            limits and getattr(ax, f"set_{of}lim")(limits)
+        ax.set_title(title)
+        if any(curve[2] for curve in curves):
+            ax.legend()
 
 
 def is_row(value):

@@ -272,6 +272,7 @@ def in_python(signature):
 
 def documentation(member):
     options = "".join(f"    {name}: {in_sentence(meaning)}\n" for _, name, meaning, *_ in member["options"])
+    options += "    ax: axes of Matplotlib to draw into, as many as the picture has parts\n" if "    show = " in options else ""
     example = python(member["example"])
     shown = "\n    " + (example or member["example"]).replace("\n", "\n    ")
     return (f"{in_python(member['signature'])}\n\n{in_sentence(member['summary'])}\n\n{options}\n"
@@ -306,6 +307,8 @@ def signature_of(member, has_self, owner):
         own = python_name(name)
         annotation = type_of_option(name, kind, choices, wanted, owner == "theory")
         shown.setdefault(own, P(own, P.KEYWORD_ONLY, default=default, annotation=annotation))
+    if "show" in shown:
+        shown["ax"] = P("ax", P.KEYWORD_ONLY, default=Default("None"), annotation=Type("Any"))
     if "arguments" in shown and not member["options"]:
         shown["options"] = P("options", P.VAR_KEYWORD, annotation=Type("Any"))
     result = type_of_result(member["name"], member["signature"].partition(" ->")[2])
