@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "api/animate.hpp"
@@ -16,6 +18,7 @@
 #include "lua/standard_globals.hpp"
 #include "python/values.hpp"
 #include "source/function_source.hpp"
+#include "source/value_text.hpp"
 #include "terminal/display.hpp"
 #include "text/version.hpp"
 
@@ -206,6 +209,64 @@ py::object run_text(const std::string& text, const py::dict& variables) {
     });
 }
 
+/// For pickle: Lua text that makes the value again, the values that it names, and why there is none, if so.
+py::object written(py::handle self) {
+    return in_lua([&](lua_State* L) -> py::object {
+        to_lua(L, self);
+        py::dict variables;
+        source::ValueText writer(L, [&](int index) -> std::string {
+            if (lua_rawequal(L, index, 1) != 0) return "";  // it has no text
+            const std::string name = fmt::format("python{}", variables.size() + 1);
+            variables[name.c_str()] = to_python(L, index);
+            return name;
+        });
+        const std::string expression = writer.expression(1);
+        std::string text;
+        for (const std::string& global : writer.globals()) text += fmt::format("local {}\n", global);
+        const std::string why = writer.remarks().empty() ? "" : writer.remarks().front().substr(3);
+        return py::make_tuple(text.empty() ? expression : text + "return " + expression, variables, why);
+    });
+}
+
+/// For pickle: the columns of data as (name, values, unit), and what else they say in words.
+py::object parts(py::handle self) {
+    return in_lua([&](lua_State* L) -> py::object {
+        to_lua(L, self);
+        const api::Data& data = *lua::self<api::DataHandle>(L, 1, "data");
+        py::list columns;
+        for (const api::DataColumn& column : data.columns) {
+            const bool of_words = column.numbers() == nullptr;
+            of_words ? columns.append(py::make_tuple(column.name, py::cast(column.words()), column.unit))
+                     : columns.append(py::make_tuple(column.name, numbers_to_python(*column.numbers()), column.unit));
+        }
+        return py::make_tuple(
+            columns, data.parameters,
+            std::vector<std::string>{data.heading, data.points_of, data.points_over, data.pieces_of, data.dotted_of},
+            data.is_spectrum);
+    });
+}
+py::object joined(const py::list& columns, const std::vector<std::string>& parameters,
+                  const std::vector<std::string>& words, bool is_spectrum) {
+    return in_lua([&](lua_State* L) {
+        api::Data data{.columns = {},
+                       .heading = words[0],
+                       .points_of = words[1],
+                       .points_over = words[2],
+                       .pieces_of = words[3],
+                       .dotted_of = words[4],
+                       .is_spectrum = is_spectrum,
+                       .parameters = parameters};
+        for (const py::handle column : columns) {
+            const auto [name, values, unit] = column.cast<std::tuple<std::string, py::object, std::string>>();
+            data.columns.push_back(py::isinstance<py::list>(values)
+                                       ? api::column_of(name, values.cast<std::vector<std::string>>())
+                                       : api::column_of(name, values.cast<std::vector<double>>(), unit));
+        }
+        api::push_data(L, std::move(data));
+        return to_python(L, -1);
+    });
+}
+
 /// What is shown goes to a function of Python; what goes wrong there is told on standard error.
 template <class Show>
 void show(const Show& by_python) {
@@ -248,6 +309,9 @@ PYBIND11_MODULE(_dinal, module) {
     module.def("drawn", drawn);
     module.def("figures", figures);
     module.def("run_text", run_text);
+    module.def("written", written);
+    module.def("parts", parts);
+    module.def("joined", joined);
     module.def("set_up", set_up);
     module.def("after_fork", after_fork);
 }

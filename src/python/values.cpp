@@ -44,13 +44,6 @@ py::object reference_to(lua_State* L, int index) {
 
 // ---- from Lua
 
-py::object array_of(const lua::Vector& vector) {
-    const py::capsule keeps(new lua::Vector(vector), [](void* kept) { delete static_cast<lua::Vector*>(kept); });
-    py::array_t<double> array(static_cast<py::ssize_t>(vector.size()), vector.begin(), keeps);
-    array.attr("flags").attr("writeable") = false;
-    return array;
-}
-
 /// Each level of a conversion needs some of the C++ stack.
 void check_depth(int depth) {
     constexpr int deepest = 100;
@@ -150,7 +143,7 @@ py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
     if (const lua::Foreign* own = lua::foreign(L, index)) {
         return py::reinterpret_borrow<py::object>(static_cast<PyObject*>(own->function.get()));
     }
-    if (const auto* vector = lua::test<lua::Vector>(L, index)) return array_of(*vector);
+    if (const auto* vector = lua::test<lua::Vector>(L, index)) return numbers_to_python(*vector);
     const auto* own = lua::test<py::object>(L, index);
     return own != nullptr ? *own : reference_to(L, index);
 }
@@ -292,6 +285,13 @@ PyTypeObject* reference_type() {
         return reinterpret_cast<PyTypeObject*>(PyType_FromSpec(&spec));
     }();
     return type;
+}
+
+py::object numbers_to_python(const lua::Vector& vector) {
+    const py::capsule keeps(new lua::Vector(vector), [](void* kept) { delete static_cast<lua::Vector*>(kept); });
+    py::array_t<double> array(static_cast<py::ssize_t>(vector.size()), vector.begin(), keeps);
+    array.attr("flags").attr("writeable") = false;
+    return array;
 }
 
 py::object to_python(lua_State* L, int index) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lua/bind.hpp"
+#include "lua/vector.hpp"
 #include "python/state.hpp"
 
 namespace dinal::python {
@@ -9,7 +10,10 @@ namespace dinal::python {
 /// The type of whatever Lua has that Python has not. Its subclasses are made in Python, one for each class of Lua.
 PyTypeObject* reference_type();
 
-/// The value at `index`. A vector is an array on its own memory, which it keeps.
+/// An array on the memory of the vector, which it keeps.
+py::object numbers_to_python(const lua::Vector& vector);
+
+/// The value at `index`; a vector is such an array.
 py::object to_python(lua_State* L, int index);
 
 /// Pushes the value. Throws what Python raises meanwhile.

@@ -128,7 +128,8 @@ std::string delay_text(double delay) {
 std::string text_of(const Context& context, const model::Polyline& line) {
     const std::size_t most_written_out = context.whole != nullptr ? 10'000 : 8;
     const model::Samples& s = *line.samples;
-    if (!s.origin.empty()) {
+    const auto aside = context.whole != nullptr ? context.whole->aside(s.t) : std::nullopt;
+    if (!aside && !s.origin.empty()) {
         return fmt::format("excitation.samples({}){}", s.origin, delay_text(s.delay));
     }
     std::string between;
@@ -137,6 +138,9 @@ std::string text_of(const Context& context, const model::Polyline& line) {
                               model::terms::interpolation_names[static_cast<std::size_t>(s.interpolation)]);
     }
     if (s.period) between += ", period = " + text::number_literal(*s.period);
+    if (aside) {
+        return fmt::format("excitation.samples{{ t = {}, M = {}{} }}", *aside, *context.whole->aside(s.M), between);
+    }
     if (s.t.size() <= most_written_out) {
         return fmt::format("excitation.samples{{ t = {}, M = {}{} }}", text::list_literal(s.t), text::list_literal(s.M),
                            between);

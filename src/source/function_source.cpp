@@ -217,8 +217,18 @@ void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
         lua_rawsetp(L, LUA_REGISTRYINDEX, &kept_key);
     }
     luaL_getsubtable(L, -1, chunk_name);
+    const int texts = lua_gettop(L);
     lua_pushlstring(L, text.data(), text.size());
-    lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
+    lua_pushvalue(L, -1);
+    lua_rawseti(L, texts, 0);  // the last one
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, texts) == LUA_TNIL) {  // a text is listed once, however often it is loaded
+        lua_pushvalue(L, texts + 1);
+        lua_pushboolean(L, 1);
+        lua_rawset(L, texts);
+        lua_pushvalue(L, texts + 1);
+        lua_rawseti(L, texts, static_cast<lua_Integer>(lua_rawlen(L, texts)) + 1);
+    }
     lua_settop(L, top);
 }
 
@@ -228,7 +238,7 @@ std::optional<std::string> last_kept_source(lua_State* L, const std::string& chu
     std::optional<std::string> text;
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) == LUA_TTABLE &&
         lua_getfield(L, -1, chunk_name.c_str()) == LUA_TTABLE) {
-        lua_rawgeti(L, -1, static_cast<lua_Integer>(lua_rawlen(L, -1)));
+        lua_rawgeti(L, -1, 0);
         text = lua::text_at(L, -1);
     }
     lua_settop(L, top);

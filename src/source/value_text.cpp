@@ -9,6 +9,8 @@
 #include "lua/foreign.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
+#include "motion/integrators.hpp"
+#include "source/describe.hpp"
 #include "source/function_source.hpp"
 #include "text/characters.hpp"
 
@@ -121,6 +123,7 @@ std::string ValueText::table(int index) {
 
 std::string ValueText::object(int index) {
     if (const auto* vector = lua::test<lua::Vector>(L_, index)) {
+        if (aside_) return aside_(index);
         budget_ -= static_cast<int>(std::min<std::size_t>(vector->size(), 1'000'000));
         if (budget_ < 0) {
             return nothing("a long vector");
@@ -131,14 +134,24 @@ std::string ValueText::object(int index) {
         }
         return "vector{ " + text + " }";
     }
-    const lua::Documented found = lua::documented(L_, index);
-    const std::string_view name = found.owner != nullptr ? found.owner->name : "";
-    if (name != "system" && name != "integrator" && name != "excitation" && name != "friction" && name != "spring") {
-        return nothing(lua::describe(L_, index));
-    }
-    std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text
+    const auto text = [this](const auto* own) { return own != nullptr ? lua_text(L_, *own, this) : ""; };
+    std::string own = text(lua::test<model::Oscillator>(L_, index)) + text(lua::test<model::Friction>(L_, index)) +
+                      text(lua::test<model::Spring>(L_, index));
+    if (const auto* rig = lua::test<model::AssemblyHandle>(L_, index)) own = lua_text(L_, **rig, this);
+    if (const auto* excitation = lua::test<model::Excitation>(L_, index)) own = describe(L_, *excitation, this);
+    if (const auto* method = lua::test<motion::Integrator>(L_, index)) own = lua_text(*method);
+    if (!own.empty()) return own;
+    if (aside_ && lua::documented(L_, index).owner != nullptr) own = aside_(index);
+    if (!own.empty()) return own;
+    return nothing(lua::describe(L_, index));
+}
+
+std::optional<std::string> ValueText::aside(const std::vector<double>& numbers) {
+    if (!aside_) return std::nullopt;
+    lua::push_vector(L_, numbers);
+    std::string name = aside_(lua_gettop(L_));
     lua_pop(L_, 1);
-    return text;
+    return name;
 }
 
 std::string ValueText::function(int index) {
@@ -152,6 +165,7 @@ std::string ValueText::function(int index) {
     const auto source = known_source(L_, index);
     if (!source) {
         const lua::Foreign* other = lua::foreign(L_, index);
+        if (aside_ && other != nullptr) return aside_(index);
         return nothing(other != nullptr ? fmt::format("a function written in {}", other->language)
                                         : "a function whose text is not at hand");
     }
@@ -213,7 +227,9 @@ void ValueText::note_global(int environment, const std::string& name) {
     if (users) {
         names_.push_back(name);
         const bool itself = std::find(open_.begin(), open_.end(), lua_topointer(L_, -1)) != open_.end();
-        // function M(t) return M_old(t) end needs M_old; a function that calls itself is there already.
+        // function M(t) return M_old(t) end needs M_old; a function that calls itself is there already, if it has a
+        // name.
+        if (itself && aside_) nothing("the global function " + name + ", which calls itself: make it local");
         globals_.push_back(name + " = " + (itself ? "nil" : expression(-1)));
     }
     lua_pop(L_, 2);

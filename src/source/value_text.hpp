@@ -1,8 +1,12 @@
 // The Lua text of values and functions, so that a file of results can say how to repeat the run.
 #pragma once
 
+#include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lua/lua_headers.hpp"
@@ -17,8 +21,16 @@ public:
     /// At most so many values are written down; what is larger belongs into a file of its own.
     explicit ValueText(lua_State* L, int most_values = 10'000) : L_(L), budget_(most_values) {}
 
+    /// A variable that stands for the value at `index`, which travels by itself: a vector, a function of another
+    /// language, an object that has no text; empty when there is none. Then nothing is too large.
+    using Aside = std::function<std::string(int index)>;
+    ValueText(lua_State* L, Aside aside) : L_(L), aside_(std::move(aside)), budget_(std::numeric_limits<int>::max()) {}
+
     /// An expression that gives the value at `index` again; `nil` and one of the remarks() when there is none.
     std::string expression(int index);
+
+    /// The numbers, if they travel by themselves.
+    std::optional<std::string> aside(const std::vector<double>& numbers);
 
     /// "w = 3": what must stand before the expressions.
     [[nodiscard]] const std::vector<std::string>& globals() const { return globals_; }
@@ -35,6 +47,7 @@ private:
     std::string nothing(std::string_view what);
 
     lua_State* L_;
+    Aside aside_ = {};
     std::vector<std::string> globals_;
     std::vector<std::string> names_;  // of globals that are done or being done
     std::vector<const void*> open_;   // tables and functions being written: a cycle has no text

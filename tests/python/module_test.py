@@ -3,7 +3,9 @@
 Run by ctest with PYTHONPATH set to the module's folder: python3 module_test.py SOURCE PROGRAM.
 """
 
+import concurrent.futures
 import contextlib
+import copy
 import gc
 import inspect
 import io
@@ -11,6 +13,7 @@ import math
 import multiprocessing
 import os
 import pathlib
+import pickle
 import random
 import signal
 import subprocess
@@ -28,7 +31,7 @@ import pandas
 
 import dinal
 
-SOURCE, PROGRAM = sys.argv[1:3]
+SOURCE, PROGRAM = [*sys.argv, "", ""][1:3]
 
 
 def python(code, **more):
@@ -224,6 +227,99 @@ class Objects(unittest.TestCase):
             self.assertTrue(shown._repr_html_().startswith("<pre>"), shown)
         self.assertEqual(self.run._ipython_key_completions_(), self.run.names)
         self.assertIn("stuck", python("dinal.system(I=1, k=4, Rd=1).simulate(theta0=1, t_end=9).plot()").stdout)
+
+
+def law(speed):
+    return .3 + .1 * speed
+
+
+def drive(t):
+    return math.sin(t)
+
+
+class Travel(unittest.TestCase):
+    """Objects are pickled and copied."""
+
+    def both(self, value):
+        self.assertIs(copy.deepcopy(value), value)
+        again = pickle.loads(pickle.dumps(value))
+        self.assertIs(type(again), type(value))
+        self.assertEqual(str(again), str(value))
+        return again
+
+    def test_what_has_a_text(self):
+        rig = dinal.system(bodies=dict(a=dict(I=1, k=2, friction=dinal.friction.law(law, Re=.5)), b=dict(I=2)), units=dict(theta="m"),
+                           links=dict(l=("a", "b", dict(k=3, Rd=.1))))
+        for value in (dinal.system(I=1, k=4, Rd=.3, Re=.4, C=.1, walls=dict(upper=1), spring=dinal.spring.polynomial({3: .1})), rig,
+                      dinal.friction.stribeck(Rd=.3, Re=.6, speed=.1), dinal.friction.law(law), dinal.integrator.rk4(h=.01),
+                      dinal.spring.polynomial({3: .5}), dinal.system(I=1, k=1, spring=dinal.lua("function(x) return x^3 end"))):
+            self.both(value)
+        again = self.both(rig)
+        starts = dict(theta0=dict(a=1, b=0), t_end=5)
+        self.assertEqual(again.simulate(**starts).a.theta.tolist(), rig.simulate(**starts).a.theta.tolist())
+
+    def test_excitations(self):
+        t = np.linspace(0, 5, 20_001)
+        times = np.linspace(0, 6, 50)
+        for e in (2 * dinal.excitation.harmonic(frequency=.4) - dinal.excitation.pulse(at=1, width=.3).delay(.5).window(0, 3),
+                  dinal.excitation.samples(t=t, M=np.sin(t), interpolation="cubic"), dinal.excitation.scripted(drive),
+                  dinal.excitation.scripted(dinal.lua("function(t) return A*v[2]*t end", A=2, v=[1, 3.]))):
+            again = pickle.loads(pickle.dumps(e))
+            self.assertEqual(again(times).tolist(), e(times).tolist())
+
+    def test_lua_functions(self):
+        weights = np.random.default_rng(1).uniform(size=30_000)
+        helper = dinal.lua("function(x) return w[1] + #w + x + f(x) end", w=weights, f=math.sqrt)
+        f = dinal.lua("function(p) return { y = h(p.x), z = s.omega0, n = d.n[2] } end", h=helper, s=dinal.system(I=1, k=4), d=dinal.data(n=[1, 2]))
+        again = pickle.loads(pickle.dumps(f))
+        self.assertEqual(again({"x": 4}), f({"x": 4}))
+        self.assertEqual(again({"x": 4}).y, weights[0] + 30_000 + 4 + 2)
+        recursive = dinal.lua("(function() local function f(n) return n < 2 and 1 or n * f(n - 1) end return f end)()")
+        self.assertEqual(pickle.loads(pickle.dumps(recursive))(5), 120)
+
+    def test_what_remembers_its_call(self):
+        osc = dinal.system(I=1, k=4, Rd=.3)
+        times = np.array([0, 1, 2.])
+        run = osc.simulate(M=drive, theta0=1, times=times)
+        times[1] = 1.5
+        self.assertEqual(self.both(run).t.tolist(), [0, 1, 2])
+        self.assertEqual(self.both(run.continue_(t_end=4)).theta[-1], run.continue_(t_end=4).theta[-1])
+        s = osc.steady(M=dinal.excitation.harmonic(frequency=.4))
+        self.both(s.run)
+        self.assertEqual(self.both(s).amplitude, s.amplitude)
+        self.both(run.energy())
+        self.both(dinal.identify(data=osc.simulate(theta0=1, t_end=9)))
+
+    def test_data(self):
+        frame = dinal.system(I=1, k=4, Rd=.3).simulate(theta0=1, t_end=5)
+        self.assertEqual(self.both(frame.events).kind.tolist(), frame.events.kind.tolist())
+        swept = dinal.sweep(over={"a": [1, 2], "b": [1, 2]}, run=dinal.lua("function(p) return { y = p.a } end"))
+        self.assertIn("<svg", self.both(swept).plot(x="a", y="b", z="y", show=False)._repr_svg_())
+        self.assertEqual(pickle.loads(pickle.dumps(frame[0])).theta, 1)
+
+    def test_what_cannot(self):
+        for value, words in ((dinal.excitation.scripted(lambda t: 1.), "lambda"), (dinal.lua("coroutine.create(print)"), "thread"),
+                             (dinal.system(I=1, k=1).simulate(M=lambda t: 1., t_end=1), "lambda"),
+                             (dinal.report(title="x"), "report"), (dinal.lua("{ r = s:simulate{ t_end = 1 } }", s=dinal.system(I=1, k=4)).r, "within a call"),
+                             (dinal.lua("(function() function again(n) return again(n - 1) end return again end)()"), "make it local")):
+            with self.assertRaisesRegex((pickle.PicklingError, AttributeError), words):
+                pickle.dumps(value)
+
+    def test_errors(self):
+        for call in (lambda: dinal.system(I=-1, k=4), lambda: dinal.system(K=4), lambda: dinal.lua("error('x')")):
+            with self.assertRaises(dinal.Error) as caught:
+                call()
+            again = pickle.loads(pickle.dumps(caught.exception))
+            self.assertEqual((type(again), str(again), again.culprit), (type(caught.exception), str(caught.exception), caught.exception.culprit))
+
+    def test_processes(self):
+        with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+            systems = [dinal.system(I=1, k=k) for k in (1, 4)]
+            self.assertEqual(list(pool.map(frequency, systems)), [1, 2])
+
+
+def frequency(system):
+    return system.omega0
 
 
 class Arrays(unittest.TestCase):

@@ -3,7 +3,9 @@
 import base64
 import difflib
 import html
+import importlib
 import inspect
+import pickle
 import re
 import sys
 import types
@@ -18,6 +20,9 @@ class Error(Exception):
 
     call = option = culprit = ""
     __str__ = Exception.__str__  # that of KeyError has quotes
+
+    def __reduce__(self):
+        return error_again, (type(self).__mro__[2], str(self), self.call, self.option, self.culprit)
 
 
 class RunWarning(RuntimeWarning):
@@ -45,7 +50,7 @@ class Record(dict):
 class Object(_dinal.Reference):
     """A value of Lua. Its class says what it has."""
 
-    __slots__ = ()
+    __slots__ = ("_recipe",)  # of what has no text: the name of the member, the object that has it, the arguments
     __array_ufunc__ = None  # 2 * e is a matter of e, also when the 2 is NumPy's
 
     def __getattr__(self, name):
@@ -68,10 +73,29 @@ class Object(_dinal.Reference):
             if not 0 <= place < len(self):
                 raise IndexError(f"there is no row {key} among {len(self)}")
             return _dinal.operated("element", self, place + 1)
-        value = _dinal.operated("element", self, key)
+        value = remembered(_dinal.operated("element", self, key), "__getitem__", self, (key,), {})
         import numpy  # late, here and below: the types for editors are written where there may be none
         is_words = isinstance(value, list) and value and all(isinstance(word, str) for word in value)
         return numpy.array(value) if is_words else value
+
+    def __copy__(self):
+        return self  # nothing changes it
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __reduce__(self):
+        """Its Lua text; a run, an energy, a fit is what the same call gives there, to the last digit that it shows."""
+        if type(self).__name__ == "Data":
+            return of_parts, _dinal.parts(self)
+        if type(self) in BY_RECIPE:
+            if not hasattr(self, "_recipe"):
+                raise pickle.PicklingError(f"this {type(self).__name__} cannot be pickled: it was made in Lua, within a call")
+            return again, (*self._recipe, str(self))
+        text, variables, why = _dinal.written(self)
+        if why:
+            raise pickle.PicklingError(f"this {type(self).__name__} cannot be pickled: {why}")
+        return of_text, (text, variables)
 
     def __repr__(self):
         return _dinal.operated("card", self, None)
@@ -112,6 +136,9 @@ class Module(types.ModuleType):
     def __call__(self, *arguments, **options):
         return self._call(*arguments, **options)
 
+    def __reduce__(self):
+        return importlib.import_module, (self.__name__,)
+
 
 # ---- for the C++ side
 
@@ -119,10 +146,50 @@ def error_of(cause, message, *facts):
     call, option, culprit = (fact.decode(errors="replace") for fact in facts)
     message = _words.in_sentence(message.decode(errors="replace"))
     kind = next((kind for said, kind in KINDS if (call or culprit) and re.search(said, message)), None)
-    error = (Error if kind is None else ERRORS[kind])(message)
-    error.call, error.option, error.culprit = _words.in_sentence(call), option, culprit
+    error = error_again(kind or Exception, message, _words.in_sentence(call), option, culprit)
     error.__cause__ = cause
     return error
+
+
+def error_again(kind, message, *facts):
+    error = ERRORS.get(kind, Error)(message)
+    error.call, error.option, error.culprit = facts
+    return error
+
+
+# ---- objects that travel
+
+def kept(value):
+    """The value as it is now."""
+    if isinstance(value, dict):
+        return {key: kept(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(map(kept, value))
+    return value.copy() if not isinstance(value, Object) and hasattr(value, "copy") else value
+
+
+def remembered(value, name, owner, arguments, options):
+    """The value; what has no Lua text remembers how it was made."""
+    if type(value) in BY_RECIPE:
+        Object._recipe.__set__(value, (name, owner, kept(arguments), kept(options)))
+    return value
+
+
+def of_text(text, variables):
+    return _dinal.run_text(text, variables)
+
+
+def of_parts(*parts):
+    return _dinal.joined(*parts)
+
+
+def again(name, owner, arguments, options, said):
+    value = getattr(sys.modules["dinal"] if owner is None else owner, name)
+    if arguments is not None:
+        value = value(*arguments, **options)
+    if str(value) != said:
+        raise pickle.UnpicklingError(f"the same call of {name} gives something else here: {value}, and not {said}")
+    return value
 
 
 def noted(exception, during):
@@ -220,6 +287,7 @@ def callable_of(member, has_self, owner):
             draw(axes, call(number, self, arguments, {**options, "show": False}, one_table))
             return axes
         result = call(number, self, arguments, options, one_table)
+        remembered(result, function.__name__, self, arguments, options)
         if is_run and getattr(result, "status", None) == "failed":
             warnings.warn(f"{member['name']}: {result.outcome}", RunWarning, stacklevel=3)
         return result
@@ -295,7 +363,9 @@ def operators(name):
 
 def field_of(member):
     number = member["number"]
-    return property(lambda self: _dinal.call(number, self, (), {}, False), doc=_words.documentation(member))
+    name = python_name(member["name"])
+    return property(lambda self: remembered(_dinal.call(number, self, (), {}, False), name, self, None, {}),
+                    doc=_words.documentation(member))
 
 
 def class_of(title, name, signature, summary, members):
@@ -312,7 +382,10 @@ def class_of(title, name, signature, summary, members):
         own.update(_repr_html_=lambda self: _dinal.drawn(self), _repr_svg_=lambda self: None)
     if name == "picture":
         own["_repr_svg_"] = lambda self: _dinal.drawn(self)
-    return type(class_name(name), (Object,), own)
+    made = type(class_name(name), (Object,), own)
+    if name in ("run", "steady motion", "energy", "fit", "picture"):
+        BY_RECIPE.add(made)
+    return made
 
 
 def build():
@@ -338,6 +411,7 @@ def build():
     return made
 
 
+BY_RECIPE = set()
 CLASSES = {"function": Function}
 ERRORS = {kind: type("Error", (Error, kind), {"__module__": "dinal"}) for kind in (TypeError, KeyError, ValueError)}
 _words.classes.update((section[1], class_name(section[1])) for section in _dinal.sections)
