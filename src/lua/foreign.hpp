@@ -14,8 +14,6 @@ struct Foreign {
     int parameters = 1;         ///< that a call must have
     const char* language = "";  ///< "Python"
     std::uint64_t number = 0;   ///< another one for each that was made in this process
-    /// Called before a sweep runs its points one after another, because the function belongs to one thread.
-    void (*runs_alone)(lua_State* L, const char* call) = nullptr;
 };
 
 /// Pushes the C function `call` with that upvalue; gives it its number.

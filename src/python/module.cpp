@@ -5,7 +5,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <iterator>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -19,6 +23,7 @@
 #include "python/values.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
+#include "sweep/sweep_run.hpp"
 #include "terminal/display.hpp"
 #include "text/version.hpp"
 
@@ -60,10 +65,21 @@ py::dict description_of(const lua::Member& member, std::size_t number) {
 struct Numbered {
     const lua::Class* owner;
     const lua::Member* member;
+    bool is_long;  ///< a call may take long: other threads of Python go on meanwhile
 };
 std::vector<Numbered>& all_members() {
     static auto* all = new std::vector<Numbered>();
     return *all;
+}
+
+bool may_be_long(const lua::Member& member) {
+    constexpr std::string_view options[] = {"M", "over", "data", "t_end", "period"};
+    for (const text::Call* call : help::calls_of(member.doc)) {
+        for (const text::Option& option : call->options) {
+            if (std::find(std::begin(options), std::end(options), option.name) != std::end(options)) return true;
+        }
+    }
+    return false;
 }
 
 /// A list of (title, name, signature, summary, example, what stands before a member, members).
@@ -74,7 +90,7 @@ py::list sections() {
         py::list members;
         for (const lua::Member& member : owner.members) {
             members.append(description_of(member, all_members().size()));
-            all_members().push_back({&owner, &member});
+            all_members().push_back({&owner, &member, may_be_long(member)});
         }
         all.append(py::make_tuple(section.title, owner.name, owner.doc.signature, owner.doc.summary, owner.doc.example,
                                   section.prefix, members));
@@ -84,7 +100,8 @@ py::list sections() {
 
 /// Calls what stands at `first` on the stack, with what stands after it, with these arguments, and with the options as
 /// a table; or with one table that has all of them, where one list or dictionary is the table itself.
-py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py::dict& options, bool one_table) {
+py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py::dict& options, bool one_table,
+                   bool is_long = true) {
     luaL_checkstack(L, static_cast<int>(arguments.size()) + LUA_MINSTACK, "too many arguments");
     const bool one = arguments.size() == 1;
     if (one_table && !(one && options.empty() && !PyObject_TypeCheck(arguments[0].ptr(), reference_type()))) {
@@ -94,7 +111,11 @@ py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py
         for (const py::handle argument : arguments) to_lua(L, argument);
         if (!options.empty()) table_to_lua(L, py::tuple(), options);
     }
-    lua_call(L, lua_gettop(L) - first, LUA_MULTRET);
+    {
+        std::optional<Unlocked> others;
+        if (is_long) others.emplace();
+        lua_call(L, lua_gettop(L) - first, LUA_MULTRET);
+    }
     const int count = lua_gettop(L) - first + 1;
     if (count <= 1) return count == 1 ? to_python(L, first) : py::none();
     py::tuple several(static_cast<std::size_t>(count));
@@ -115,7 +136,7 @@ py::object call(std::size_t number, py::handle self, const py::tuple& arguments,
             lua_getfield(L, -1, called.owner->name);
             lua_remove(L, -2);
         }
-        return call_at(L, 1, arguments, options, one_table);
+        return call_at(L, 1, arguments, options, one_table, called.is_long);
     });
 }
 
@@ -189,6 +210,15 @@ py::object figures(py::handle self) {
                 py::make_tuple(figure.title, axis(figure.x), axis(figure.y), curves, stuck, figure.shades != nullptr));
         }
         return all;
+    });
+}
+
+/// sweep of Lua, with a table of options; or a sweep in parts, with the mark of a function of Python.
+template <lua_CFunction function>
+py::object call_sweep(const py::dict& options, const std::string& mark) {
+    return in_lua([&](lua_State* L) {
+        lua_pushcfunction(L, lua::guarded<function>);
+        return call_at(L, 1, mark.empty() ? py::make_tuple(options) : py::make_tuple(options, mark), py::dict(), false);
     });
 }
 
@@ -308,6 +338,8 @@ PYBIND11_MODULE(_dinal, module) {
     module.def("operated", operated);
     module.def("drawn", drawn);
     module.def("figures", figures);
+    module.def("sweep", [](const py::dict& options) { return call_sweep<sweep::run_sweep>(options, {}); });
+    module.def("sweep_in_parts", call_sweep<sweep::sweep_in_parts>);
     module.def("run_text", run_text);
     module.def("written", written);
     module.def("parts", parts);

@@ -31,6 +31,7 @@ unsigned long owner_thread = 0;  // the thread whose call Lua is in; 0: none
 int calls_within = 0;            // of its calls within each other
 bool is_torn = false;            // this process was forked while another thread was in a call
 unsigned long main_thread = 0;
+PyThreadState* unlocked = nullptr;              // of the owner, while other threads of Python run
 auto* const last_exception = new py::object();  // that a function raised during the present call
 std::mutex waiting;
 std::condition_variable left;
@@ -151,7 +152,7 @@ int do_job(lua_State* L) {
 
 [[noreturn]] void throw_interrupt() {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (*last_exception && py::isinstance(*last_exception, py::handle(PyExc_KeyboardInterrupt)))
+    if (*last_exception && !py::isinstance(*last_exception, py::handle(PyExc_Exception)))
         throw_exception(*last_exception);
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
@@ -163,9 +164,10 @@ int take_exception(lua_State* L) {
     lua_settop(L, 1);
     const lua::Remarks* remarks = lua::remembered_remarks(L, 1);
     const std::string during = remarks != nullptr ? remarks->during : "";
-    if (auto* own = lua::test<py::object>(L, 1); own != nullptr && PyExceptionInstance_Check(own->ptr()) != 0) {
-        exception = hooks().attr("noted")(*own, during);
-        *own = py::none();  // Lua may keep the error for long, and the exception keeps all variables of its frames
+    if (auto* own = lua::test<Held>(L, 1); own != nullptr && PyExceptionInstance_Check(own->value.ptr()) != 0) {
+        exception = hooks().attr("noted")(own->value, during);
+        own->value =
+            py::none();  // Lua may keep the error for long, and the exception keeps all variables of its frames
         return 0;
     }
     luaL_tolstring(L, 1, nullptr);
@@ -179,8 +181,14 @@ int take_exception(lua_State* L) {
 }
 
 int object_text(lua_State* L) {
-    const auto* own = lua::test<py::object>(L, 1);
-    return lua::push_text(L, own == nullptr ? "?" : py::repr(*own).cast<std::string>());
+    need_python();
+    const auto* own = lua::test<Held>(L, 1);
+    if (own == nullptr) return lua::push_text(L, "?");
+    if (PyExceptionInstance_Check(own->value.ptr()) == 0)
+        return lua::push_text(L, py::repr(own->value).cast<std::string>());
+    const auto name = py::type::of(own->value).attr("__name__").cast<std::string>();
+    const auto words = py::str(own->value).cast<std::string>();
+    return lua::push_text(L, words.empty() ? name : name + ": " + words);
 }
 
 constexpr lua::Member object_members[] = {{lua::a_metamethod<object_text>("__tostring"), {"", "", ""}}};
@@ -188,6 +196,7 @@ const lua::Class object_class = {"Python object", {"", "", ""}, object_members};
 
 /// os.exit as sys.exit: a plain exit() would skip `finally` and what atexit has registered.
 int exit_of_python(lua_State* L) {
+    need_python();
     const lua_Integer code = lua_isboolean(L, 1) ? 1 - lua_toboolean(L, 1) : luaL_optinteger(L, 1, 0);
     PyErr_SetObject(PyExc_SystemExit, py::int_(code).ptr());
     raise_exception(L, py::error_already_set());
@@ -195,6 +204,7 @@ int exit_of_python(lua_State* L) {
 
 /// Lua's own, its upvalue, writes at once: what Python has printed goes first.
 int print_after_python(lua_State* L) {
+    need_python();
     flush_python();
     terminal::make_way_for_output(true);
     lua_pushvalue(L, lua_upvalueindex(1));
@@ -212,7 +222,7 @@ int open(lua_State* L) {
     lua_pushcfunction(L, lua::guarded<exit_of_python>);
     lua_setfield(L, -2, "exit");
     help::open_library(L);
-    lua::add_class<py::object>(L, object_class);
+    lua::add_class<Held>(L, object_class);
     lua_gc(L, LUA_GCGEN, 0, 0);
     return 0;
 }
@@ -236,7 +246,23 @@ void after_fork() {
     new (&left) std::condition_variable;
 }
 
+Unlocked::Unlocked() {
+    unlocked = PyEval_SaveThread();
+}
+
+Unlocked::~Unlocked() {
+    need_python();
+}
+
+void need_python() {
+    if (owner_thread != PyThread_get_thread_ident() || unlocked == nullptr) return;
+    EndsHere guard;
+    PyEval_RestoreThread(std::exchange(unlocked, nullptr));
+    guard.passed();
+}
+
 py::object call_protected(py::object (*body)(lua_State* L, const void* data), const void* data) {
+    need_python();
     const Turn turn;
     lua_State* L = running;
     if (lua_checkstack(L, LUA_MINSTACK) == 0) throw std::bad_alloc();
@@ -274,8 +300,10 @@ RunningOn::~RunningOn() {
 void raise_exception(lua_State* L, const py::error_already_set& raised) {
     *last_exception = raised.value();
     if (raised.trace()) PyException_SetTraceback(last_exception->ptr(), raised.trace().ptr());
+    // Whoever exits, or Ctrl-C in a function of Python: no pcall and no point of a sweep takes that for an error.
+    if (!py::isinstance(*last_exception, py::handle(PyExc_Exception))) lua::request_stop(lua::Stop::interrupted);
     luaL_checkstack(L, 3, "for an exception");
-    lua::push<py::object>(L, *last_exception);
+    lua::push(L, Held(*last_exception));
     lua_error(L);
     std::terminate();  // not reached
 }

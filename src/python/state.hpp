@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <utility>
 
 #include "lua/lua_headers.hpp"
 
@@ -30,6 +31,31 @@ py::object in_lua(const Body& body) {
     return call_protected(
         [](lua_State* L, const void* data) -> py::object { return (*static_cast<const Body*>(data))(L); }, &body);
 }
+
+/// While it lives, other threads of Python run: Lua is in a call that may be long. It ends as soon as Lua needs Python.
+class Unlocked {
+public:
+    Unlocked();
+    ~Unlocked();
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+};
+/// To be called by whatever Lua calls before it touches Python. The lock is then kept until the call of Lua ends: to
+/// take it anew for each call of an M would be slow where other threads want it, too.
+void need_python();
+
+/// A value of Python in Lua, which may drop it at any time.
+struct Held {
+    py::object value;
+    explicit Held(py::object own) : value(std::move(own)) {}
+    Held(Held&&) noexcept = default;
+    Held& operator=(Held&&) = delete;
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    ~Held() {
+        if (value) need_python();
+    }
+};
 
 /// Around a call of Python. When the interpreter ends, it ends other threads by pthread_exit, which unwinds the stack,
 /// and Lua's handlers would stop that with an abort. So the thread stays here, and ends with the process.

@@ -144,8 +144,8 @@ py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
         return py::reinterpret_borrow<py::object>(static_cast<PyObject*>(own->function.get()));
     }
     if (const auto* vector = lua::test<lua::Vector>(L, index)) return numbers_to_python(*vector);
-    const auto* own = lua::test<py::object>(L, index);
-    return own != nullptr ? *own : reference_to(L, index);
+    const auto* own = lua::test<Held>(L, index);
+    return own != nullptr ? own->value : reference_to(L, index);
 }
 
 // ---- functions of Python in Lua
@@ -208,6 +208,7 @@ int call_function(lua_State* L, const lua::Foreign& foreign) {
 
 /// No exception of Python leaves it: the C++ code of Lua below would take it for an error of unknown kind.
 int call_from_lua(lua_State* L) {
+    need_python();
     const RunningOn note(L);
     try {
         return call_function(L, lua::foreign_here(L));
@@ -216,18 +217,12 @@ int call_from_lua(lua_State* L) {
     }
 }
 
-void warn_of_one_thread(lua_State* L, const char* call) {
-    const std::string words = std::string(call) +
-                              ": the function is one of Python, so one thread does all points; a Lua function, "
-                              "dinal.lua(\"function(p) ... end\"), is run by all cores";
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, words.c_str(), 3) != 0) raise_exception(L, py::error_already_set());
-}
-
 void function_to_lua(lua_State* L, py::handle function) {
     const auto parameters = hooks().attr("parameters_of")(function).cast<int>();
-    const std::shared_ptr<void> kept(function.inc_ref().ptr(),
-                                     [](void* own) { Py_DECREF(static_cast<PyObject*>(own)); });
-    lua::push_foreign(L, {kept, parameters, "Python", 0, warn_of_one_thread}, lua::guarded<call_from_lua>);
+    const std::shared_ptr<void> kept(function.inc_ref().ptr(), [](void* own) {
+        Held(py::reinterpret_steal<py::object>(static_cast<PyObject*>(own)));
+    });
+    lua::push_foreign(L, {kept, parameters, "Python"}, lua::guarded<call_from_lua>);
 }
 
 // ---- to Lua
@@ -264,7 +259,7 @@ void other_to_lua(lua_State* L, py::handle value, int depth) {
     const py::object plain = hooks().attr("plain")(value);
     if (!plain.is(value)) return to_lua(L, plain, depth + 1);
     if (PyCallable_Check(value.ptr()) != 0) return function_to_lua(L, value);
-    lua::push<py::object>(L, plain);
+    lua::push(L, Held(plain));
 }
 
 /// A tuple that ends with a dictionary has named entries, too: ("motor", "load", dict(k=90)), (x, y, dict(label="y")).

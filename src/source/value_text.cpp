@@ -105,6 +105,7 @@ std::string ValueText::table(int index) {
         text += (text.empty() ? "" : ", ") + expression(-1);
         lua_pop(L_, 1);
     }
+    std::vector<std::string> named;
     lua_pushnil(L_);
     while (budget_ >= 0 && lua_next(L_, index) != 0) {
         const bool listed =
@@ -112,10 +113,12 @@ std::string ValueText::table(int index) {
         if (!listed) {
             const bool plain = lua_type(L_, -2) == LUA_TSTRING && lua::is_name(lua_tostring(L_, -2));
             const std::string key = plain ? lua_tostring(L_, -2) : "[" + expression(-2) + "]";
-            text += (text.empty() ? "" : ", ") + key + " = " + expression(-1);
+            named.push_back(key + " = " + expression(-1));
         }
         lua_pop(L_, 1);
     }
+    std::sort(named.begin(), named.end());  // the same text in each process
+    for (const std::string& entry : named) text += (text.empty() ? "" : ", ") + entry;
     lua_settop(L_, top);  // the loop may have been left in the middle
     open_.pop_back();
     return text.empty() ? "{}" : "{ " + text + " }";

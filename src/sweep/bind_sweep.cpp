@@ -258,24 +258,52 @@ int bifurcation(lua_State* L) {
                                   }}));
 }
 
-int run_sweep(lua_State* L) {
-    const lua::Options options(L, 1, sweep_call);
+/// The task that these options are, over that grid.
+SweepTask task_of(const lua::Options& options, int function, const PointGrid& grid) {
     SweepOptions asked;
     options.fill(asked);
+    check_file_of_sweep(options, asked);
+    SweepTask task{.call = sweep_call.name,
+                   .grid = grid,
+                   .function = function,
+                   .workers = asked.workers,
+                   .seed = asked.seed,
+                   .file = asked.file,
+                   .max_time = asked.max_time.value_or(0)};
+    for (const DataColumn& parameter : grid.parameters()) task.form.parameters.push_back(parameter.name);
+    if (asked.points.empty()) return task;
+    const double first = asked.points.front(), last = asked.points.back();
+    if (asked.points.size() != 2 || !(first >= 1 && last >= first && last <= static_cast<double>(grid.size()))) {
+        options.fail("points", fmt::format("points must be the first and the last one, of 1 to {}", grid.size()));
+    }
+    if (!asked.file.empty()) options.fail("points", "points and file exclude each other: save the data");
+    task.points = {static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last)};
+    return task;
+}
+
+}  // namespace
+
+int run_sweep(lua_State* L) {
+    const lua::Options options(L, 1, sweep_call);
     const int function = push_function(L, options, "run");
     const PointGrid grid(asked_parameters(L, options));
-    check_file_of_sweep(options, asked);
-    Data form;
-    for (const DataColumn& parameter : grid.parameters()) form.parameters.push_back(parameter.name);
-    return push_data(L, swept(L, {.call = sweep_call.name,
-                                  .grid = grid,
-                                  .function = function,
-                                  .workers = asked.workers,
-                                  .seed = asked.seed,
-                                  .file = asked.file,
-                                  .max_time = asked.max_time.value_or(0),
-                                  .form = std::move(form)}));
+    return push_data(L, swept(L, task_of(options, function, grid)));
 }
+
+int sweep_in_parts(lua_State* L) {
+    const std::string mark(lua::text_at(L, 2));
+    lua_settop(L, 1);
+    const lua::Options options(L, 1, sweep_call);
+    const int function = push_function(L, options, "run");
+    push_parted(L, asked_parameters(L, options), [&](const PointGrid& grid) {
+        SweepTask task = task_of(options, function, grid);
+        task.mark = mark;
+        return task;
+    });
+    return 1;
+}
+
+namespace {
 
 constexpr lua::Member sweep_members[] = {
     {lua::a_function<run_sweep>, sweep_doc},

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lua/bind.hpp"
 #include "text/option.hpp"
@@ -14,6 +15,7 @@ struct SweepOptions {
     double seed = 0;
     std::string file = {};
     std::optional<double> max_time = {};
+    std::vector<double> points = {};
 };
 inline constexpr text::Range workers_range{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
@@ -44,8 +46,8 @@ inline constexpr text::Option run_options[] = {
      .filled = text::fills<&SweepOptions::seed>},
     {.name = "file",
      .meaning =
-         "a .csv file for the result; finished points are kept in files beside it, so the same call continues after "
-         "a crash, and several processes can share the points (docs/many-machines.md)",
+         "a .csv file for the result; finished points are kept in FILE.part meanwhile, so the same call continues after "
+         "a crash",
      .filled = text::fills<&SweepOptions::file>},
     {.name = "max_time",
      .unit = "s",
@@ -54,6 +56,9 @@ inline constexpr text::Option run_options[] = {
          "time limit of a point; a longer one fails with a message, and the others go on; a single call of Lua's own "
          "libraries (a pattern search, os.execute) ends first",
      .filled = text::fills<&SweepOptions::max_time>},
+    {.name = "points",
+     .meaning = "{ first, last }: only these rows of the result",
+     .filled = text::fills<&SweepOptions::points>},
 };
 inline constexpr auto sweep_options = text::joined(over_option, run_options);
 inline constexpr text::Call sweep_call{

@@ -1,23 +1,29 @@
 #include "sweep/sweep_run.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <cstdio>
-#include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -31,6 +37,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
+#include "source/bytecode.hpp"
 #include "source/carry.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
@@ -253,7 +260,6 @@ public:
                     {.sentence = fmt::format("max_time needs a Lua function, and this one is of {}", other->language),
                      .option = "max_time"});
             }
-            other->runs_alone(L, work.call);
             function_ = lua_absindex(L, index);
             work.workers = 1;
             return;
@@ -424,7 +430,7 @@ std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
     const PointGrid& grid = task.grid;
     for (const DataColumn& parameter : grid.parameters()) add_column(print, parameter);
     print.add(task.seed);
-    print.add_value(task.function);
+    task.mark.empty() ? print.add_value(task.function) : print.add(std::string_view(task.mark));
     return print.number();
 }
 
@@ -456,32 +462,65 @@ const lua::Class unfinished_class = {"unfinished sweep", {"", "", ""}, std::span
 
 class SweepRun {
 public:
-    SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {}
+    /// Takes what was done before: in this process, or of a file.
+    SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {
+        if (!task.file.empty()) open_journal();
+        if (task.file.empty() && !task.points) results_ = take_unfinished(L_, print_);
+        if (!results_) results_ = std::make_shared<SweepResults>(task.grid.size(), chunk_size_for(task.grid.size()));
+    }
 
     Data run() {
-        task_.file.empty() ? take_memory() : open_files();
-        if (files_ && files_->result()) {
-            if (share_.rank > 0) leave();
-            return told(*files_->result());
-        }
+        if (journal_ && journal_->result()) return told(*journal_->result());
         work();
         if (lua::interrupt_requested()) stop();
         if (trouble_) fail();
-        return files_ ? finished_in_files() : finished();
+        return finished();
     }
+
+    // The same with points that are done elsewhere: for engines that Python has. Each call has the state that makes it.
+
+    /// The chunks that are to be done, each from its first point to the one behind its last.
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> left() const {
+        std::vector<std::pair<std::size_t, std::size_t>> ranges;
+        for (std::size_t chunk = 0; chunk < (journal_ && journal_->result() ? 0 : results_->chunks()); ++chunk) {
+            const std::size_t first = chunk * results_->chunk_size();
+            const std::size_t last = std::min(first + results_->chunk_size(), results_->size());
+            if (!results_->is_complete(chunk)) ranges.emplace_back(first, last);
+        }
+        return ranges;
+    }
+    void take(lua_State* L, std::size_t first, const Data& data) {
+        L_ = L;
+        std::vector<std::size_t> points(data.size());
+        std::iota(points.begin(), points.end(), first);
+        const std::size_t parameters = task_.grid.parameters().size();
+        if (data.columns.size() <= parameters || first + points.size() > results_->size())
+            lua::raise(L, "no part of this sweep");
+        results_->take(points, std::span(data.columns).subspan(parameters));
+        if (journal_) trouble_ = journal_->write(false);
+        if (trouble_) fail();
+    }
+    /// What is done so far becomes dinal.partial.
+    void keep(lua_State* L) {
+        L_ = L;
+        if (!journal_) keep_unfinished(L_, print_, results_);
+        push_data(L_, told());
+        set_partial(L_);
+    }
+    Data finish(lua_State* L) {
+        L_ = L;
+        return journal_ && journal_->result() ? told(*journal_->result()) : finished();
+    }
+    [[nodiscard]] std::size_t done() const {
+        return journal_ && journal_->result() ? results_->size() : results_->done();
+    }
+    [[nodiscard]] std::size_t size() const { return results_->size(); }
 
 private:
-    void take_memory() {
-        results_ = take_unfinished(L_, print_);
-        if (results_ == nullptr) results_ = std::make_shared<SweepResults>(task_.grid.size(), task_.grid.size());
-        for (std::size_t point = 0; point < task_.grid.size(); ++point) {
-            if (!results_->is_done(point)) points_.push_back(point);
-        }
-    }
-
-    void open_files() {
+    void open_journal() {
         lua::refuse_in_worker(L_, "a sweep with a file");
-        if (const lua::Foreign* other = lua::foreign(L_, task_.function)) {
+        const lua::Foreign* other = task_.mark.empty() ? lua::foreign(L_, task_.function) : nullptr;
+        if (other != nullptr) {
             lua::fail(L_, task_.call,
                       {.sentence = fmt::format(
                            "file needs a Lua function, because a change in one of {} cannot be detected; save the "
@@ -489,32 +528,30 @@ private:
                            other->language),
                        .option = "file"});
         }
-        const auto share = lua::value_or_raise(L_, task_.call, files::share_of_launcher());
-        share_ = share.value_or(files::Share{});
-        launched_ = share.has_value();
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
-        files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.looks);
-        if (const auto wrong = files_->open()) lua::fail(L_, task_.call, *wrong);
-        if (!files_->result()) points_ = files_->points(share_);
+        journal_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.looks);
+        if (const auto wrong = journal_->open()) lua::fail(L_, task_.call, *wrong);
     }
 
     void work() {
         SweepWork work{.grid = task_.grid,
                        .results = *results_,
-                       .points = std::move(points_),
+                       .points = {},
                        .seed = static_cast<long long>(task_.seed),
                        .call = task_.call,
                        .max_time = task_.max_time,
                        .adapt = task_.adapt};
-        if (files_) {
+        const auto [first, last] = task_.points.value_or(std::pair<std::size_t, std::size_t>(0, task_.grid.size()));
+        for (std::size_t point = first; point < last; ++point) {
+            if (!results_->is_done(point)) work.points.push_back(point);
+        }
+        if (journal_) {
             work.look = [this] {
-                trouble_ = files_->write_chunks(false);
+                trouble_ = journal_->write(false);
                 return !trouble_;
             };
         }
-        // The processes of a launcher have a core each.
-        const auto cores = launched_ && !task_.workers ? std::optional(1.0) : task_.workers;
-        work.workers = worker_count(cores, work.points.size());
+        work.workers = worker_count(task_.workers, work.points.size());
         SweepWorkers workers(L_, task_.function, work);
         workers.run(L_);
     }
@@ -540,13 +577,11 @@ private:
     }
 
     [[noreturn]] void stop() {
-        if (files_ && lua::stop_requested() != lua::Stop::memory) {
+        if (journal_ && lua::stop_requested() != lua::Stop::memory) {
             const lua::InSpiteOfStop writes;
-            static_cast<void>(files_->write_chunks(true));
+            static_cast<void>(journal_->write(true));
         }
-        if (!files_) keep_unfinished(L_, print_, results_);
-        push_data(L_, told());
-        set_partial(L_);
+        keep(L_);
         lua::raise_interrupted(L_);
     }
 
@@ -554,7 +589,7 @@ private:
         push_data(L_, told());
         set_partial(L_);
         trouble_->sentence += fmt::format(
-            "; finished points are kept in '{}' and dinal.partial, and the same call continues", files_->folder());
+            "; finished points are kept in '{}' and dinal.partial, and the same call continues", journal_->path());
         lua::fail(L_, task_.call, *trouble_);
     }
 
@@ -566,84 +601,102 @@ private:
             failed.count == 1 ? fmt::format("{}: the point {} failed: {}", task_.call, failed.place, failed.message)
                               : fmt::format("{}: all {} points failed; the first one, {}: {}", task_.call, failed.count,
                                             failed.place, failed.message);
+        if (journal_) journal_->discard();
         lua::raise(L_, {.sentence = sentence, .call = task_.call});
     }
 
     Data finished() {
-        keep_unfinished(L_, 0, nullptr);
+        if (task_.points) return told();
+        if (!journal_) keep_unfinished(L_, 0, nullptr);
         Data data = told();
         raise_if_all_failed(data);
+        if (journal_) trouble_ = journal_->finish(data);
+        if (trouble_) fail();
         return data;
-    }
-
-    Data finished_in_files() {
-        const bool last = lua::value_or_raise(L_, task_.call, files_->take_all());
-        if (!last && share_.size > 1) leave();
-        Data data = told();
-        if (results_->failures().size() == results_->size()) {
-            files_->discard();
-            raise_if_all_failed(data);
-        }
-        if (const auto wrong = last ? files_->finish(data) : std::nullopt) lua::fail(L_, task_.call, *wrong);
-        return data;
-    }
-
-    /// What comes after the sweep is for the process that has all of it.
-    [[noreturn]] void leave() const {
-        const std::string text =
-            files_->result()
-                ? fmt::format("dinal: '{}' is there; process 0 of {} continues the script\n", task_.file, share_.size)
-                : fmt::format(
-                      "dinal: share {} of {} is done, {} of all {} points; the process that does the last share "
-                      "continues the script\n",
-                      share_.rank, share_.size, results_->done(), results_->size());
-        static_cast<void>(std::fputs(text.c_str(), stderr));
-        // By os.exit, which Python replaces by one that raises SystemExit.
-        if (lua_getglobal(L_, LUA_OSLIBNAME) == LUA_TTABLE && lua_getfield(L_, -1, "exit") == LUA_TFUNCTION) {
-            lua_call(L_, 0, 0);
-        }
-        std::exit(0);  // NOLINT(concurrency-mt-unsafe): the workers have ended
     }
 
     lua_State* L_;
     const SweepTask& task_;
     std::uint64_t print_;
     std::shared_ptr<SweepResults> results_;
-    std::vector<std::size_t> points_;
-    std::optional<SweepFiles> files_;
-    files::Share share_;
-    bool launched_ = false;
+    std::optional<SweepJournal> journal_;
     std::optional<text::Error> trouble_;
 };
+
+// ---- a sweep whose points are done elsewhere, as a Lua object that no list shows
+
+struct PartedSweep {
+    explicit PartedSweep(std::vector<DataColumn> parameters) : grid(std::move(parameters)) {}
+
+    PointGrid grid;
+    std::optional<SweepTask> task = {};
+    std::optional<SweepRun> run = {};
+};
+using PartedHandle = std::shared_ptr<PartedSweep>;
+
+SweepRun& parted(lua_State* L) {
+    return *lua::self<PartedHandle>(L, 1, "sweep")->run;
+}
+
+int left_of_sweep(lua_State* L) {
+    lua_newtable(L);
+    for (const auto& [first, last] : parted(L).left()) {
+        lua_createtable(L, 2, 0);
+        lua_pushinteger(L, static_cast<lua_Integer>(first));
+        lua_rawseti(L, -2, 1);
+        lua_pushinteger(L, static_cast<lua_Integer>(last));
+        lua_rawseti(L, -2, 2);
+        lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
+    }
+    return 1;
+}
+int take_part(lua_State* L) {
+    parted(L).take(L, static_cast<std::size_t>(luaL_checkinteger(L, 2)), *lua::self<DataHandle>(L, 3, "data"));
+    lua_pushinteger(L, static_cast<lua_Integer>(parted(L).done()));
+    lua_pushinteger(L, static_cast<lua_Integer>(parted(L).size()));
+    return 2;
+}
+int keep_parts(lua_State* L) {
+    parted(L).keep(L);
+    return 0;
+}
+int finish_parts(lua_State* L) {
+    return push_data(L, parted(L).finish(L));
+}
+
+constexpr lua::Member parted_members[] = {{lua::a_method<left_of_sweep>, {"sweep:left()", "", ""}},
+                                          {lua::a_method<take_part>, {"sweep:take(first, data)", "", ""}},
+                                          {lua::a_method<keep_parts>, {"sweep:keep()", "", ""}},
+                                          {lua::a_method<finish_parts>, {"sweep:finish()", "", ""}}};
+const lua::Class parted_class = {"sweep in parts", {"", "", ""}, parted_members};
 
 }  // namespace
 
 void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked) {
-    if (options.has("file")) {
-        if (text::ending_of(asked.file) == ".csv") return;
-        options.fail("file", fmt::format("the name '{}' must end in .csv", asked.file));
-    }
-    if (lua::in_worker()) return;
-    const auto share = options.value_or_fail(files::share_of_launcher());
-    if (!share || share->size == 1) return;
-    options.fail("file", fmt::format("this is process {} of {}, which share their work in a file: give one, file = "
-                                     "\"map.csv\"",
-                                     share->rank, share->size));
+    if (!options.has("file") || text::ending_of(asked.file) == ".csv") return;
+    options.fail("file", fmt::format("the name '{}' must end in .csv", asked.file));
 }
 
 Data swept(lua_State* L, const SweepTask& task) {
     return SweepRun(L, task).run();
 }
 
+void push_parted(lua_State* L, std::vector<DataColumn> parameters,
+                 const std::function<SweepTask(const PointGrid&)>& task) {
+    const auto sweep = std::make_shared<PartedSweep>(std::move(parameters));
+    sweep->task.emplace(task(sweep->grid));
+    sweep->run.emplace(L, *sweep->task);
+    lua::push<PartedHandle>(L, sweep);
+}
+
 void register_unfinished_sweep(lua_State* L) {
     lua::add_class<Unfinished>(L, unfinished_class);
+    lua::add_class<PartedHandle>(L, parted_class);
 }
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* point_column = "point of the grid";
 
 /// The line above a table that says which of its results, from `first` to the one before `error`, are words: a damaged
 /// number is not taken for one.
@@ -689,11 +742,24 @@ bool is_cut_off(const std::string& file) {
     return text && !text->ends_with('\n');
 }
 
-/// Nothing is made, renamed, read or removed through a link, which may lead anywhere.
-bool is_wrong_kind(const std::string& path, fs::file_type wanted) {
-    std::error_code error;
-    const fs::file_type found = fs::symlink_status(path, error).type();
-    return found != wanted && found != fs::file_type::not_found;
+/// The points as CSV: their numbers, then their results.
+std::string text_of_points(const std::vector<std::size_t>& points, std::span<const DataColumn> columns) {
+    std::string text = "point";
+    for (const DataColumn& column : columns) text += ',' + files::field_of(column.name);
+    for (std::size_t row = 0; row < points.size(); ++row) {
+        text += fmt::format("\n{}", points[row]);
+        for (const DataColumn& column : columns) {
+            const lua::Vector* numbers = column.numbers();
+            text += ',' + (numbers != nullptr ? fmt::format("{}", numbers->begin()[row])
+                                              : files::field_of(column.words()[row]));
+        }
+    }
+    return text + '\n';
+}
+
+/// The line before such a text: with it a part of one, or a changed one, is not taken for whole.
+std::string head_of(std::string_view text) {
+    return fmt::format("# {} bytes, {:016x}\n", text.size(), source::digest_of(text));
 }
 
 }  // namespace
@@ -703,83 +769,132 @@ std::size_t chunk_size_for(std::size_t points) {
     return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
 }
 
-SweepFiles::SweepFiles(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
-                       std::size_t looks)
+SweepJournal::SweepJournal(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
+                           std::size_t looks)
     : file_(std::move(file)),
-      folder_(file_ + ".parts"),
+      path_(file_ + ".part"),
       mark_("sweep " + mark),
       grid_(grid),
       results_(results),
       looks_(looks),
       written_(results.chunks()) {}
 
-std::string SweepFiles::chunk_file(std::size_t chunk) const {
-    return fmt::format("{}/{:06}.csv", folder_, chunk);
-}
-
-bool SweepFiles::has_chunks() const {
-    std::error_code error;
-    const fs::directory_iterator all(folder_, error);
-    return std::any_of(begin(all), end(all),
-                       [](const fs::directory_entry& one) { return one.path().extension() == ".csv"; });
-}
-
-text::Error SweepFiles::refused(const std::string& path, std::string_view why) const {
+text::Error SweepJournal::refused(const std::string& path, std::string_view why) const {
     return {.sentence = fmt::format("'{}' {}; remove it, or give another file", path, why),
             .option = "file",
             .culprit = file_};
 }
 
-std::optional<text::Error> SweepFiles::check_mark() {
-    const std::string path = folder_ + "/mark";
-    if (is_wrong_kind(path, fs::file_type::regular)) return refused(path, "is not a regular file");
-    if (const auto mark = files::read_file(path)) {
-        if (*mark == mark_ + "\n") return std::nullopt;
-        if (has_chunks())
-            return text::Error{
-                .sentence = fmt::format("'{}' holds the chunks of another sweep: its grid or its function was "
-                                        "another; remove it, or give another file",
-                                        folder_),
-                .option = "file",
-                .culprit = file_};
-    }
-    const auto written = files::write_file(path, mark_ + "\n");
-    return written ? std::nullopt : std::optional(written.error());
-}
-
-std::optional<text::Error> SweepFiles::open() {
+std::optional<text::Error> SweepJournal::open() {
     if (const auto why = files::outside(file_, files::Access::write)) {
         return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
     }
-    for (const std::string& folder : {folder_, folder_ + ".merging"}) {
-        if (is_wrong_kind(folder, fs::file_type::directory)) return refused(folder, "is not a folder");
-    }
     std::error_code error;
     if (fs::exists(file_, error)) return take_result();
-    // Somebody was killed between taking the folder and writing the file.
-    if (!fs::exists(folder_, error) && fs::exists(folder_ + ".merging", error)) {
-        fs::rename(folder_ + ".merging", folder_, error);
-    }
-    fs::create_directory(folder_, error);
-    if (error) {
-        return text::Error{.sentence = fmt::format("cannot make the folder '{}': {}", folder_, error.message()),
+    const int descriptor =
+        ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    journal_ = std::make_shared<files::Descriptor>(descriptor);
+    struct stat about {};
+    if (descriptor < 0 && errno != ELOOP) {
+        return text::Error{.sentence = fmt::format("cannot write '{}': {}", path_, std::strerror(errno)),
                            .option = "file",
                            .culprit = file_};
     }
-    // Somebody may have finished it since we looked: then the folder is ours and empty.
-    if (fs::exists(file_, error)) {
-        fs::remove(folder_, error);
-        return take_result();
+    if (descriptor < 0 || ::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode))
+        return refused(path_, "is not a regular file");
+    // Not flock(): a pool of processes would inherit that lock, and outlive us with it.
+    struct flock whole {};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    if (::fcntl(descriptor, F_SETLK, &whole) != 0 && (errno == EACCES || errno == EAGAIN)) {
+        return text::Error{
+            .sentence = fmt::format("another process is at the same sweep and writes '{}': wait for it, or "
+                                    "give another file",
+                                    path_),
+            .option = "file",
+            .culprit = file_};
     }
-    if (auto wrong = check_mark()) {
-        // Somebody may have taken the folder away under us, as all of it was done: then there is his result.
-        constexpr int often_enough = 10;
-        return !fs::exists(folder_, error) && ++opened_ < often_enough ? open() : wrong;
-    }
-    return take_chunks();
+    if (!fs::exists(file_, error)) return take_points();
+    discard();  // it was finished since we looked
+    return take_result();
 }
 
-std::optional<text::Error> SweepFiles::take_result() {
+/// Takes what is whole, and cuts off what is not.
+std::optional<text::Error> SweepJournal::take_points() {
+    std::string text;
+    char buffer[1U << 16U];
+    for (ssize_t count = 0; (count = ::read(journal_->number(), buffer, sizeof buffer)) > 0;)
+        text.append(buffer, static_cast<std::size_t>(count));
+    const std::string first = mark_ + '\n';
+    std::string_view rest = text;
+    if (first.starts_with(rest) && rest.size() < first.size()) return append(first);
+    if (!rest.starts_with(first)) {
+        return refused(path_, "holds the points of another sweep: its grid or its function was another");
+    }
+    size_ = first.size();
+    rest.remove_prefix(size_);
+    for (;;) {
+        const std::size_t line = rest.find('\n');
+        std::size_t bytes = 0;
+        const bool has_head = line != std::string_view::npos &&
+                              std::sscanf(std::string(rest.substr(0, line)).c_str(), "# %zu bytes", &bytes) == 1;
+        if (!has_head || bytes > rest.size() - line - 1) break;
+        const std::string_view content = rest.substr(line + 1, bytes);
+        if (rest.substr(0, line + 1) != head_of(content)) break;
+        const auto read = files::parse_columns(content, path_);
+        if (!read || read->columns.size() < 2 || !take(read->columns)) break;
+        size_ += line + 1 + bytes;
+        rest.remove_prefix(line + 1 + bytes);
+    }
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) written_[chunk] = results_.is_complete(chunk);
+    return rest.empty() ? std::nullopt : append("");
+}
+
+/// False where a point is none of the grid.
+bool SweepJournal::take(const std::vector<files::ReadColumn>& read) {
+    std::vector<std::size_t> points;
+    for (const double point : read.front().numbers) {
+        if (!(point >= 0 && point < static_cast<double>(results_.size()))) return false;
+        points.push_back(static_cast<std::size_t>(point));
+    }
+    std::vector<DataColumn> columns;
+    for (std::size_t i = 1; i < read.size(); ++i) columns.push_back(column_of(read[i]));
+    results_.take(points, columns);
+    return true;
+}
+
+/// After what is whole.
+std::optional<text::Error> SweepJournal::append(std::string_view text) {
+    const int file = journal_->number();
+    bool good = ::ftruncate(file, static_cast<off_t>(size_)) == 0;
+    for (std::string_view rest = text; good && !rest.empty();) {
+        const ssize_t count = ::write(file, rest.data(), rest.size());
+        good = count > 0 || errno == EINTR;
+        if (count > 0) rest.remove_prefix(static_cast<std::size_t>(count));
+    }
+    if (good) size_ += text.size();
+    return good ? std::nullopt
+                : std::optional(text::Error{fmt::format("cannot write '{}': {}", path_, std::strerror(errno))});
+}
+
+std::optional<text::Error> SweepJournal::write(bool incomplete) {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        const bool complete = results_.is_complete(chunk);
+        if (written_[chunk] || !(complete || incomplete)) continue;
+        std::vector<std::size_t> points;
+        for (std::size_t i = 0, point = chunk * results_.chunk_size();
+             i < results_.chunk_size() && point < results_.size(); ++i, ++point) {
+            if (results_.is_done(point)) points.push_back(point);
+        }
+        if (points.empty()) continue;
+        const std::string text = text_of_points(points, results_.columns(points));
+        if (auto wrong = append(head_of(text) + text)) return wrong;
+        written_[chunk] = complete;
+    }
+    return std::nullopt;
+}
+
+std::optional<text::Error> SweepJournal::take_result() {
     auto read = files::read_columns(file_);
     if (!read || read->comments.empty() || !read->comments.front().starts_with(mark_)) {
         return refused(file_, "is there, and is not the result of this sweep");
@@ -801,129 +916,18 @@ std::optional<text::Error> SweepFiles::take_result() {
     columns.pop_back();
     for (std::size_t i = first; i < columns.size(); ++i) result_->push_back(column_of(std::move(columns[i])));
     result_->push_back(column_of("error", errors));
-    remove_folder(folder_ + ".merging");  // a process was killed before the last of its work
     return {};
 }
 
-std::optional<text::Error> SweepFiles::take_chunks() {
-    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
-        std::error_code error;
-        if (results_.is_complete(chunk)) continue;
-        if (is_wrong_kind(chunk_file(chunk), fs::file_type::regular))
-            return refused(chunk_file(chunk), "is not a regular file");
-        if (!fs::exists(chunk_file(chunk), error)) continue;
-        if (is_cut_off(chunk_file(chunk))) continue;  // done anew
-        if (auto wrong = take(chunk_file(chunk))) return wrong;
-        written_[chunk] = results_.is_complete(chunk);
-    }
-    return std::nullopt;
-}
-
-std::optional<text::Error> SweepFiles::take(const std::string& file) {
-    const auto read = files::read_columns(file);
-    std::error_code error;
-    if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
-    if (!read) return read.error();
-    const std::vector<files::ReadColumn>& columns = read->columns;
-    constexpr std::size_t first = 1;
-    if (!is_sound(columns, first, read->comments.empty() ? "" : read->comments.front()) || columns[0].of_words) {
-        return refused(file, was_changed);
-    }
-    std::vector<std::string> errors = messages_of(columns.back());
-    for (std::size_t row = 0; row < errors.size(); ++row) {
-        const double place = columns[0].numbers[row];
-        if (!(place >= 0 && place < static_cast<double>(results_.size()))) return refused(file, was_changed);
-        const auto point = static_cast<std::size_t>(place);
-        if (results_.is_done(point)) continue;
-        if (!errors[row].empty()) {
-            results_.fail(point, std::move(errors[row]));
-            continue;
-        }
-        for (std::size_t i = first; i + 1 < columns.size(); ++i) {
-            if (double* numbers = results_.column(columns[i].name)) {
-                const files::ReadColumn& column = columns[i];
-                numbers[point] = column.of_words ? results_.word(column.words[row]) : column.numbers[row];
-            }
-        }
-        results_.finish(point);
-    }
-    return std::nullopt;
-}
-
-std::vector<std::size_t> SweepFiles::points(const files::Share& share) const {
-    std::vector<std::size_t> points;
-    for (std::size_t point = 0; point < results_.size(); ++point) {
-        const auto chunk = static_cast<long long>(point / results_.chunk_size());
-        if (chunk % share.size == share.rank && !results_.is_done(point)) points.push_back(point);
-    }
-    return points;
-}
-
-std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
-    const std::size_t first = chunk * results_.chunk_size();
-    const std::size_t last = std::min(first + results_.chunk_size(), results_.size());
-    std::vector<std::size_t> points;
-    for (std::size_t point = first; point < last; ++point) {
-        if (results_.is_done(point)) points.push_back(point);
-    }
-    if (points.empty()) return std::nullopt;
-    std::vector<DataColumn> columns = results_.columns(points);
-    columns.insert(columns.begin(), column_of(point_column, std::vector<double>(points.begin(), points.end())));
-    const auto written = write_table(chunk_file(chunk), columns, 1);
-    if (written) return std::nullopt;
-    // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
-    std::error_code error;
-    const bool taken =
-        !fs::exists(folder_, error) && (fs::exists(file_, error) || fs::exists(folder_ + ".merging", error));
-    return taken ? std::nullopt : std::optional(written.error());
-}
-
-std::optional<text::Error> SweepFiles::write_chunks(bool incomplete) {
-    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
-        const bool complete = results_.is_complete(chunk);
-        if (written_[chunk] || !(complete || incomplete)) continue;
-        if (auto wrong = write(chunk)) return wrong;
-        written_[chunk] = complete;
-    }
-    return std::nullopt;
-}
-
-text::Expected<bool> SweepFiles::take_all() {
-    if (auto wrong = take_chunks()) return *wrong;
-    if (results_.done() < results_.size()) return false;
-    std::error_code error;
-    fs::rename(folder_, folder_ + ".merging", error);
-    return !error;
-}
-
-std::optional<text::Error> SweepFiles::finish(const Data& result) {
+std::optional<text::Error> SweepJournal::finish(const Data& result) {
     const auto written = write_table(file_, result.columns, grid_.parameters().size(), mark_);
-    std::error_code error;
-    if (!written) {
-        fs::rename(folder_ + ".merging", folder_, error);
-        return written.error();
-    }
-    remove_folder(folder_ + ".merging");
-    return std::nullopt;
+    if (written) discard();
+    return written ? std::nullopt : std::optional(written.error());
 }
 
-void SweepFiles::discard() {
-    remove_folder(folder_);
-    remove_folder(folder_ + ".merging");
-}
-
-/// With what we have written into it, and nothing else; what a killed process was writing is ours, too.
-void SweepFiles::remove_folder(const std::string& folder) {
-    if (is_wrong_kind(folder, fs::file_type::directory)) return;
+void SweepJournal::discard() const {
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        if (entry.path().filename().string().starts_with(".dinal-")) fs::remove(entry.path(), error);
-    }
-    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
-        fs::remove(fmt::format("{}/{:06}.csv", folder, chunk), error);
-    }
-    fs::remove(folder + "/mark", error);
-    fs::remove(folder, error);
+    fs::remove(path_, error);
 }
 
 SweepResults::SweepResults(std::size_t points, std::size_t chunk_size)
@@ -967,6 +971,24 @@ std::optional<std::vector<std::string>> SweepResults::words(const std::vector<do
         words.push_back(at > 0 ? words_[at - 1] : std::isnan(x) ? "" : fmt::format("{}", x));
     }
     return words;
+}
+
+void SweepResults::take(const std::vector<std::size_t>& points, std::span<const DataColumn> columns) {
+    const DataColumn& errors = columns.back();
+    for (std::size_t row = 0; row < points.size(); ++row) {
+        const std::size_t point = points[row];
+        if (is_done(point)) continue;
+        if (errors.numbers() == nullptr && !errors.words()[row].empty()) {
+            fail(point, errors.words()[row]);
+            continue;
+        }
+        for (const DataColumn& own : columns.first(columns.size() - 1)) {
+            if (double* numbers = column(own.name)) {
+                numbers[point] = own.numbers() != nullptr ? own.numbers()->begin()[row] : word(own.words()[row]);
+            }
+        }
+        finish(point);
+    }
 }
 
 void SweepResults::fail(std::size_t point, std::string message) {

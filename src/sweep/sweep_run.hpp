@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,7 +18,6 @@
 
 #include "api/data.hpp"
 #include "files/csv.hpp"
-#include "files/share.hpp"
 #include "lua/options.hpp"
 #include "sweep/sweep_options.hpp"
 #include "text/expected.hpp"
@@ -37,6 +37,9 @@ public:
     /// many. It stays where it is.
     double* column(std::string_view name);
     static constexpr std::size_t most_columns = 20'000;
+
+    /// What was had elsewhere of these points: results by their names, and the messages as the last column.
+    void take(const std::vector<std::size_t>& points, std::span<const DataColumn> columns);
 
     /// A word as a number that can stand in a column: a nan of its own.
     double word(std::string_view text);
@@ -90,9 +93,11 @@ struct SweepTask {
     int function;  ///< its index on the stack
     std::optional<double> workers = {};
     double seed = 0;
-    std::string file = {};              ///< none: it is not kept, and not shared with other processes
-    double max_time = 0;                ///< seconds of a point; 0: any
-    std::vector<double> settings = {};  ///< what else decides about the results
+    std::string file = {};  ///< none: it is not kept
+    double max_time = 0;    ///< seconds of a point; 0: any
+    std::string mark = {};  ///< stands for the function where it is written in another language
+    std::optional<std::pair<std::size_t, std::size_t>> points = {};  ///< these alone, to the one before the second
+    std::vector<double> settings = {};                               ///< what else decides about the results
     /// In the state of a worker: replaces the carried function on the top by the one that is asked.
     std::function<void(lua_State* worker)> adapt = {};
     /// What the data are besides their columns.
@@ -103,72 +108,66 @@ struct SweepTask {
         {};
 };
 
-/// An error of the call when the name of the file is none, or several processes would all do all of it.
+/// An error of the call when the name of the file is none.
 void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked);
 
 /// All points. Raises when all of them fail; after Ctrl-C, when what is done is in dinal.partial, and the same task
-/// goes on from there. With a file, and as one of several processes of a launcher, it does its share, and ends the
-/// program unless it was the last.
+/// goes on from there, with a file also in another process.
 Data swept(lua_State* L, const SweepTask& task);
+
+/// Pushes a sweep whose points are done elsewhere: left(), take(first, data), keep() and finish().
+void push_parted(lua_State* L, std::vector<DataColumn> parameters,
+                 const std::function<SweepTask(const PointGrid&)>& task);
+/// sweep{ ... }
+int run_sweep(lua_State* L);
+/// The same of the options of sweep, and of the mark of a function of another language.
+int sweep_in_parts(lua_State* L);
 
 /// sweep, bifurcation and minimise; in bind_sweep.cpp.
 void register_sweep(lua_State* L);
 extern const lua::Class sweep_functions;
 void register_unfinished_sweep(lua_State* L);
 
-// A sweep in files: chunks that have their final names only when they are whole, in a folder beside the file of the
-// result, and the result itself, put together in order by whoever finds all chunks there.
-//
-// No lock, no server: what is done is a file, so a sweep that was killed, or runs on several machines, goes on from
-// what it finds. A mark of grid and function keeps the chunks of different sweeps apart.
-
-/// How many points a chunk has: what is lost at most when the process is killed, and a file each.
+/// How many points a chunk has: what is lost at most when the process is killed.
 std::size_t chunk_size_for(std::size_t points);
 
-class SweepFiles {
+/// The finished points of a sweep in FILE.part, to whose end chunks are added as they are completed, by this process
+/// alone; in the end they become the file. What a death has cut off is not taken. A mark of grid and function keeps
+/// different sweeps apart.
+class SweepJournal {
 public:
     /// `mark` is that of what is asked. The file has so many rows for each point.
-    SweepFiles(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
-               std::size_t looks);
+    SweepJournal(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
+                 std::size_t looks);
 
-    /// Makes the folder, and takes what is done, or the result if the file is there. Fails when something of
-    /// another sweep is there, or nothing can be written.
+    /// Takes what is done, or the result if the file is there. Fails when something of another sweep is there, another
+    /// process is at it, or nothing can be written.
     std::optional<text::Error> open();
     [[nodiscard]] const std::optional<std::vector<DataColumn>>& result() const { return result_; }
 
-    /// The points that are left in our share of the chunks.
-    [[nodiscard]] std::vector<std::size_t> points(const files::Share& share) const;
-
-    /// Writes the chunks that were completed since it was last asked, also while others work; or what there is of all.
-    std::optional<text::Error> write_chunks(bool incomplete);
-
-    /// Takes what others have done meanwhile; all is done. Of several that ask at once only one is told so.
-    text::Expected<bool> take_all();
-    /// The file of the result; the chunks go.
+    /// Adds the chunks that were completed since it was last asked, also while others work; or what there is of all.
+    std::optional<text::Error> write(bool incomplete);
+    /// The file of the result; the journal goes.
     std::optional<text::Error> finish(const Data& result);
-
     /// Nothing of it is worth keeping.
-    void discard();
+    void discard() const;
 
-    [[nodiscard]] const std::string& folder() const { return folder_; }
+    [[nodiscard]] const std::string& path() const { return path_; }
 
 private:
-    [[nodiscard]] std::string chunk_file(std::size_t chunk) const;
-    [[nodiscard]] bool has_chunks() const;
     [[nodiscard]] text::Error refused(const std::string& path, std::string_view why) const;
-    std::optional<text::Error> check_mark();
-    std::optional<text::Error> write(std::size_t chunk);
-    std::optional<text::Error> take_chunks();
+    std::optional<text::Error> take_points();
     std::optional<text::Error> take_result();
-    std::optional<text::Error> take(const std::string& file);
-    void remove_folder(const std::string& folder);
+    bool take(const std::vector<files::ReadColumn>& read);
+    std::optional<text::Error> append(std::string_view text);
 
-    std::string file_, folder_, mark_;
+    std::string file_, path_, mark_;
     const PointGrid& grid_;
     SweepResults& results_;
     std::size_t looks_;
     std::vector<bool> written_;  // chunks
-    int opened_ = 0;
+    std::shared_ptr<files::Descriptor> journal_ = {};
+    std::size_t size_ = 0;  // of what is whole in it
     std::optional<std::vector<DataColumn>> result_;
 };
 

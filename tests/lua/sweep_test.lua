@@ -234,6 +234,25 @@ test("results may be strings, in files too", function()
     end
 end)
 
+test("points gives a part of the result", function()
+    local function swept(points)
+        return sweep { over = { a = { 1, 2, 3 }, b = { 10, 20 } }, points = points, run = function(p)
+            if p.a == 2 then error("no", 0) end
+            return { y = p.a + p.b, u = math.random() }
+        end }
+    end
+    local whole, part = swept(), swept { 2, 5 }
+    for _, name in ipairs { "a", "b", "y", "u" } do
+        for i = 1, 4 do assert(part[name][i] == whole[name][i + 1] or part[name][i] ~= part[name][i]) end
+    end
+    equal(#part, 4)
+    equal(swept { 3, 4 }.error[1], "no") -- although all of them fail
+    for _, points in ipairs { { 1 }, { 0, 3 }, { 3, 7 }, { 4, 3 } } do
+        raises(function() swept(points) end, "sweep: points must be the first and the last one, of 1 to 6")
+    end
+    raises(function() sweep { over = { x = { 1 } }, points = { 1, 1 }, file = "a.csv", run = print } end, "exclude each other")
+end)
+
 -- ---- what goes wrong
 
 test("a point that fails keeps its message, the others go on, and the map says so", function()

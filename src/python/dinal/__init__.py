@@ -38,6 +38,8 @@ def __dir__():
 _dinal.set_up(_objects, _objects.in_notebook())
 _members = _objects.build()
 globals().update(_members)
+from ._sweep import sweep  # noqa: E402: it takes an executor, unlike that of Lua
+sweep.__module__, _members["sweep"] = "dinal", sweep
 __all__ = ["Error", "Function", "Object", "Record", "RunWarning", "lua", "partial", *_members]
 for _class in (Error, Function, Object, Record, RunWarning):
     _class.__module__ = "dinal"

@@ -1,0 +1,361 @@
+"""dinal.sweep on engines: the same bytes from each, after any death. Engines that are not installed are skipped.
+
+    python3 sweep_test.py SOURCE PROGRAM [--long], with PYTHONPATH set to the module's folder
+"""
+
+import concurrent.futures as cf
+import importlib.util
+import multiprocessing
+import os
+import pathlib
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import time
+import unittest
+
+import dinal
+import numpy as np
+
+SOURCE, PROGRAM = [*sys.argv, "", ""][1:3]
+LONG = "--long" in sys.argv
+OVER = {"r": np.linspace(.3, 2, 20), "g": np.linspace(0, 1, 15)}
+SCALE = 2.  # what point takes from outside
+
+
+def point(p, chance):
+    if p.r > 1.9 and p.g > .9:
+        raise ValueError(f"far away, {p.r:.2f}")
+    return {"y": SCALE * np.sin(p.r) / (p.g + .1), "u": chance.random(), "word": "low" if p.g < .5 else "high", "is": p.r > 1}
+
+
+def slow(p):
+    time.sleep(.002)
+    return {"y": p.r * p.g}
+
+
+def leave(p):
+    sys.exit(7)
+
+
+def die(p):
+    if p.r == 5 and not os.path.exists("died"):
+        pathlib.Path("died").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"y": p.r}
+
+
+MAP = """
+return { over = { r = vector.linspace(0.3, 2, 20), g = vector.linspace(0, 1, 15) }, seed = 3, file = "map.csv", run = function(p)
+    local start, wait = os.clock(), tonumber(os.getenv("WAIT")) or 0
+    while os.clock() - start < wait do end
+    if p.r > 1.9 and p.g > 0.9 then error("far away") end
+    local s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }
+    return { A = s.amplitude, stops = s.stops, u = math.random() }
+end }
+"""
+SCRIPT = """
+import concurrent.futures, os, sys, time
+import dinal, numpy as np
+
+def slow(p):
+    time.sleep(.002)
+    return {"y": p.r * p.g}
+
+if __name__ == "__main__":
+    executor = {"none": None, "pool": lambda: concurrent.futures.ProcessPoolExecutor(2)}[sys.argv[1]]
+    told = lambda done, count: print(done, flush=True, file=sys.stdout)
+    try:
+        dinal.sweep(over={"r": np.linspace(0, 1, 20), "g": np.linspace(0, 1, 15)}, run=slow, executor=executor, file="map.csv", progress=told)
+    except KeyboardInterrupt:
+        sys.exit(130)
+"""
+
+
+class InAFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+        before = os.getcwd()
+        os.chdir(folder.name)
+        self.addCleanup(os.chdir, before)
+
+    def files(self):
+        return sorted(entry.name for entry in self.home.iterdir())
+
+    def python(self, *command, **more):
+        return subprocess.run([sys.executable, *command], capture_output=True, text=True, timeout=120, **more)
+
+
+class Engines(InAFolder):
+    def check(self, executor, over=OVER, run=point, **more):
+        """What the engine gives is what the caller alone gives."""
+        alone = dinal.sweep(over=over, run=run, seed=3, file="alone.csv", **more)
+        other = dinal.sweep(over=over, run=run, seed=3, executor=executor, file="other.csv", **more)
+        self.assertEqual(str(other), str(alone))
+        self.assertEqual(pathlib.Path("other.csv").read_bytes(), pathlib.Path("alone.csv").read_bytes())
+        self.assertEqual(self.files(), ["alone.csv", "other.csv"])
+        for name in self.files():
+            os.remove(name)
+
+    def test_processes_and_threads(self):
+        lua = dinal.lua("function(p) return { y = A*p.r, u = math.random(), d = d.n[2] } end", A=3, d=dinal.data(n=[1, 2]))
+        for run in (point, lua):
+            with cf.ProcessPoolExecutor(2) as pool, cf.ThreadPoolExecutor(2) as threads:
+                self.check(pool, run=run)
+                self.check(threads, run=run)
+            self.check(lambda: cf.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")), run=run)
+
+    def test_joblib(self):
+        if not importlib.util.find_spec("joblib"):
+            self.skipTest("no joblib: apt-get install python3-joblib")
+        from joblib.externals.loky import get_reusable_executor
+        pool = get_reusable_executor(2)
+        factor = 2
+        self.check(pool, run=lambda p: {"y": factor * p.r})
+        self.check(pool)
+        pool.shutdown(kill_workers=True)
+
+    def test_dask(self):
+        if not importlib.util.find_spec("distributed"):
+            self.skipTest("no dask.distributed: apt-get install python3-distributed")
+        with self.dask() as client:
+            self.check(client.get_executor())
+            self.check(client.get_executor(), run=dinal.lua("function(p) return { y = p.r } end"))
+
+    def dask(self):
+        import contextlib
+        from dask.distributed import Client, LocalCluster
+        stack = contextlib.ExitStack()
+        return stack.enter_context(Client(stack.enter_context(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0"))))
+
+    def test_a_lua_file(self):
+        """dinal on threads, and python3 -m dinal.sweep on processes, MPI and Dask."""
+        pathlib.Path("map.lua").write_text(MAP)
+        subprocess.run([PROGRAM, "-e", "sweep(dofile('map.lua'))"], check=True)
+        wanted = pathlib.Path("map.csv").read_bytes()
+        engines = {"processes": ["-m", "dinal.sweep", "map.lua", "--workers", "2"]}
+        if shutil.which("mpirun") and importlib.util.find_spec("mpi4py"):
+            engines["MPI"] = ["-m", "mpi4py.futures", "-m", "dinal.sweep", "map.lua", "--mpi"]
+        if importlib.util.find_spec("distributed"):
+            client = self.dask()
+            self.addCleanup(client.close)
+            engines["Dask"] = ["-m", "dinal.sweep", "map.lua", "--dask", client.scheduler.address]
+        for name, command in engines.items():
+            with self.subTest(name):
+                os.remove("map.csv")
+                under = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "3"] if name == "MPI" else []
+                done = subprocess.run([*under, sys.executable, *command], capture_output=True, text=True, timeout=120)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("data: 300 points, 4 of them failed", done.stdout)
+                self.assertEqual(pathlib.Path("map.csv").read_bytes(), wanted)
+                self.assertEqual(self.files(), ["map.csv", "map.lua"])
+        pathlib.Path("map.lua").write_text("return 3")
+        self.assertIn("must return a table of the options of sweep", self.python("-m", "dinal.sweep", "map.lua").stderr)
+
+
+class Points(InAFolder):
+    def test_order(self):
+        m = dinal.sweep(over={"r": [1, 2], "g": ["a", "b"]}, run=lambda p: {"y": p.r})
+        self.assertEqual((m.names, m.y.tolist(), list(m.g)), (["r", "g", "y", "error"], [1, 1, 2, 2], ["a", "b", "a", "b"]))
+
+    def test_errors_stay_with_their_points(self):
+        m = dinal.sweep(over={"r": [0, 1, 2]}, run=lambda p: {"y": 1 // int(p.r)})
+        self.assertEqual(m.error[0], "ZeroDivisionError: integer division or modulo by zero")
+        self.assertEqual(m.y.tolist()[1:], [1, 0])
+        with self.assertRaisesRegex(dinal.Error, "all 2 points failed; the first one, r = 1: KeyError: 'x'"):
+            dinal.sweep(over={"r": [1, 2]}, run=lambda p: {}["x"])
+        with self.assertRaisesRegex(dinal.Error, "must return a dict of named numbers such as dict"):
+            dinal.sweep(over={"r": [1]}, run=lambda p: 3)
+
+    def test_who_exits_exits(self):
+        for executor in (None, lambda: cf.ProcessPoolExecutor(1)):
+            with self.assertRaises(SystemExit) as caught:
+                dinal.sweep(over={"r": [1, 2]}, run=leave, executor=executor)
+            self.assertEqual(caught.exception.code, 7)
+
+    def test_random_numbers_are_of_the_point(self):
+        def draw(seed):
+            return dinal.sweep(over={"r": range(50)}, run=lambda p, chance: {"u": chance.random()}, seed=seed).u.tolist()
+        self.assertEqual(draw(1), draw(1))
+        self.assertNotEqual(draw(1), draw(2))
+        self.assertEqual(len(set(draw(1))), 50)
+
+    def test_progress(self):
+        for run in (slow, dinal.lua("function(p) return { y = 1 } end")):
+            told = []
+            dinal.sweep(over=OVER, run=run, progress=lambda *now: told.append(now))
+            self.assertEqual(told[-1], (300, 300))
+            self.assertEqual(told, sorted(told))
+
+    def test_what_is_wrong(self):
+        for error, options in ((TypeError, dict(over={"r": [1]}, run=slow, workers=2)), (TypeError, dict(run=slow)),
+                               (dinal.Error, dict(over={"r": []}, run=slow)), (dinal.Error, dict(over={"r": [1]}, run=3)),
+                               (dinal.Error, dict(over={"r": [1]}, run=slow, max_time=1)),
+                               (ValueError, dict(over={"r": [1]}, run=slow, file="map.txt"))):
+            with self.assertRaises(error):
+                dinal.sweep(**options)
+        self.assertEqual(self.files(), [])
+
+
+class Deaths(InAFolder):
+    """Of a worker, of the caller, of the disk: the same call ends with the same bytes."""
+
+    def test_a_killed_worker(self):
+        over = {"r": range(20)}
+        with cf.ProcessPoolExecutor(2) as pool, self.assertRaisesRegex(dinal.Error, "a worker was killed; the same call continues"):
+            dinal.sweep(over=over, run=die, executor=pool, file="map.csv")
+        self.assertIsInstance(dinal.partial, dinal.Data)
+        self.assertEqual(dinal.sweep(over=over, run=die, file="map.csv").y.tolist(), list(range(20)))
+        os.remove("died")
+        told = []
+        m = dinal.sweep(over=over, run=die, executor=lambda: cf.ProcessPoolExecutor(2), progress=lambda *now: told.append(now))
+        self.assertEqual((m.y.tolist(), told[-1]), (list(range(20)), (20, 20)))
+
+    def started(self, engine):
+        process = subprocess.Popen([sys.executable, "script.py", engine], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        self.addCleanup(self.end, process)
+        return process
+
+    def end(self, process):
+        """With the workers of a pool, which outlive a caller that is killed and keep its output open."""
+        process.wait(timeout=60)
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        return process.communicate(timeout=60)[1] if not process.stdout.closed else ""
+
+    def test_the_caller_dies_or_is_interrupted(self):
+        pathlib.Path("script.py").write_text(SCRIPT)
+        self.assertEqual(self.python("script.py", "none").returncode, 0)
+        wanted = pathlib.Path("map.csv").read_bytes()
+        chance = random.Random(1)
+        for engine in ("none", "pool"):
+            os.remove("map.csv")
+            for _ in range(20 if LONG else 4):
+                process = self.started(engine)
+                for _ in range(chance.randrange(1, 30)):
+                    process.stdout.readline()
+                time.sleep(chance.uniform(0, .02))
+                what = chance.choice([signal.SIGKILL, signal.SIGINT, signal.SIGINT])
+                os.killpg(process.pid, what) if what == signal.SIGINT else process.kill()  # a terminal interrupts all of the group
+                err = self.end(process)
+                self.assertIn(process.returncode, (0, 130, -what), err)
+                if what == signal.SIGINT:
+                    self.assertNotIn("Traceback", err)
+            done = self.python("script.py", engine)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(pathlib.Path("map.csv").read_bytes(), wanted)
+            self.assertEqual(self.files(), ["map.csv", "script.py"])
+
+    def test_two_callers(self):
+        pathlib.Path("script.py").write_text(SCRIPT.replace(".002", ".02"))
+        first = self.started("pool")
+        first.stdout.readline()
+        second = self.python("script.py", "none")
+        self.assertIn("another process is at the same sweep", second.stderr)
+        self.assertEqual(self.end(first), "")
+        self.assertEqual(first.returncode, 0)
+
+    def test_a_full_disk(self):
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        before = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (3000, limits[1]))
+        try:
+            with self.assertRaisesRegex(dinal.Error, "cannot write 'map.csv.part': File too large; finished points are kept"):
+                dinal.sweep(over=OVER, run=slow, file="map.csv")
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            signal.signal(signal.SIGXFSZ, before)
+        done = []
+        dinal.sweep(over=OVER, run=slow, file="map.csv", progress=lambda now, count: done.append(now))
+        self.assertGreater(done[0], 30)
+        self.assertEqual(self.files(), ["map.csv"])
+
+    def test_another_function_is_refused(self):
+        code = """
+            import dinal, numpy as np, helper
+            A = 2
+            def inner(x): return A * x
+            def point(p, b=1): return {"y": (lambda x: inner(x))(p.r) + b + helper.B}
+            dinal.sweep(over={"r": np.arange(3.)}, run=point, file="map.csv")
+            """
+        pathlib.Path("helper.py").write_text("B = 1")
+        same = ["", "# a remark\n\n"]
+        for before in same:
+            shown = self.python("-c", before + textwrap.dedent(code))
+            self.assertEqual((shown.returncode, shown.stderr), (0, ""))
+        for old, new in (("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("p.r)", "p.r + 1)"), ("3.", "4.")):
+            self.assertIn("is not the result of this sweep", self.python("-c", textwrap.dedent(code).replace(old, new, 1)).stderr, new)
+        pathlib.Path("helper.py").write_text("B = 2")
+        self.assertIn("is not the result of this sweep", self.python("-c", textwrap.dedent(code)).stderr)
+
+
+class Lock(unittest.TestCase):
+    """Python's lock is free while Lua computes, as long as it calls no function of Python."""
+
+    def ticks(self, call):
+        ticks, ends = [], threading.Event()
+        thread = threading.Thread(target=lambda: [ticks.append(time.perf_counter()) for _ in iter(lambda: ends.wait(.005), True)])
+        thread.start()
+        start = time.perf_counter()
+        call()
+        end = time.perf_counter()
+        ends.set()
+        thread.join()
+        return sum(start < t < end for t in ticks) / (end - start)
+
+    def test_others_run(self):
+        osc = dinal.system(I=1, k=4, Rd=.3)
+        M = dinal.lua("function(t) return math.sin(t^1.01) end")
+        for call in (lambda: osc.simulate(M=M, t_end=20_000, times=[]), lambda: dinal.lua("for i = 1, 5e7 do end"),
+                     lambda: dinal.sweep(over={"r": np.linspace(.3, 2, 1000)}, run=dinal.lua("function(p) local s = 0 for i = 1, 1e5 do s = s + i end return { s = s } end"))):
+            self.assertGreater(self.ticks(call), 20)
+
+    def test_python_is_called_all_the_same(self):
+        seen = []
+
+        class Dropped:
+            def __del__(self):
+                seen.append(threading.get_ident())
+        osc = dinal.system(I=1, k=4)
+
+        def work():
+            dinal.lua("(function() f(1) for i = 1, 1e5 do local t = {} end collectgarbage() collectgarbage() print_it() end)()",
+                      f=lambda x, keep=Dropped(): None, print_it=lambda: osc.simulate(M=lambda t: 1., t_end=1))
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        busy = threading.Event()
+        spinner = threading.Thread(target=lambda: [None for _ in iter(busy.is_set, True)])
+        spinner.start()
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        busy.set()
+        spinner.join()
+        del work
+        dinal.lua("collectgarbage()")
+        dinal.lua("collectgarbage()")
+
+    def test_the_end_of_the_program(self):
+        code = ("import dinal, threading, time\n"
+                "threading.Thread(target=lambda: dinal.lua('while true do local t = {} end'), daemon=True).start()\ntime.sleep(.1)")
+        for _ in range(5):
+            shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
+            self.assertEqual((shown.returncode, shown.stderr), (0, ""))
+
+
+if __name__ == "__main__":
+    import warnings
+    warnings.simplefilter("ignore", DeprecationWarning)  # of tornado, within Dask
+    unittest.main(argv=sys.argv[:1] + [word for word in sys.argv[3:] if word != "--long"])
