@@ -162,6 +162,34 @@ class Engines(InAFolder):
         self.assertIn("must return a table of the options of sweep", self.python("-m", "dinal.sweep", "map.lua").stderr)
 
 
+class Page(InAFolder):
+    def test_many_machines(self):
+        """What the page shows runs: the script on each engine, with fewer points."""
+        page = (pathlib.Path(SOURCE) / "docs/many-machines.md").read_text()
+        script, map_file = re.search("```python\n(.*?)```", page, re.S)[1], re.search("```lua\n(.*?)```", page, re.S)[1]
+        pathlib.Path("map.py").write_text(script.replace("400", "20").replace("200", "10"))
+        pathlib.Path("map.lua").write_text(map_file.replace("400", "20").replace("200", "10"))
+        commands = re.findall(r"`(python3 map.py .*?|mpirun .*? map.py mpi)`", page) + re.findall(r"^((?:python3|mpirun) .*-m dinal.sweep .*)$", page, re.M)
+        self.assertEqual(len(commands), 6)
+        files = set()
+        for command in commands:
+            if "dask" in command:
+                if not importlib.util.find_spec("distributed"):
+                    continue
+                client = Engines.dask(self)
+                self.addCleanup(client.close)
+                command = command.replace("tcp://head:8786", client.scheduler.address)
+            if "mpirun" in command and not (shutil.which("mpirun") and importlib.util.find_spec("mpi4py")):
+                continue
+            command = command.replace("mpirun -n 64", "mpirun --allow-run-as-root --oversubscribe -n 3").replace("python3 ", sys.executable + " ")
+            done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.returncode, 0, command + done.stderr)
+            files.add(("py" if "map.py" in command else "lua", pathlib.Path("map.csv").read_text().partition("\n")[2]))
+            os.remove("map.csv")
+        self.assertEqual(len(files), 2)
+        self.assertIn("stops.svg", self.files())
+
+
 class Points(InAFolder):
     def test_order(self):
         m = dinal.sweep(over={"r": [1, 2], "g": ["a", "b"]}, run=lambda p: {"y": p.r})

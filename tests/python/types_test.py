@@ -56,12 +56,9 @@ def mypy(code):
 
 
 def examples():
-    """Each transcript of the page; what raises on purpose is left out."""
-    page = (SOURCE / "docs/python.md").read_text()
-    for block in re.findall("```python\n(.*?)```", page, re.S):
-        parts = doctest.DocTestParser().get_examples(block)
-        code = "".join(part.source for part in parts if not part.exc_msg) if parts else block
-        yield code if "import dinal" in code else HEAD + SYSTEM + code
+    """The transcript of the page; what raises on purpose is left out."""
+    parts = doctest.DocTestParser().get_examples((SOURCE / "docs/python.md").read_text())
+    return "".join(part.source for part in parts if not part.exc_msg)
 
 
 try:
@@ -69,7 +66,7 @@ try:
 except ImportError:
     print("no mypy: apt-get install python3-mypy mypy")
     sys.exit(77)
-for code in [*examples(), HEAD + RIGHT]:
+for code in (examples(), HEAD + RIGHT):
     if shown := mypy(code):
         failures.append(f"{shown}\nin\n{code}")
 shown = mypy(HEAD + SYSTEM + "run = osc.simulate(t_end=1)\n" + "\n".join(WRONG) + "\n")

@@ -8,7 +8,8 @@ import types
 import dinal
 
 HEAD = '''"""Written by python3 -m dinal.stubs."""
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor
 from typing import Any, Literal, overload
 from .types import Callback, Columns, Number, Numbers, Options, Path, Vector
 
@@ -25,6 +26,9 @@ class Object: ...
 class Function(Object):
     def __call__(self, *arguments: Any, **options: Any) -> Any: ...
 def lua(text: str, **variables: Any) -> Any: ...
+def sweep(*, over: Options, run: Callback, executor: Executor | Callable[[], Executor] | None = ..., file: Path | None = ...,
+          seed: int = ..., progress: Callable[[int, int], object] | None = ..., workers: int | None = ...,
+          max_time: Number | None = ...) -> Data: ...
 '''
 COLUMNS = "t theta velocity M friction damping acceleration".split()
 # More than the tables of the program say: fields with names of the user's, results that depend on the arguments.
@@ -106,7 +110,7 @@ def stubs():
             text += f"class {name}(Object):\n{body(name, value)}"
         elif isinstance(value, types.ModuleType):
             text += f"class _{name}:\n{body(name, value)}{name}: _{name}\n"
-        else:
+        elif name != "sweep":
             text += function(name, value)
     return text + AFTER
 
