@@ -252,7 +252,6 @@ int bifurcation(lua_State* L) {
                                   .settings = {period, asked.skip, asked.keep},
                                   .adapt = adapt,
                                   .form = {.columns = {}, .points_of = "theta"},
-                                  .looks = keep,
                                   .told = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
                                       return looks_as_rows(grid, results, points, keep);
                                   }}));

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -36,6 +36,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
+#include "lua/values.hpp"
 #include "lua/worker_state.hpp"
 #include "source/bytecode.hpp"
 #include "source/carry.hpp"
@@ -479,26 +480,22 @@ public:
 
     // The same with points that are done elsewhere: for engines that Python has. Each call has the state that makes it.
 
-    /// The chunks that are to be done, each from its first point to the one behind its last.
-    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> left() const {
-        std::vector<std::pair<std::size_t, std::size_t>> ranges;
+    [[nodiscard]] std::vector<double> left() const {
+        std::vector<double> firsts;
         for (std::size_t chunk = 0; chunk < (journal_ && journal_->result() ? 0 : results_->chunks()); ++chunk) {
-            const std::size_t first = chunk * results_->chunk_size();
-            const std::size_t last = std::min(first + results_->chunk_size(), results_->size());
-            if (!results_->is_complete(chunk)) ranges.emplace_back(first, last);
+            if (!results_->is_complete(chunk)) firsts.push_back(static_cast<double>(chunk * results_->chunk_size()));
         }
-        return ranges;
+        return firsts;
     }
-    void take(lua_State* L, std::size_t first, const Data& data) {
+    /// Returns how many points are done.
+    std::size_t take(lua_State* L, std::size_t first, const Data& data) {
         L_ = L;
         std::vector<std::size_t> points(data.size());
         std::iota(points.begin(), points.end(), first);
-        const std::size_t parameters = task_.grid.parameters().size();
-        if (data.columns.size() <= parameters || first + points.size() > results_->size())
-            lua::raise(L, "no part of this sweep");
-        results_->take(points, std::span(data.columns).subspan(parameters));
+        results_->take(points, std::span(data.columns).subspan(task_.grid.parameters().size()));
         if (journal_) trouble_ = journal_->write(false);
         if (trouble_) fail();
+        return results_->done();
     }
     /// What is done so far becomes dinal.partial.
     void keep(lua_State* L) {
@@ -529,7 +526,7 @@ private:
                        .option = "file"});
         }
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
-        journal_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.looks);
+        journal_.emplace(task_.file, fmt::format("{:016x}", print_), *results_);
         if (const auto wrong = journal_->open()) lua::fail(L_, task_.call, *wrong);
     }
 
@@ -634,40 +631,29 @@ struct PartedSweep {
 };
 using PartedHandle = std::shared_ptr<PartedSweep>;
 
-SweepRun& parted(lua_State* L) {
-    return *lua::self<PartedHandle>(L, 1, "sweep")->run;
+/// The first points of the chunks that are left.
+std::vector<double> left_of(const PartedHandle& sweep) {
+    return sweep->run->left();
+}
+std::size_t take_part(lua_State* L, const PartedHandle& sweep, double first, const DataHandle& data) {
+    return sweep->run->take(L, static_cast<std::size_t>(first), *data);
+}
+bool keep_parts(lua_State* L, const PartedHandle& sweep) {
+    sweep->run->keep(L);
+    return true;
+}
+DataHandle finish_parts(lua_State* L, const PartedHandle& sweep) {
+    return std::make_shared<const Data>(sweep->run->finish(L));
 }
 
-int left_of_sweep(lua_State* L) {
-    lua_newtable(L);
-    for (const auto& [first, last] : parted(L).left()) {
-        lua_createtable(L, 2, 0);
-        lua_pushinteger(L, static_cast<lua_Integer>(first));
-        lua_rawseti(L, -2, 1);
-        lua_pushinteger(L, static_cast<lua_Integer>(last));
-        lua_rawseti(L, -2, 2);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
-    }
-    return 1;
-}
-int take_part(lua_State* L) {
-    parted(L).take(L, static_cast<std::size_t>(luaL_checkinteger(L, 2)), *lua::self<DataHandle>(L, 3, "data"));
-    lua_pushinteger(L, static_cast<lua_Integer>(parted(L).done()));
-    lua_pushinteger(L, static_cast<lua_Integer>(parted(L).size()));
-    return 2;
-}
-int keep_parts(lua_State* L) {
-    parted(L).keep(L);
-    return 0;
-}
-int finish_parts(lua_State* L) {
-    return push_data(L, parted(L).finish(L));
-}
-
-constexpr lua::Member parted_members[] = {{lua::a_method<left_of_sweep>, {"sweep:left()", "", ""}},
-                                          {lua::a_method<take_part>, {"sweep:take(first, data)", "", ""}},
-                                          {lua::a_method<keep_parts>, {"sweep:keep()", "", ""}},
-                                          {lua::a_method<finish_parts>, {"sweep:finish()", "", ""}}};
+constexpr lua::Member parted_members[] = {
+    {lua::a_typed_method<left_of>, {"sweep:left()", "", ""}},
+    {lua::a_typed_method<take_part>, {"sweep:take(first, data)", "", ""}},
+    {lua::a_typed_method<keep_parts>, {"sweep:keep()", "", ""}},
+    {lua::a_typed_method<finish_parts>, {"sweep:finish()", "", ""}},
+    {lua::a_value<PartedHandle, [](const PartedSweep& sweep) { return sweep.grid.size(); }>, {"sweep.size", "", ""}},
+    {lua::a_value<PartedHandle, [](const PartedSweep& sweep) { return chunk_size_for(sweep.grid.size()); }>,
+     {"sweep.chunk", "", ""}}};
 const lua::Class parted_class = {"sweep in parts", {"", "", ""}, parted_members};
 
 }  // namespace
@@ -698,68 +684,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The line above a table that says which of its results, from `first` to the one before `error`, are words: a damaged
-/// number is not taken for one.
-template <class Columns, class IsWords>
-std::string note_of(const Columns& columns, std::size_t first, IsWords is_words) {
-    std::vector<std::string> names;
-    for (std::size_t i = first; i + 1 < columns.size(); ++i) {
-        if (std::invoke(is_words, columns[i])) names.push_back(columns[i].name);
-    }
-    return names.empty() ? "" : fmt::format("words in {}", fmt::join(names, ", "));
-}
-
-/// Writes a table whose results begin with the column `first`.
-text::Expected<files::Written> write_table(const std::string& file, std::span<const DataColumn> columns,
-                                           std::size_t first, const std::string& mark = "") {
-    std::vector<files::NamedColumn> named;
-    for (const DataColumn& column : columns) named.push_back(column.named());
-    const std::string note = note_of(columns, first, [](const DataColumn& c) { return c.numbers() == nullptr; });
-    const std::string comment(text::trimmed(mark + " " + note));
-    const std::span<const std::string> comments(&comment, comment.empty() ? 0 : 1);
-    return files::write_csv(file, named, comments, files::Gaps::written);
-}
-
-/// Whether what was read is as it was written, with this note about words.
-bool is_sound(const std::vector<files::ReadColumn>& columns, std::size_t first, std::string_view note) {
-    return columns.size() > first && columns.back().name == "error" &&
-           text::trimmed(note) == note_of(columns, first, &files::ReadColumn::of_words);
-}
-
-/// The messages in the last column; an empty column of words is one of nan.
-std::vector<std::string> messages_of(const files::ReadColumn& column) {
-    return column.of_words ? column.words : std::vector<std::string>(column.numbers.size());
-}
-
-constexpr std::string_view was_changed = "has been changed since it was written";
-
-/// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
-/// copy to another machine that was broken off, can leave a part of one.
-bool is_cut_off(const std::string& file) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) return false;
-    const auto text = files::read_file(file);
-    return text && !text->ends_with('\n');
-}
-
-/// The points as CSV: their numbers, then their results.
-std::string text_of_points(const std::vector<std::size_t>& points, std::span<const DataColumn> columns) {
-    std::string text = "point";
-    for (const DataColumn& column : columns) text += ',' + files::field_of(column.name);
-    for (std::size_t row = 0; row < points.size(); ++row) {
-        text += fmt::format("\n{}", points[row]);
+/// Columns as CSV behind a line with which a part of it, or a changed one, is not taken for whole.
+std::string block_of(std::span<const DataColumn> columns) {
+    std::string text;
+    for (const DataColumn& column : columns) text += (text.empty() ? "" : ",") + files::field_of(column.name);
+    for (std::size_t row = 0; row < columns.front().size(); ++row) {
         for (const DataColumn& column : columns) {
+            text += &column == &columns.front() ? '\n' : ',';
             const lua::Vector* numbers = column.numbers();
-            text += ',' + (numbers != nullptr ? fmt::format("{}", numbers->begin()[row])
-                                              : files::field_of(column.words()[row]));
+            if (numbers == nullptr) {
+                text += files::field_of(column.words()[row]);
+            } else if (const double x = numbers->begin()[row]; !std::isnan(x)) {
+                fmt::format_to(std::back_inserter(text), "{}", x);
+            }
         }
     }
-    return text + '\n';
+    text += '\n';
+    return fmt::format("# {} bytes, {:016x}\n", text.size(), source::digest_of(text)) + text;
 }
 
-/// The line before such a text: with it a part of one, or a changed one, is not taken for whole.
-std::string head_of(std::string_view text) {
-    return fmt::format("# {} bytes, {:016x}\n", text.size(), source::digest_of(text));
+/// The next block of a text, which it loses; none where it is not whole.
+std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
+    const std::size_t line = text.find('\n') + 1;
+    std::size_t bytes = 0;
+    const bool has_head =
+        line > 0 && std::sscanf(std::string(text.substr(0, line)).c_str(), "# %zu bytes", &bytes) == 1;
+    if (!has_head || bytes > text.size() - line) return std::nullopt;
+    const std::string_view content = text.substr(line, bytes);
+    if (text.substr(0, line) != fmt::format("# {} bytes, {:016x}\n", bytes, source::digest_of(content)))
+        return std::nullopt;
+    auto read = files::parse_columns(content, "");
+    if (!read) return std::nullopt;
+    text.remove_prefix(line + bytes);
+    std::vector<DataColumn> columns;
+    for (files::ReadColumn& column : read.value().columns) {
+        // Empty messages are no numbers.
+        const bool is_error = column.name == "error" && !column.of_words;
+        columns.push_back(is_error ? column_of("error", std::vector<std::string>(column.numbers.size()))
+                                   : column_of(std::move(column)));
+    }
+    return columns;
 }
 
 }  // namespace
@@ -769,14 +733,11 @@ std::size_t chunk_size_for(std::size_t points) {
     return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
 }
 
-SweepJournal::SweepJournal(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
-                           std::size_t looks)
+SweepJournal::SweepJournal(std::string file, const std::string& mark, SweepResults& results)
     : file_(std::move(file)),
       path_(file_ + ".part"),
-      mark_("sweep " + mark),
-      grid_(grid),
+      mark_("# sweep " + mark + '\n'),
       results_(results),
-      looks_(looks),
       written_(results.chunks()) {}
 
 text::Error SweepJournal::refused(const std::string& path, std::string_view why) const {
@@ -825,42 +786,21 @@ std::optional<text::Error> SweepJournal::take_points() {
     char buffer[1U << 16U];
     for (ssize_t count = 0; (count = ::read(journal_->number(), buffer, sizeof buffer)) > 0;)
         text.append(buffer, static_cast<std::size_t>(count));
-    const std::string first = mark_ + '\n';
     std::string_view rest = text;
-    if (first.starts_with(rest) && rest.size() < first.size()) return append(first);
-    if (!rest.starts_with(first)) {
+    if (mark_.starts_with(rest) && rest.size() < mark_.size()) return append(mark_);
+    if (!rest.starts_with(mark_)) {
         return refused(path_, "holds the points of another sweep: its grid or its function was another");
     }
-    size_ = first.size();
-    rest.remove_prefix(size_);
-    for (;;) {
-        const std::size_t line = rest.find('\n');
-        std::size_t bytes = 0;
-        const bool has_head = line != std::string_view::npos &&
-                              std::sscanf(std::string(rest.substr(0, line)).c_str(), "# %zu bytes", &bytes) == 1;
-        if (!has_head || bytes > rest.size() - line - 1) break;
-        const std::string_view content = rest.substr(line + 1, bytes);
-        if (rest.substr(0, line + 1) != head_of(content)) break;
-        const auto read = files::parse_columns(content, path_);
-        if (!read || read->columns.size() < 2 || !take(read->columns)) break;
-        size_ += line + 1 + bytes;
-        rest.remove_prefix(line + 1 + bytes);
+    rest.remove_prefix(mark_.size());
+    while (const auto columns = take_block(rest)) {
+        std::vector<std::size_t> points;
+        for (const double point : columns->front().numbers()->values())
+            points.push_back(static_cast<std::size_t>(point));
+        results_.take(points, std::span(*columns).subspan(1));
     }
+    size_ = text.size() - rest.size();
     for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) written_[chunk] = results_.is_complete(chunk);
     return rest.empty() ? std::nullopt : append("");
-}
-
-/// False where a point is none of the grid.
-bool SweepJournal::take(const std::vector<files::ReadColumn>& read) {
-    std::vector<std::size_t> points;
-    for (const double point : read.front().numbers) {
-        if (!(point >= 0 && point < static_cast<double>(results_.size()))) return false;
-        points.push_back(static_cast<std::size_t>(point));
-    }
-    std::vector<DataColumn> columns;
-    for (std::size_t i = 1; i < read.size(); ++i) columns.push_back(column_of(read[i]));
-    results_.take(points, columns);
-    return true;
 }
 
 /// After what is whole.
@@ -887,40 +827,25 @@ std::optional<text::Error> SweepJournal::write(bool incomplete) {
             if (results_.is_done(point)) points.push_back(point);
         }
         if (points.empty()) continue;
-        const std::string text = text_of_points(points, results_.columns(points));
-        if (auto wrong = append(head_of(text) + text)) return wrong;
+        std::vector<DataColumn> columns = results_.columns(points);
+        columns.insert(columns.begin(), column_of("point", std::vector<double>(points.begin(), points.end())));
+        if (auto wrong = append(block_of(columns))) return wrong;
         written_[chunk] = complete;
     }
     return std::nullopt;
 }
 
 std::optional<text::Error> SweepJournal::take_result() {
-    auto read = files::read_columns(file_);
-    if (!read || read->comments.empty() || !read->comments.front().starts_with(mark_)) {
-        return refused(file_, "is there, and is not the result of this sweep");
-    }
-    const std::string note = read->comments.front().substr(mark_.size());
-    std::vector<files::ReadColumn> columns = std::move(read).value().columns;
-    const std::size_t first = grid_.parameters().size();
-    if (is_cut_off(file_) || !is_sound(columns, first, note)) return refused(file_, was_changed);
-    const std::vector<std::string> errors = messages_of(columns.back());
-    std::vector<std::size_t> points;
-    std::size_t point = 0, look = 0;
-    for (const std::string& error : errors) {
-        points.push_back(point);
-        if (++look < looks_ && error.empty()) continue;
-        ++point, look = 0;
-    }
-    if (point != results_.size() || look != 0) return refused(file_, was_changed);
-    result_ = grid_.columns(points);
-    columns.pop_back();
-    for (std::size_t i = first; i < columns.size(); ++i) result_->push_back(column_of(std::move(columns[i])));
-    result_->push_back(column_of("error", errors));
-    return {};
+    const auto text = files::read_file(file_);
+    if (!text || !text->starts_with(mark_)) return refused(file_, "is there, and is not the result of this sweep");
+    std::string_view rest = std::string_view(*text).substr(mark_.size());
+    result_ = take_block(rest);
+    return result_ && rest.empty() ? std::nullopt
+                                   : std::optional(refused(file_, "has been changed since it was written"));
 }
 
 std::optional<text::Error> SweepJournal::finish(const Data& result) {
-    const auto written = write_table(file_, result.columns, grid_.parameters().size(), mark_);
+    const auto written = files::write_file(file_, mark_ + block_of(result.columns));
     if (written) discard();
     return written ? std::nullopt : std::optional(written.error());
 }

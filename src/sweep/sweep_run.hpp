@@ -102,7 +102,6 @@ struct SweepTask {
     std::function<void(lua_State* worker)> adapt = {};
     /// What the data are besides their columns.
     Data form = {};
-    std::size_t looks = 1;  ///< rows of a point that has not failed
     /// The columns of these points, if they are others than the parameters and the results.
     std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)> told =
         {};
@@ -136,9 +135,8 @@ std::size_t chunk_size_for(std::size_t points);
 /// different sweeps apart.
 class SweepJournal {
 public:
-    /// `mark` is that of what is asked. The file has so many rows for each point.
-    SweepJournal(std::string file, const std::string& mark, const PointGrid& grid, SweepResults& results,
-                 std::size_t looks);
+    /// `mark` is that of what is asked.
+    SweepJournal(std::string file, const std::string& mark, SweepResults& results);
 
     /// Takes what is done, or the result if the file is there. Fails when something of another sweep is there, another
     /// process is at it, or nothing can be written.
@@ -158,13 +156,10 @@ private:
     [[nodiscard]] text::Error refused(const std::string& path, std::string_view why) const;
     std::optional<text::Error> take_points();
     std::optional<text::Error> take_result();
-    bool take(const std::vector<files::ReadColumn>& read);
     std::optional<text::Error> append(std::string_view text);
 
     std::string file_, path_, mark_;
-    const PointGrid& grid_;
     SweepResults& results_;
-    std::size_t looks_;
     std::vector<bool> written_;  // chunks
     std::shared_ptr<files::Descriptor> journal_ = {};
     std::size_t size_ = 0;  // of what is whole in it

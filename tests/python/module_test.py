@@ -461,7 +461,8 @@ class Errors(unittest.TestCase):
         for kind, call in ((TypeError, lambda: osc.simulate(tend=20)), (TypeError, lambda: dinal.excitation.pulse(at=1)),
                            (TypeError, lambda: osc.simulate(t_end="20")), (ValueError, lambda: osc.simulate(t_end=-1)),
                            (ValueError, lambda: dinal.integrator.rk4(h=0)), (KeyError, lambda: run["tetha"]),
-                           (ValueError, lambda: dinal.integrator.dinal1989(h=1, stop="no"))):
+                           (ValueError, lambda: dinal.integrator.dinal1989(h=1, stop="no")), (TypeError, dinal.excitation.harmonic),
+                           (TypeError, lambda: dinal.system(I=1, k=1, units=3)), (FileNotFoundError, lambda: dinal.load("nope.csv"))):
             with self.assertRaises(kind) as caught:
                 call()
             self.assertIsInstance(caught.exception, dinal.Error)
@@ -474,6 +475,8 @@ class Errors(unittest.TestCase):
         for words, call in (("needs k, for example dinal.system(I=1, k=39.5", lambda: dinal.system(I=1)),
                             ("got None", lambda: dinal.lua("f(nil)", f=lambda x: osc.simulate(t_end=1).column(None))),
                             ("walls must be a dict such as dict(lower=-0.8", lambda: dinal.system(I=1, k=1, walls=3)),
+                            ("for example dinal.friction.law(lambda speed: 0.3", lambda: dinal.friction.law(3)),
+                            ("M returned None", lambda: osc.simulate(M=lambda t: None, t_end=1)),
                             ("osc.simulate has no option", lambda: osc.simulate(tend=1))):
             with self.assertRaises(dinal.Error) as caught:
                 call()

@@ -30,7 +30,8 @@ class RunWarning(RuntimeWarning):
 
 
 # What a sentence says, as kinds of exceptions: an unknown or missing option, a name that is not there, a wrong value.
-KINDS = [(r"has no option| needs |takes |must be [a-zT].*, got (None|True|False|an? |the string)", TypeError),
+KINDS = [(r"has no option| needs | is needed|takes |must be an? (?!finite|whole).*, got |must be [a-zT].*, got (None|True|False|an? |the string)",
+          TypeError), (r"No such file", FileNotFoundError),
          (r"has no (field|column|row)|there is no ", KeyError), (r" must |at most|exclude each other|of another sweep", ValueError)]
 
 class Record(dict):
@@ -413,5 +414,5 @@ def build():
 
 BY_RECIPE = set()
 CLASSES = {"function": Function}
-ERRORS = {kind: type("Error", (Error, kind), {"__module__": "dinal"}) for kind in (TypeError, KeyError, ValueError)}
+ERRORS = {kind: type("Error", (Error, kind), {"__module__": "dinal"}) for kind in (TypeError, KeyError, ValueError, FileNotFoundError)}
 _words.classes.update((section[1], class_name(section[1])) for section in _dinal.sections)

@@ -139,16 +139,15 @@ def sweep(*, over, run, executor=None, file=None, seed=0, progress=None, workers
     call, tries = (part, run, options), 0
     makes = isinstance(executor, type) or callable(executor) and not hasattr(executor, "submit")
     try:
-        while chunks := parts.left(parts):
+        while chunks := [(int(first), min(int(first) + parts.chunk, parts.size)) for first in parts.left(parts)]:
             pool = executor() if makes else executor
-            count = len(chunks)
             try:
                 for first, data in ((chunk[0], part(run, options, *chunk, os.getpid())) for chunk in chunks) if pool is None else \
                         results(pool, chunks, call):
-                    told = parts.take(parts, first, data)
-                    progress and progress(*told)
+                    done = parts.take(parts, first, data)
+                    progress and progress(done, parts.size)
             except concurrent.futures.BrokenExecutor as broken:
-                tries = tries + 1 if len(parts.left(parts)) == count else 0
+                tries = tries + 1 if len(parts.left(parts)) == len(chunks) else 0
                 if not makes or tries > 2:
                     raise Error("a worker was killed; " + ("the same call continues" if file else "with a file the same call would continue")) from broken
             finally:

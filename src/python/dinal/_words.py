@@ -174,11 +174,11 @@ def python(lua):
 def in_sentence(text):
     """A message of the program: what it names and shows is Python's."""
     out, at = "", 0
-    for found in re.finditer(r"[\w.:]*\{", text):
+    for found in re.finditer(r"[\w.:]*\{|[\w.:]+\(", text):
         if found.start() < at:
             continue
         depth, end = 0, found.end() - 1
-        while end < len(text) and (depth := depth + {"{": 1, "}": -1}.get(text[end], 0)) > 0:
+        while end < len(text) and (depth := depth + ("({".count(text[end]) - ")}".count(text[end]))) > 0:
             end += 1
         piece = text[found.start():end + 1]
         out += text[at:found.start()] + (python(piece) or piece)
@@ -189,9 +189,9 @@ def in_sentence(text):
     return out
 
 
-WORDS = [(r"\bsys([:.])(?=[a-z])", r"osc\1"), (r"\b([a-z]\w*):(?=[a-z])", r"\1."), (r"\bgot nil\b", "got None"), (r"\bgot true\b", "got True"),
+WORDS = [(r"\bsys([:.])(?=[a-z])", r"osc\1"), (r"\b([a-z]\w*):(?=[a-z])", r"\1."), (r"\b(got|returned) nil\b", r"\1 None"), (r"\bgot true\b", "got True"),
          (r"\bgot false\b", "got False"), (r"\btrue or false\b", "True or False"), (r"\bmath\.huge\b", "math.inf"),
-         (r"\bgot a table\b", "got a dict or a list"), (r"\ba vector or a table of\b", "an array or a list of"),
+         (r"\b(got|returned) a table\b", r"\1 a dict or a list"), (r"\ba vector or a table of\b", "an array or a list of"),
          (r"\ba table or a vector\b", "a list or an array"),
          (r"\ba table of numbers or a vector\b", "a list or an array of numbers"), (r"\ba vector\b", "an array"),
          (r"\bone table of (curves and )?named options\b", r"\1keyword arguments"), (r"\bnamed options\b", "keyword arguments"),
