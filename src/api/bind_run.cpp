@@ -495,8 +495,12 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
     for (const lua::Member& member : of.members) {
         if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
     }
-    lua::raise(
-        L, {.sentence = std::move(sentence), .culprit = std::string(wrong), .cure = text::did_you_mean(wrong, names)});
+    std::string cure = text::did_you_mean(wrong, names);
+    names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(known.size()));  // the sentence has these
+    lua::raise(L, {.sentence = std::move(sentence),
+                   .culprit = std::string(wrong),
+                   .cure = std::move(cure),
+                   .instead = fmt::format("; it also has {}", fmt::join(names, ", "))});
 }
 
 std::string_view status_word(model::Outcome outcome) {

@@ -204,7 +204,8 @@ std::string text_of(const Data& data, std::size_t width) {
     }
     if (n > 0) text += TableText(data, std::min(n, most_rows)).lines(width);
     if (n <= most_rows) return text;
-    const std::string more = "  ... " + text::counted(n - most_rows, "more row"), cure = "d:markdown() shows all of d";
+    const std::string more = "  ... " + text::counted(n - most_rows, "more row"),
+                      cure = ":markdown() after its name shows all";
     const bool fits = text::columns(more) + text::columns(cure) + 2 < width;
     return text + "\n" + more + (fits ? "; " : "\n  ") + cure;
 }

@@ -20,7 +20,7 @@ namespace dinal::errors {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 51> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 52> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
     {"display", "; did you mean 'print'?"},
@@ -71,6 +71,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> foreign_
     {"pd", "; a CSV file is read by load(\"file.csv\")"},
     {"tic", "; :time code prints the time that code takes"},
     {"toc", "; :time code prints the time that code takes"},
+    {"dir", "; Tab after a name and a point lists its fields, help(name) explains them, :who lists variables"},
     {"save", "; a run is saved by run:save(\"run.csv\")"},
 }};
 

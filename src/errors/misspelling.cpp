@@ -296,6 +296,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
     if (std::string habit = running_habit(error, statement); !habit.empty()) {
         return {habit};
     }
+    if (!error.instead.empty()) return {error.instead};
     const bool is_nil = error.culprit == "nil";
     return nil_global(L, frame, statement, is_nil ? error.option : "", is_nil);
 }

@@ -23,8 +23,8 @@ namespace dinal::help {
 /// A few lines about the topic that has most of the words, whose case does not matter; empty if there is none.
 std::string_view topic(std::string_view words);
 
-/// Our word for one of another language, friction for Reibung; else the word itself.
-std::string_view in_english(std::string_view word);
+/// Our words for those of another language, friction for Reibung; the other words stay.
+std::string in_english(std::string_view words);
 
 namespace {
 
@@ -284,7 +284,8 @@ std::string entries_named(std::string_view name, const terminal::Display& screen
 }  // namespace
 
 std::string help_about(std::string_view words, const terminal::Display& screen) {
-    words = in_english(text::trimmed(words, " "));
+    const std::string english = in_english(text::trimmed(words, " "));
+    words = english;
     if (words == "contents") {
         return contents(screen);
     }
@@ -444,7 +445,7 @@ constexpr std::array<Topic, 52> topics = {{
      "table samples force file csv record data"},
     {"dimension dimensions si newton",
      "Any consistent units: units of a system name them, system{ ..., units = { theta = \"rad\" } }, and\n"
-     "plots and files show them. nondimensional{} counts in T0 and M0/k.\n",
+     "plots and files show them. nondimensional{} counts in T0 and Mc/k.\n",
      "unit units metre kg"},
     {"abort cancel endless hang hangs interrupt",
      "Ctrl-C stops a run or a loop; dinal.partial then holds the rows so far.\n", "stop running loop run"},
@@ -506,13 +507,13 @@ constexpr std::array<Topic, 52> topics = {{
      "last one is run.events[#run.events]; run.events.kind is a column.\n",
      "list events event last first count number stops turns when"},
     {"quit exit leave", "Ctrl-D or :quit leaves dinal; os.exit() ends a script.\n", "close program"},
-    {"shell ls pwd terminal",
-     "dinal has no shell commands: Ctrl-Z suspends it, and fg brings it back. load and\nexcitation.samples read "
-     "files.\n"},
+    {"shell ls cd pwd dir folder terminal",
+     ":ls lists the files of the current folder, :cd folder changes it, :pwd shows it; Ctrl-Z\n"
+     "suspends dinal, and fg brings it back. load and excitation.samples read files.\n"},
 }};
 
 /// Words of other languages, and ours for the same.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> foreign = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign = {{
     {"reibung rozamiento friccion fricción frottement attrito", "friction"},
     {"feder muelle resorte ressort molla", "spring"},
     {"daempfung dämpfung amortiguamiento amortissement smorzamento", "damping"},
@@ -521,6 +522,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> foreign =
     {"resonanz resonancia résonance risonanza", "resonance"},
     {"energie energía energia énergie", "energy"},
     {"hilfe ayuda aide aiuto", "help"},
+    {"giro giros", "turn"},
+    {"adherencia adherido pegado", "stick"},
+    {"despegue", "breakaway"},
+    {"reposo parada paradas", "rest"},
+    {"zona-muerta", "dead zone"},
+    {"corrida simular simulación simulacion", "simulate"},
+    {"período periodo", "period"},
+    {"figura gráfico grafico dibujar", "plot"},
+    {"guardar", "save"},
+    {"salir", "quit"},
 }};
 
 bool has_word(std::string_view words, std::string_view wanted) {
@@ -534,11 +545,22 @@ bool has_word(std::string_view words, std::string_view wanted) {
 
 }  // namespace
 
-std::string_view in_english(std::string_view word) {
-    const std::string wanted = text::lower(word);
-    const auto* const found =
-        std::find_if(foreign.begin(), foreign.end(), [&](const auto& row) { return has_word(row.first, wanted); });
-    return found == foreign.end() ? word : found->second;
+std::string in_english(std::string_view words) {
+    const auto translated = [](std::string_view word) {
+        std::string wanted = text::lower(word);
+        std::replace(wanted.begin(), wanted.end(), ' ', '-');
+        const auto* const found =
+            std::find_if(foreign.begin(), foreign.end(), [&](const auto& row) { return has_word(row.first, wanted); });
+        return found == foreign.end() ? word : found->second;
+    };
+    if (const std::string_view whole = translated(words); whole != words) return std::string(whole);
+    std::string english;
+    for (std::size_t begin = 0; begin <= words.size();) {
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        english += (begin == 0 ? "" : " ") + std::string(translated(words.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return english;
 }
 
 std::string_view topic(std::string_view words) {

@@ -55,10 +55,10 @@ rest: it stops, and nothing can move it any more.
 )",
     R"(Change one number and look again. A ; at the end hides the value.
 
-    > for _, Re in ipairs{ 17, 20, 25, 29 } do
-    >   local s = system{ I = 1, k = sys.k, C = 1.5, Rd = 16.5, Re = Re }
+    > for _, Rd in ipairs{ 5, 15, 25, 35 } do
+    >   local s = sys:with{ Rd = Rd, Re = 1.1*Rd }
     >   local r = s:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }
-    >   print(Re, #r.events, r.outcome)
+    >   print(Rd, #r.events, r.outcome)
     > end
 
 A block goes on until its last end. The arrow up brings it back whole.

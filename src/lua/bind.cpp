@@ -68,6 +68,12 @@ std::string suggestion_for_key(lua_State* L, int index, const Class& description
                                              : "";
 }
 
+/// All names that an object of the class has, as the end of a sentence.
+std::string names_in(const Class& description) {
+    const std::vector<std::string_view> names = visible_names(description);
+    return names.empty() ? "" : fmt::format("; it has {}", fmt::join(names, ", "));
+}
+
 const Class& class_of_closure(lua_State* L, int upvalue) {
     return *static_cast<const Class*>(lua_touserdata(L, lua_upvalueindex(upvalue)));
 }
@@ -94,7 +100,8 @@ int index_object(lua_State* L) {
     }
     raise(L, {.sentence = with_article(description.name) + " has no field " + key_text(L, 2),
               .culprit = written(L, 2),
-              .cure = suggestion_for_key(L, 2, description)});
+              .cure = suggestion_for_key(L, 2, description),
+              .instead = names_in(description)});
 }
 
 int refuse_assignment(lua_State* L) {

@@ -1,13 +1,16 @@
 #include "prompt/commands.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "files/file.hpp"
@@ -169,6 +172,54 @@ void reset(Session& session, const std::string&) {
     say("all your variables are deleted; the names of Lua and dinal are restored\n");
 }
 
+void show_folder(Session& /*session*/, const std::string& /*argument*/) {
+    std::error_code wrong;
+    const std::filesystem::path folder = std::filesystem::current_path(wrong);
+    wrong ? say_error(":pwd: " + wrong.message()) : say_value(text::displayable(folder.string()) + "\n");
+}
+
+/// A folder as it is typed: ~ is that of the user.
+std::string folder_of(const std::string& typed) {
+    const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe)
+    const bool at_home = home != nullptr && (typed.empty() || typed == "~" || typed.starts_with("~/"));
+    return at_home ? home + (typed.empty() ? "" : typed.substr(1)) : typed;
+}
+
+void change_folder(Session& session, const std::string& folder) {
+    if (lua::safe_mode()) {
+        say_error(":cd is not possible in safe mode, which stays in the folder where dinal was started");
+        return;
+    }
+    std::error_code wrong;
+    std::filesystem::current_path(folder_of(folder), wrong);
+    wrong ? say_error(fmt::format(":cd: '{}': {}", text::displayable(folder), wrong.message()))
+          : show_folder(session, "");
+}
+
+void list_folder(Session& /*session*/, const std::string& argument) {
+    const std::string folder = argument.empty() ? "." : folder_of(argument);
+    if (lua::safe_mode() && !argument.empty()) {
+        say_error(":ls: safe mode shows the current folder only");
+        return;
+    }
+    std::vector<std::string> names;
+    std::error_code wrong;
+    for (std::filesystem::directory_iterator place(folder, wrong);
+         !wrong && place != std::filesystem::directory_iterator(); place.increment(wrong)) {
+        const std::string name = place->path().filename().string();
+        std::error_code vanished;
+        if (!name.starts_with('.'))
+            names.push_back(text::displayable(name) + (place->is_directory(vanished) ? "/" : ""));
+    }
+    if (wrong) {
+        say_error(fmt::format(":ls: '{}': {}", text::displayable(folder), wrong.message()));
+        return;
+    }
+    std::sort(names.begin(), names.end());
+    const std::size_t width = terminal::display_of(STDOUT_FILENO).width;
+    say_value(names.empty() ? "no files\n" : text::wrapped(fmt::format("{}", fmt::join(names, "  ")), width) + "\n");
+}
+
 enum class Argument { none, optional, needed };
 
 struct Command {
@@ -180,7 +231,7 @@ struct Command {
     bool file = false;  // the argument is the name of a file
 };
 
-constexpr std::array<Command, 11> commands = {{
+constexpr std::array<Command, 14> commands = {{
     {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
     {"quit", Argument::none, ":quit", "Leaves dinal, like Ctrl-D.", quit},
     {"time", Argument::needed, ":time code", "Runs code once and prints the time it took.", time},
@@ -193,6 +244,11 @@ constexpr std::array<Command, 11> commands = {{
     {"edit", Argument::optional, ":edit [n]",
      "Opens the last input, or the n-th of :history, in your editor (EDITOR), and runs it.", edit},
     {"who", Argument::none, ":who", "Lists your own variables.", who},
+    {"cd", Argument::optional, ":cd [folder]", "Changes the current folder, without an argument to your own.",
+     change_folder, true},
+    {"pwd", Argument::none, ":pwd", "Shows the current folder.", show_folder},
+    {"ls", Argument::optional, ":ls [folder]", "Lists the files of the current folder, or of another one.", list_folder,
+     true},
     {"reset", Argument::none, ":reset", "Deletes all your variables and the record for :save.", reset},
     {"q", Argument::none, ":q", "The same as :quit.", quit},
 }};

@@ -26,10 +26,14 @@ namespace dinal::prompt {
 namespace {
 
 /// Commands of shells, notebooks and other languages, and what does the same here.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> words_and_cures = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> words_and_cures = {{
     {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
     {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
-    {"who whos", ":who lists your variables"},
+    {"who whos dir",
+     ":who lists your variables; Tab after a name and a point lists its fields, help(name) explains them"},
+    {"_", "ans holds the last value that was computed"},
+    {"ls", ":ls lists the files of the current folder"},
+    {"cd pwd", ":cd folder changes the current folder, :pwd shows it"},
     {"man", "help \"name\" explains a name"},
     {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them to a script"},
     {"save", ":save lab.lua writes your inputs to a script, run:save(\"run.csv\") writes a run"},

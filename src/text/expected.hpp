@@ -16,6 +16,7 @@ struct Error {
     std::string option = {};  ///< the option that is wrong or missing: "t_end"
     std::string culprit = {};  ///< what the user wrote: a name that does not exist, a value; "nil" where nothing is
     std::string cure = {};     ///< what goes on after the sentence: "; did you mean 'theta0'?"
+    std::string instead = {};  ///< the same where nobody who reads the script knows better: "; it has t, theta"
 
     [[nodiscard]] std::string message() const { return sentence + cure; }
 };

@@ -48,6 +48,11 @@ class Walked(AtHome):
         ("a.T0", "there is no 'T0' in it: it has C, k"),
         ("run = nondimensional{}:simulate{ theta0 = 1, t_end = 2, dt = 0.1 }", ""),
         ("run:to_csv('x.csv')", "did you mean 'save'?"),
+        ("dir(run)", "Tab after a name and a point lists its fields"),
+        ("cd", ":cd folder changes the current folder"),
+        ("ls", ":ls lists the files"),
+        ("_", "ans holds the last value"),
+        ("run.whatisit", "it also has at, columns"),
         ("2*run.events[1]", "as in run.events[1].theta"),
         ("run.events[run.events.theta > 0]", "rows are selected by d:filter"),
     )
@@ -58,6 +63,25 @@ class Walked(AtHome):
             shown = " ".join(session.enter(line).split())
             self.assertIn(answer, shown, line)
             self.assertTrue(answer or not shown, f"{line}: {shown}")
+
+
+class Folders(AtHome):
+    def test_the_current_folder_is_shown_changed_and_listed(self):
+        session = self.session()
+        (self.home / "inner").mkdir()
+        (self.home / "inner" / "a.lua").write_text("")
+        self.assertEqual(session.enter(f":cd {self.home}"), str(self.home))
+        self.assertIn("inner/", session.enter(":ls"))
+        self.assertTrue(session.enter(":cd inner").endswith("/inner"))
+        self.assertEqual(session.enter(":ls"), "a.lua")
+        self.assertTrue(session.enter(":pwd").endswith("/inner"))
+        self.assertIn("No such file", session.enter(":cd nowhere"))
+        self.assertEqual(session.enter(":cd"), str(self.home))
+
+    def test_safe_mode_stays_where_it_is(self):
+        session = self.session("--safe")
+        self.assertIn("not possible in safe mode", session.enter(":cd /"))
+        self.assertIn("the current folder only", session.enter(":ls /"))
 
 
 class Pasted(AtHome):
