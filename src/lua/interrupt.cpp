@@ -18,6 +18,7 @@
 
 #include "files/file.hpp"
 #include "lua/limits.hpp"
+#include "lua/memory_limit.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::lua {
@@ -64,6 +65,7 @@ void note_first_place(lua_State* L) {
 }
 
 void interrupt_hook(lua_State* L, lua_Debug*) {
+    settle_refusal();
     if (interrupt_requested() && armed) {
         raise_interrupted(L);
     }
@@ -151,6 +153,10 @@ void stop_here(Stop reason) noexcept {
     request_stop(reason);
 }
 
+void look_at_next_instruction() noexcept {
+    if (lua_State* L = running_here(); armed && L != nullptr) set_hook(L);
+}
+
 void raise_interrupted(lua_State* L) {
     note_first_place(L);
     if (stop_requested() == Stop::interrupted) {
@@ -231,6 +237,7 @@ RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(cal
 }
 
 RunningThread::~RunningThread() {
+    settle_refusal();
     running_here() = caller_;
     if (requested != Stop::none && armed) {
         set_hook(caller_);  // the coroutine died of the stop: its caller must, too

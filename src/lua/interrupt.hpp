@@ -61,6 +61,9 @@ void request_stop(Stop reason) noexcept;
 /// The same, not in a signal handler: stopped_at() is what runs now.
 void stop_here(Stop reason) noexcept;
 
+/// Has settle_refusal() called before the next instruction of Lua on this thread.
+void look_at_next_instruction() noexcept;
+
 /// What is raised in the running code: the string "interrupted!" or "limit reached!", without position.
 [[noreturn]] void raise_interrupted(lua_State* L);
 

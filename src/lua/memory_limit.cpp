@@ -1,16 +1,26 @@
 #include "lua/memory_limit.hpp"
 
 #include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "lua/interrupt.hpp"
+
+// Those of the C library: in what the linker joins with this file, malloc, free and realloc lead to the end of it.
+// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
+extern "C" void* __real_malloc(std::size_t size);
+extern "C" void __real_free(void* block);
+extern "C" void* __real_realloc(void* block, std::size_t size);
 
 namespace dinal::lua {
 namespace {
@@ -52,12 +62,13 @@ bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
     return refused_before != 0 && (refused_before != size || !fits);
 }
 
+thread_local std::size_t refused = 0;  // bytes that Lua was refused last; 0: it has got more since
+
 void* allocate(void*, void* block, std::size_t, std::size_t size) {
-    thread_local std::size_t refused = 0;
     const Bytes before = size_of(block);
     if (size == 0) {
         count(-before);
-        std::free(block);  // NOLINT: Lua's blocks are those of realloc
+        __real_free(block);
         return nullptr;
     }
     if (const Bytes more = static_cast<Bytes>(size) - before; more > 0) {
@@ -66,12 +77,45 @@ void* allocate(void*, void* block, std::size_t, std::size_t size) {
             stop_here(Stop::memory);
         }
         if (!fits) {
+            look_at_next_instruction();
             return nullptr;
         }
     }
-    void* result = std::realloc(block, size);  // NOLINT
+    void* result = __real_realloc(block, size);
     count(result == nullptr ? 0 : size_of(result) - before);
     return result;
+}
+
+/// A block of the C library in place of `block`, which may be null; null if the limit does not allow it.
+void* counted(std::size_t size, void* block) {
+    if (!limited()) return __real_realloc(block, size);
+    const Bytes before = size_of(block);
+    if (!allowed(static_cast<Bytes>(std::min<std::size_t>(size, 1ULL << 62U)) - before)) {
+        stop_here(Stop::memory);
+        return nullptr;
+    }
+    void* result = __real_realloc(block, size);
+    if (result != nullptr || size == 0) count(size_of(result) - before);
+    return result;
+}
+
+/// The system refuses what passes the limit by something that is not counted, such as the pages of a picture: twice the
+/// limit, and what the program and its threads take themselves.
+void set_backstop(std::size_t bytes) {
+    constexpr std::size_t own = std::size_t{128} << 20U, for_a_thread = std::size_t{16} << 20U;
+    std::size_t pages = 0;
+    if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
+        if (std::fscanf(file, "%*u %*u %*u %*u %*u %zu", &pages) != 1) pages = 0;  // NOLINT(cert-err34-c)
+        static_cast<void>(std::fclose(file));
+    }
+    const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+    const rlim_t most =
+        pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + 2 * bytes + own + threads * for_a_thread;
+    rlimit data{};
+    if (::getrlimit(RLIMIT_DATA, &data) == 0 && most < data.rlim_cur) {
+        data.rlim_cur = most;
+        ::setrlimit(RLIMIT_DATA, &data);
+    }
 }
 
 }  // namespace
@@ -80,6 +124,11 @@ void set_memory_limit(lua_State* L, std::size_t bytes) {
     taken = 0;
     limit = static_cast<Bytes>(std::min<std::size_t>(bytes, std::numeric_limits<Bytes>::max() / 2));
     lua_setallocf(L, allocate, nullptr);
+    set_backstop(bytes);
+}
+
+void settle_refusal() noexcept {
+    if (std::exchange(refused, 0) != 0 && chunk_runs()) stop_here(Stop::memory);
 }
 
 std::size_t memory_limit() noexcept {
@@ -142,6 +191,21 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
 
 }  // namespace dinal::lua
 
+// Malloc by others than Lua and operator new, which is that of Eigen's matrices: the linker leads their calls here
+// (--wrap in CMakeLists.txt). Libraries that are linked dynamically keep the plain one.
+extern "C" void* __wrap_malloc(std::size_t size) {
+    return dinal::lua::counted(size, nullptr);
+}
+
+extern "C" void* __wrap_realloc(void* block, std::size_t size) {
+    return dinal::lua::counted(size, block);
+}
+
+extern "C" void __wrap_free(void* block) {
+    if (dinal::lua::limited()) dinal::lua::count(-dinal::lua::size_of(block));
+    __real_free(block);
+}
+
 // NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
 // Never inlined: a checker of memory puts its own in their places, and would see half of a pair.
 [[gnu::noinline]] void* operator new(std::size_t size) {
@@ -150,8 +214,9 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
         dinal::lua::stop_here(dinal::lua::Stop::memory);
         throw std::bad_alloc();
     }
-    void* block = std::malloc(std::max<std::size_t>(size, 1));  // NOLINT
+    void* block = __real_malloc(std::max<std::size_t>(size, 1));
     if (block == nullptr) {
+        if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the backstop of the system
         throw std::bad_alloc();
     }
     if (limited) {
@@ -172,9 +237,10 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
     if (dinal::lua::limited()) {
         dinal::lua::count(-dinal::lua::size_of(block));
     }
-    std::free(block);  // NOLINT
+    __real_free(block);
 }
 
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
     operator delete(block);
 }
+// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)

@@ -14,6 +14,10 @@ namespace dinal::lua {
 /// From now on chunks may take so many bytes more than is taken already. Once, for the whole process.
 void set_memory_limit(lua_State* L, std::size_t bytes);
 
+/// Ends the chunk of this thread if Lua was refused memory and has not got it since, by collecting garbage: no pcall
+/// shall go on from there. Called at the instruction after a refusal, and where a chunk or a coroutine ends.
+void settle_refusal() noexcept;
+
 /// 0 when there is none.
 [[nodiscard]] std::size_t memory_limit() noexcept;
 

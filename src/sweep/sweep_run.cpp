@@ -9,6 +9,7 @@
 #include <atomic>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -25,6 +26,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -35,6 +37,7 @@
 #include "lua/foreign.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/memory_limit.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/values.hpp"
 #include "lua/worker_state.hpp"
@@ -157,6 +160,7 @@ struct PointLoop {
             ++watch.task;
         }
         const int status = lua_pcall(L, 1, 1, handler);
+        lua::settle_refusal();
         if (work.max_time > 0 && is_given_up(number)) return true;
         if (status != LUA_OK && lua::interrupt_requested()) return false;
         const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
@@ -453,10 +457,25 @@ Failures failures_in(const Data& data, const PointGrid& grid) {
     return found;
 }
 
-std::size_t worker_count(const std::optional<double>& asked, std::size_t points) {
+/// The most threads that this machine allows a sweep: DINAL_WORKERS, if its administrator or user has set it.
+std::size_t most_workers(lua_State* L) {
+    const char* variable = std::getenv("DINAL_WORKERS");
+    if (variable == nullptr || *variable == '\0') return std::numeric_limits<std::size_t>::max();
+    const std::string_view text = variable;
+    std::size_t most = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), most);
+    if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size() || most == 0) {
+        lua::raise(L, fmt::format("DINAL_WORKERS, the most threads of a sweep, must be a whole number from 1, not '{}'",
+                                  text));
+    }
+    return most;
+}
+
+std::size_t worker_count(lua_State* L, const std::optional<double>& asked, std::size_t points) {
     const std::size_t cores = lua::in_worker() ? 1 : std::max(1U, std::thread::hardware_concurrency());
-    return std::clamp<std::size_t>(asked ? static_cast<std::size_t>(*asked) : cores, 1,
-                                   std::max<std::size_t>(points, 1));
+    const std::size_t asked_for = asked ? static_cast<std::size_t>(*asked) : cores;
+    const std::size_t wanted = lua::memory_limit() > 0 ? std::min(asked_for, cores) : asked_for;  // each takes some
+    return std::clamp<std::size_t>(std::min(wanted, most_workers(L)), 1, std::max<std::size_t>(points, 1));
 }
 
 const lua::Class unfinished_class = {"unfinished sweep", {"", "", ""}, std::span<const lua::Member>()};
@@ -548,7 +567,7 @@ private:
                 return !trouble_;
             };
         }
-        work.workers = worker_count(task_.workers, work.points.size());
+        work.workers = worker_count(L_, task_.workers, work.points.size());
         SweepWorkers workers(L_, task_.function, work);
         workers.run(L_);
     }
