@@ -2,6 +2,23 @@
 sheet(1, {
   title = "free decay, viscous against dry",
 
+  setup = [[local viscous, dry = system(given.viscous), system(given.dry)]],
+
+  -- The script to begin with: the tasks, and what they have in it besides the questions.
+  tasks = {
+    { "1.2", "The period" },
+    { "1.3", "Viscous damping", [[
+local run = viscous:simulate{ theta0 = given.theta0, t_end = 10*viscous.T0, dt = viscous.T0/100 }
+page:plot(run:plot{ show = false })]] },
+    { "1.4", "Dry friction", [[
+run = dry:simulate{ theta0 = given.theta0, t_end = 10*dry.T0, dt = dry.T0/100 }
+page:plot(run:plot{ show = false })
+page:plot(run:phase_plot{ show = false })]] },
+    { "1.5", "A record with both", [[
+local record = lab.experiment(1)
+print(record)]] },
+  },
+
   given = function(pick)
     local I, k, theta0 = pick(0.5, 2, 0.1), pick(20, 60, 1), pick(0.8, 1.2, 0.05)
     local zeta = pick(0.04, 0.085, 0.005) -- with 0.09 X2/X0 is as great as its own logarithm
@@ -62,7 +79,7 @@ sheet(1, {
         mistakes = {
           { dry.omega0, "that is omega0, in rad per time unit; the period is asked for" },
           { 1/T0, "that is the frequency; the period is its reciprocal" },
-          { math.sqrt(dry.I/dry.k), "there is a 2 pi missing in it: 1/omega0 is no period" },
+          { math.sqrt(dry.I/dry.k), "a factor of 2 pi is missing: 1/omega0 is no period" },
           { 2*math.pi*math.sqrt(dry.k/dry.I), "I and k have changed places under the root" },
           { T0/2, "that is half of it: from turn to turn it is half a period" },
         } },
@@ -126,4 +143,61 @@ sheet(1, {
         } },
     }
   end,
+
+  words = {
+    es = {
+      ["free decay, viscous against dry"] = "decaimiento libre, viscoso y seco",
+      ["The period"] = "El período",
+      ["Viscous damping"] = "Amortiguamiento viscoso",
+      ["Dry friction"] = "Rozamiento seco",
+      ["A record with both"] = "Un registro con los dos",
+      ["that is omega0, in rad per time unit; the period is asked for"] = "eso es omega0, en rad por unidad de tiempo; se pide el período",
+      ["that is the frequency; the period is its reciprocal"] = "esa es la frecuencia; el período es su recíproco",
+      ["a factor of 2 pi is missing: 1/omega0 is no period"] = "falta un factor 2 pi: 1/omega0 no es un período",
+      ["I and k have changed places under the root"] = "I y k cambiaron de lugar bajo la raíz",
+      ["that is half of it: from turn to turn it is half a period"] = "es la mitad: de un giro al siguiente hay medio período",
+      ["that is the decrement of half a cycle: two turns that follow each other are half a cycle apart"] =
+        "ese es el decremento de medio ciclo: dos giros seguidos están a medio ciclo uno del otro",
+      ["that is with the logarithm to base 10; math.log(x) is the natural one"] =
+        "eso es con el logaritmo decimal; math.log(x) es el natural",
+      ["that is the ratio of the extremes; its logarithm is asked for"] = "ese es el cociente de los extremos; se pide su logaritmo",
+      ["that is the ratio of the extremes, the smaller one above; the logarithm of X0/X2 is asked for"] =
+        "ese es el cociente de los extremos, con el menor arriba; se pide el logaritmo de X0/X2",
+      ["that is zeta, which is asked for in 1c"] = "eso es zeta, que se pide en 1c",
+      ["half of it: is your decrement that of half a cycle, or did the 2 in 2 pi come twice?"] =
+        "es la mitad: ¿su decremento es el de medio ciclo, o entró dos veces el 2 de 2 pi?",
+      ["twice as much: the decrement of a whole cycle belongs to 2 pi, not to pi"] =
+        "es el doble: al decremento de un ciclo entero le corresponde 2 pi, no pi",
+      ["too small by 2 pi: divide the decrement by it once"] = "demasiado chico por 2 pi: divida el decremento por 2 pi una sola vez",
+      ["that is the decrement; zeta is about d/(2 pi)"] = "ese es el decremento; zeta es cerca de d/(2 pi)",
+      ["that is lost in a whole cycle; half a cycle is asked for"] = "eso se pierde en un ciclo entero; se pide medio ciclo",
+      ["that is Rd/k; the centre of the swing jumps from one side to the other, so it counts twice"] =
+        "eso es Rd/k; el centro de la oscilación salta de un lado al otro, y entonces cuenta dos veces",
+      ["the size is right; a loss is a positive number here"] = "el tamaño es correcto; una pérdida es aquí un número positivo",
+      ["off the middle, as dry friction may leave it"] = "fuera del centro, como lo puede dejar el rozamiento seco",
+      ["the distance is right, the side is not: count the half swings, or look at run.events"] =
+        "la distancia es correcta, el lado no: cuente los medios ciclos, o mire run.events",
+      ["nothing brings it back to the middle: within Rd/k friction holds it"] =
+        "nada lo devuelve al centro: dentro de Rd/k el rozamiento lo sostiene",
+      ["that is the edge of the dead zone; it rests at an extreme somewhere within"] =
+        "ese es el borde de la zona muerta; se queda en un extremo, en algún lugar adentro",
+      ["that is an edge of the dead zone; it rests at an extreme somewhere within"] =
+        "ese es un borde de la zona muerta; se queda en un extremo, en algún lugar adentro",
+      ["twice as long: from turn to turn it is half a period"] = "es el doble: de un giro al siguiente hay medio período",
+      ["half as long: you have counted whole cycles as halves"] = "es la mitad: contó ciclos enteros como medios",
+      ["that is the number of half swings; how long do they take?"] = "ese es el número de medios ciclos; ¿cuánto duran?",
+      ["one half swing too early: at that turn it still moved on"] = "medio ciclo antes de tiempo: en ese giro todavía siguió",
+      ["one half swing too late: it was at rest before"] = "medio ciclo tarde: ya estaba en reposo",
+      ["that takes all damping for viscous; the dry part must go out first: take differences"] =
+        "eso toma todo el amortiguamiento por viscoso; la parte seca tiene que salir antes: tome diferencias",
+      ["half of it: X0, X1, X2 are half a cycle apart, so -ln(q) belongs to pi"] =
+        "es la mitad: X0, X1, X2 están a medio ciclo, así que a -ln(q) le corresponde pi",
+      ["that is -ln(q); divide by pi"] = "eso es -ln(q); divida por pi",
+      ["zeta is positive: q is less than 1, and its logarithm negative"] = "zeta es positivo: q es menor que 1, y su logaritmo negativo",
+      ["that is 2 x_f, what dry friction alone would take in half a cycle"] =
+        "eso es 2 x_f, lo que el rozamiento seco solo quitaría en medio ciclo",
+      ["that takes all damping for dry; use q"] = "eso toma todo el amortiguamiento por seco; use q",
+      ["the sign is wrong: take the extremes without theirs"] = "el signo está mal: tome los extremos sin el suyo",
+    },
+  },
 })

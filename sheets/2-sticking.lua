@@ -11,6 +11,19 @@ end
 sheet(2, {
   title = "sticking, dead zone, breakaway",
 
+  -- The script to begin with: the tasks, and what they have in it besides the questions.
+  tasks = {
+    { "2.2", "Breakaway: the torque at which the angle is first seen to change", [[
+local function breakaway(slope)
+  local record = lab.experiment(2, slope)
+  return record:filter(function(row) return row.theta > 0 end).M[1]
+end
+print("one reading:", breakaway(5))]] },
+    { "2.3", "Dead zone" },
+    { "2.4", "Where it ends" },
+    { "2.5", "Stick-slip: add its picture with page:plot(drawn(Re):plot{ show = false })" },
+  },
+
   given = function(pick)
     local I, k, Rd = pick(1, 3, 0.2), pick(200, 400, 10), pick(12, 20, 0.5)
     return { I = I, k = k, Rd = Rd }
@@ -33,7 +46,7 @@ sheet(2, {
   experiment = function(given, secret, slope)
     if not slope then error("give it a slope: by how much the torque rises in a time unit, lab.experiment(2, 5)", 0) end
     if slope < 0.1 or slope > 2000 then
-      error(string.format("the drive of the bench pulls with slopes from 0.1 to 2000, not %g", slope), 0)
+      error("the drive of the bench pulls with slopes from 0.1 to 2000", 0)
     end
     local bench = system{ I = given.I, k = given.k, Rd = given.Rd, Re = secret.Re }
     local t_end = 4*given.Rd/slope
@@ -121,4 +134,49 @@ sheet(2, {
         } },
     }
   end,
+
+  words = {
+    es = {
+      ["sticking, dead zone, breakaway"] = "adherencia, zona muerta, despegue",
+      ["Breakaway: the torque at which the angle is first seen to change"] =
+        "Despegue: el momento con que se ve cambiar el ángulo por primera vez",
+      ["Dead zone"] = "Zona muerta",
+      ["Where it ends"] = "Dónde termina",
+      ["Stick-slip: add its picture with page:plot(drawn(Re):plot{ show = false })"] =
+        "Stick-slip: agregue su figura con page:plot(drawn(Re):plot{ show = false })",
+      ["give it a slope: by how much the torque rises in a time unit, lab.experiment(2, 5)"] =
+        "dele una pendiente: cuánto crece el momento por unidad de tiempo, lab.experiment(2, 5)",
+      ["the drive of the bench pulls with slopes from 0.1 to 2000"] = "el banco tira con pendientes de 0.1 a 2000",
+      ["that is Rd, which you were given; it takes more to get it going"] =
+        "eso es Rd, que está entre los datos; para que arranque hace falta más",
+      ["that is an angle, Re/k; the torque is asked for"] = "eso es un ángulo, Re/k; se pide el momento",
+      ["that is where the pull ended; look where theta moved first"] = "ahí terminó el tirón; mire dónde se movió theta por primera vez",
+      ["too much: pulled fast, the torque has gone on rising when the angle is seen to move; pull more slowly"] =
+        "demasiado: si se tira rápido, el momento sigue creciendo hasta que se ve mover el ángulo; tire más despacio",
+      ["too little: that is before it moved; one noisy reading is not enough, take several pulls"] =
+        "muy poco: eso es antes de que se moviera; una lectura con ruido no alcanza, tire varias veces",
+      ["that is its whole width; the dead zone reaches as far to the other side"] =
+        "ese es el ancho entero; la zona muerta llega igual de lejos al otro lado",
+      ["that is Rd/k: what holds a resting mass is Re"] = "eso es Rd/k: lo que sostiene una masa en reposo es Re",
+      ["that is the torque; divide by the stiffness"] = "ese es el momento; divida por la rigidez",
+      ["with Re = Rd it would have gone on"] = "con Re = Rd habría seguido",
+      ["that is with Re = Rd: once it stops there, Re holds it. Give your system the Re that you have measured"] =
+        "eso es con Re = Rd: una vez detenida, la sostiene Re. Dé a su sistema el Re que midió",
+      ["the distance is right, the side is not"] = "la distancia es correcta, el lado no",
+      ["nothing brings it back to the middle"] = "nada la devuelve al centro",
+      ["that is where M passes Rd: at rest it is held by Re"] = "ahí M pasa por Rd: en reposo la sostiene Re",
+      ["the stiffness is missing: the torque of the spring is k v t"] = "falta la rigidez: el momento del resorte es k v t",
+      ["that is the limit of pulling slowly, 2 (Re - Rd)/k; meanwhile the drive goes on"] =
+        "ese es el límite de tirar despacio, 2 (Re - Rd)/k; mientras tanto el arrastre sigue",
+      ["that is (Re - Rd)/k; it swings as far beyond the middle again, and the drive goes on"] =
+        "eso es (Re - Rd)/k; del otro lado del centro recorre otro tanto, y el arrastre sigue",
+      ["that is where the spring was when it slipped"] = "ahí estaba el resorte cuando deslizó",
+      ["that is how long it slips; the time that it sticks belongs to it, too"] =
+        "eso dura el deslizamiento; también cuenta el tiempo en que está adherido",
+      ["that is how long it sticks; the time that it slips belongs to it, too"] =
+        "eso dura la adherencia; también cuenta el tiempo en que desliza",
+      ["that is the first slip, from a relaxed spring; from then on the spring is never relaxed again"] =
+        "ese es el primer deslizamiento, con el resorte flojo; después el resorte nunca vuelve a estar flojo",
+    },
+  },
 })

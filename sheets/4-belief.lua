@@ -42,6 +42,34 @@ end
 sheet(4, {
   title = "which number can you believe",
 
+  -- The script to begin with: the tasks, and what they have in it besides the questions.
+  tasks = {
+    { "4.2", "Half a swing" },
+    { "4.3", "Two suspects. The scheme as it is printed; build the slips in where slip is 3 or 4", [[
+local function step(u, v, h, zeta, slip)
+  local function f(x, y) return -4*math.pi^2*x - 4*math.pi*zeta*y end
+  local Q11, Q21 = h*v, h*f(u, v)
+  local Q12, Q22 = h*(v + Q21/2), h*f(u + Q11/2, v + Q21/2)
+  local Q13, Q23 = h*(v + Q22/2), h*f(u + Q12/2, v + Q22/2)
+  local Q14, Q24 = h*(v + Q23), h*f(u + Q13, v + Q23)
+  return u + (Q11 + 2*Q12 + 2*Q13 + Q14)/6, v + (Q21 + 2*Q22 + 2*Q23 + Q24)/6
+end
+
+local function factor(h, zeta, slip)
+  local a, b = step(1, 0, h, zeta, slip)
+  local c, d = step(0, 1, h, zeta, slip)
+  return math.sqrt(a*d - b*c)
+end
+
+local u, v = 1, 0
+for _ = 1, 5 do u, v = step(u, v, 0.1, 0) end
+page:add("theta(T0/2)", u)
+page:add("factor", factor(0.1, 0))]] },
+    { "4.4", "When does it diverge?" },
+    { "4.5", "Where does it stop?" },
+    { "4.6", "6.28" },
+  },
+
   given = function(pick)
     return { theta0 = pick(0.5, 1.5, 0.05), h = ({ 0.125, 0.0625, 0.05 })[pick(1, 3, 1)], zeta = pick(0.02, 0.03, 0.0005),
              friction_ratio = pick(0.13, 0.19, 0.002), periods = pick(40, 90, 1) }
@@ -145,4 +173,44 @@ sheet(4, {
         } },
     }
   end,
+
+  words = {
+    es = {
+      ["which number can you believe"] = "en qué número se puede creer",
+      ["Half a swing"] = "Media oscilación",
+      ["Two suspects. The scheme as it is printed; build the slips in where slip is 3 or 4"] =
+        "Dos sospechosos. El esquema como está impreso; ponga los errores donde slip es 3 o 4",
+      ["When does it diverge?"] = "¿Cuándo diverge?",
+      ["Where does it stop?"] = "¿Dónde se detiene?",
+      ["that is the truth; what does the listing get with your h?"] = "esa es la verdad; ¿qué da el listado con su h?",
+      ["that is with the slip, which 4b asks for"] = "eso es con el error, que se pide en 4b",
+      ["give it with six digits"] = "délo con seis cifras",
+      ["that is the listing as it is printed: four stages, no slip"] = "ese es el listado como está impreso: cuatro etapas, sin error",
+      ["that is the truth"] = "esa es la verdad",
+      ["that is the slip in stage 4"] = "ese es el error en la etapa 4",
+      ["that is the slip in stage 3"] = "ese es el error en la etapa 3",
+      ["that is the scheme as it is printed, without a slip"] = "ese es el esquema como está impreso, sin error",
+      ["that is the truth, e^(-2 pi zeta h)"] = "esa es la verdad, e^(-2 pi zeta h)",
+      ["that is without damping"] = "eso es sin amortiguamiento",
+      ["that is the determinant; a factor is its root"] = "ese es el determinante; el factor es su raíz",
+      ["give it with six decimals"] = "délo con seis decimales",
+      ["without damping the two slips cannot be told apart, with damping they can"] =
+        "sin amortiguamiento los dos errores no se distinguen, con amortiguamiento sí",
+      ["that is where the scheme as it is printed diverges"] = "ahí diverge el esquema como está impreso",
+      ["that is the bound of the report, h < zeta: it is not even nearly true"] =
+        "ese es el límite del informe, h < zeta: no es cierto ni de cerca",
+      ["that is the bound of Euler's scheme"] = "ese es el límite del esquema de Euler",
+      ["that is what the listing gets with h = 0.01"] = "eso da el listado con h = 0.01",
+      ["the distance is right, the side is not"] = "la distancia es correcta, el lado no",
+      ["the size is right; an error is what was got less what is true"] =
+        "el tamaño es correcto; un error es lo obtenido menos lo verdadero",
+      ["that is where it rests; its error is asked for"] = "ahí se queda; se pide el error",
+      ["that is the relative error"] = "ese es el error relativo",
+      ["that is in percent of the truth"] = "eso es en por ciento de la verdad",
+      ["that is in radians; degrees are asked for"] = "está en radianes; se piden grados",
+      ["that is in periods; degrees are asked for"] = "eso es en períodos; se piden grados",
+      ["that is in each period"] = "eso es en cada período",
+      ["6.28 is less than 2 pi: it comes later; behind is positive"] = "6.28 es menor que 2 pi: viene después; el atraso es positivo",
+    },
+  },
 })

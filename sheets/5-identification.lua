@@ -20,6 +20,22 @@ end
 sheet(5, {
   title = "what made this record",
 
+  setup = [[local record = lab.experiment(5, 1)]],
+
+  -- The script to begin with: the tasks, and what they have in it besides the questions.
+  tasks = {
+    { "5.2", "By eye" },
+    { "5.3", "By least squares", [[
+local fit = identify{ data = record, velocity0 = 0 }
+print(fit)
+page:plot(fit:plot{ show = false })]] },
+    { "5.4", "The stiffness" },
+    { "5.5", "One damping too few" },
+    { "5.6", "The pull", [[
+local pull = lab.experiment(5, 2)
+page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
+  },
+
   given = function(pick)
     local I
     repeat I = pick(0.5, 2, 0.1) until I ~= 1 -- else k/I would be k
@@ -119,4 +135,33 @@ sheet(5, {
         } },
     }
   end,
+
+  words = {
+    es = {
+      ["what made this record"] = "qué sistema hizo este registro",
+      ["By eye"] = "A ojo",
+      ["By least squares"] = "Por cuadrados mínimos",
+      ["The stiffness"] = "La rigidez",
+      ["One damping too few"] = "Un amortiguamiento de menos",
+      ["The pull"] = "El tirón",
+      ["there are two records: lab.experiment(5, 1), the decay, and lab.experiment(5, 2), the pull"] =
+        "hay dos registros: lab.experiment(5, 1), el decaimiento, y lab.experiment(5, 2), el tirón",
+      ["that is the period"] = "ese es el período",
+      ["that takes all damping for viscous: leave Rd free"] = "eso toma todo el amortiguamiento por viscoso: deje libre Rd",
+      ["that is lost in each half cycle, 2 Rd/k"] = "eso se pierde en cada medio ciclo, 2 Rd/k",
+      ["that is Rd; the record of a decay tells Rd/k only"] = "eso es Rd; el registro de un decaimiento solo dice Rd/k",
+      ["the size is right: the offset is what the record shows where the spring is relaxed"] =
+        "el tamaño es correcto: el cero es lo que muestra el registro cuando el resorte está flojo",
+      ["that is where it came to rest: with dry friction that is not the middle"] =
+        "ahí quedó en reposo: con rozamiento seco ese no es el centro",
+      ["that is k/I"] = "eso es k/I",
+      ["omega0 is to be squared"] = "falta elevar omega0 al cuadrado",
+      ["that is two of them; one is asked for"] = "esos son dos; se pide uno",
+      ["that is relative to zeta; as it stands in fit.std_error, please"] = "ese es relativo a zeta; délo como está en fit.std_error",
+      ["that is Rd, which brakes it once it moves"] = "eso es Rd, que frena cuando ya se mueve",
+      ["too much: it leaves so slowly that the eye sees it late; fit it"] =
+        "demasiado: arranca tan despacio que el ojo lo ve tarde; haga el ajuste",
+      ["that is an angle, Re/k"] = "eso es un ángulo, Re/k",
+    },
+  },
 })

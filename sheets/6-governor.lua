@@ -28,6 +28,25 @@ end
 sheet(6, {
   title = "the governor: friction in a loop, hunting",
 
+  setup = [[
+local function turbine(o)
+  local sleeve = system{ I = 1, k = 1, C = given.C, Rd = o.Rd or 0, Re = o.Re or o.Rd or 0 }
+  local J, dither = o.J or given.J, o.dither or 0
+  local function M(t, theta, velocity, z) return given.gain*z.w + dither*math.sin(20*t) end
+  local function rate(t, theta) return (-theta - (t < 5 and 0 or given.load))/J end
+  return sleeve:simulate{ M = M, states = { w = { start = 0, rate = rate } },
+    events = { { when = function(t) return t - 5 end, name = "load step" } },
+    t_end = o.t_end or 400, dt = 0.1 }
+end]],
+
+  -- The script to begin with: the tasks, and what they have in it besides the questions.
+  tasks = {
+    { "6.2", "No friction", "page:plot(turbine{ t_end = 60 }:plot{ show = false })" },
+    { "6.3", "Stability" },
+    { "6.4", "Friction" },
+    { "6.5", "What makes it hunt" },
+  },
+
   -- Where a sleeve happens to stop almost where the load wants it, the drift to the next slip takes too long to be seen,
   -- or with Re = Rd nothing moves any more: such numbers are drawn again.
   given = function(pick)
@@ -108,4 +127,33 @@ sheet(6, {
         } },
     }
   end,
+
+  words = {
+    es = {
+      ["the governor: friction in a loop, hunting"] = "el regulador: rozamiento en un lazo, oscilación sostenida",
+      ["No friction"] = "Sin rozamiento",
+      ["Stability"] = "Estabilidad",
+      ["Friction"] = "Con rozamiento",
+      ["What makes it hunt"] = "Por qué no se queda quieto",
+      ["more load makes it slower: the sign"] = "con más carga va más despacio: el signo",
+      ["it would need an integral for that; look at run.states.w[#run]"] = "para eso haría falta una integral; mire run.states.w[#run]",
+      ["that is where the valve settles; the speed is asked for"] = "ahí se queda la válvula; se pide la velocidad",
+      ["upside down: a heavier rotor is steadier"] = "al revés: un rotor más pesado es más estable",
+      ["divide by C: more damping, less J"] = "divida por C: más amortiguamiento, menos J",
+      ["where is C?"] = "¿dónde está C?",
+      ["that is to one side; the whole width is asked for"] = "eso es hacia un lado; se pide el ancho entero",
+      ["that is with Rd: a resting sleeve is held by Re"] = "eso es con Rd: un manguito en reposo lo sostiene Re",
+      ["that is the torque; divide by the gain"] = "ese es el momento; divida por la ganancia",
+      ["that is the amplitude; greatest less least is asked for"] = "esa es la amplitud; se pide el máximo menos el mínimo",
+      ["that is with Re = Rd"] = "eso es con Re = Rd",
+      ["that is the band of 6c; a sleeve that has just jumped does not stand in the middle of its own"] =
+        "esa es la banda de 6c; un manguito que acaba de saltar no está en el centro de la suya",
+      ["more than that: the load step is in it; take the end only, t > 300"] =
+        "es más que eso: incluye el salto de la carga; tome solo el final, t > 300",
+      ["that is half of it: from a slip up to a slip down"] = "es la mitad: de un deslizamiento hacia arriba a uno hacia abajo",
+      ["that is the period of the governor by itself; the hunting is much slower"] =
+        "ese es el período del regulador solo; la oscilación sostenida es mucho más lenta",
+      ["that is with Re > Rd"] = "eso es con Re > Rd",
+    },
+  },
 })

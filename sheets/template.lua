@@ -7,6 +7,13 @@
 sheet(8, {
   title = "breaking loose",
 
+  -- In which language the hints are, and those of all sheets in it; only needed for a sheet that is not in English.
+  -- language = "de", words = { de = { ["right"] = "richtig" } },
+
+  -- What the script of dinal --lab 8 4711 has in it besides the checks: Lua behind lab.given, and in each task. Optional.
+  setup = "local mass = system(given)",
+  tasks = { { "8.1", "Breakaway", "local record = lab.experiment(8)" }, { "8.2", "Dead zone" } },
+
   -- What lab.given(8) returns. pick(from, to, step) draws a value for the student number.
   given = function(pick)
     return { I = pick(0.5, 2, 0.1), k = pick(20, 60, 1), Rd = pick(1, 3, 0.1) }

@@ -46,6 +46,8 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
         case dinal::prompt::Request::manual:
             return print(
                 dinal::help::manual(arguments.whole_manual ? dinal::help::Extent::all : dinal::help::Extent::page));
+        case dinal::prompt::Request::lab_start:
+            return print(dinal::prompt::start_script(arguments));
         case dinal::prompt::Request::lab_solutions:
             return print(dinal::prompt::solutions_of(arguments.student));
         case dinal::prompt::Request::test_sheet:

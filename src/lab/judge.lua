@@ -14,6 +14,77 @@ function course.sheet(number, sheet)
   if course.added then course.added[number] = true end -- not one of the built-in sheets, which may be replaced
 end
 
+-- ---- languages
+
+-- The sentences of this file in other languages; a sheet has those of its own in words = { es = { ... } }.
+course.words = {
+  es = {
+    ["sheet"] = "hoja", ["right"] = "correcto", ["not right"] = "no es correcto", [". Or: "] = ". O bien: ",
+    ["not right, and not one of the usual mistakes: read task %s again"] = "no es correcto, ni uno de los errores conocidos: relea la tarea %s",
+    ["near, but outside the tolerance of this method (%s)"] = "cerca, pero fuera de la tolerancia de este método (%s)",
+    ["%s (an earlier answer was right, and counts)"] = "%s (una respuesta anterior era correcta, y cuenta)",
+    ["%s: not judged, because %d different values were wrong for number %d. Do the task again, or ask your instructor"] =
+      "%s: no se juzga, porque %d valores distintos eran incorrectos para el número %d. Haga la tarea otra vez, o pregunte a su docente",
+    ["the size is right, the sign is not"] = "el tamaño es correcto, el signo no",
+    ["that is twice as much: a whole cycle for half of one, both sides for one, peak to peak for an amplitude?"] =
+      "es el doble: ¿un ciclo entero por medio, los dos lados por uno, de pico a pico por una amplitud?",
+    ["that is twice as much: where does the factor 2 come in?"] = "es el doble: ¿de dónde viene el factor 2?",
+    ["that is half of it: half a cycle for a whole one, one side for both, an amplitude for peak to peak?"] =
+      "es la mitad: ¿medio ciclo por uno entero, un lado por los dos, una amplitud por de pico a pico?",
+    ["that is half of it: where does the factor 2 come in?"] = "es la mitad: ¿de dónde viene el factor 2?",
+    ["that is in degrees; radians are asked for"] = "está en grados; se piden radianes",
+    ["that is in radians; degrees are asked for"] = "está en radianes; se piden grados",
+    ["a factor of 2 pi is missing: whole turns for radians, or radians for turns?"] = "falta un factor 2 pi: ¿vueltas por radianes, o radianes por vueltas?",
+    ["there is a factor of 2 pi too much: whole turns for radians, or radians for turns?"] = "sobra un factor 2 pi: ¿vueltas por radianes, o radianes por vueltas?",
+    ["that is its reciprocal: a frequency, where a time is asked for?"] = "es el recíproco: ¿una frecuencia, donde se pide un tiempo?",
+    ["that is a hundred times too small: a fraction where percent are asked for?"] = "es cien veces demasiado chico: ¿una fracción, donde se pide por ciento?",
+    ["that is a hundred times too much: percent where the plain number is asked for?"] = "es cien veces demasiado: ¿por ciento, donde se pide el número solo?",
+    ["that is a thousand times too much: a prefix of the unit?"] = "es mil veces demasiado: ¿un prefijo de la unidad?",
+    ["that is a thousand times too small: a prefix of the unit?"] = "es mil veces demasiado chico: ¿un prefijo de la unidad?",
+    ["a whole number is asked for: count"] = "se pide un número entero: cuente",
+    ["%s is yours to fill in; dinal --report %s makes the page to hand in"] = "%s es suyo para completar; dinal --report %s hace la página para entregar",
+    ["dinal --report %s makes the page to hand in."] = "dinal --report %s hace la página para entregar.",
+    ["your name"] = "su nombre", ["Questions"] = "Preguntas",
+    ["Questions: write your answers here; an empty line begins a paragraph"] = "Preguntas: escriba aquí sus respuestas; una línea vacía comienza un párrafo",
+  },
+}
+
+--- The language that was chosen with lab.number(4711, "es"), else that of the sheet.
+local function language_of(sheet) return course.speaks or sheet and sheet.language or "en" end
+
+--- The text in the language of the sheet, with its arguments.
+local function say(sheet, text, ...)
+  local language = language_of(sheet)
+  local own, common = sheet and sheet.words and sheet.words[language], course.words[language]
+  local said = own and own[text] or common and common[text] or text
+  return select("#", ...) > 0 and said:format(...) or said
+end
+
+--- What the program says of a question, in the language of the student.
+function course.say(n, text, ...) return say(course.sheets[n], text, ...) end
+
+--- The languages of all sheets, in order.
+function course.languages()
+  local known, names = { en = true }, {}
+  for language in pairs(course.words) do known[language] = true end
+  for _, sheet in pairs(course.sheets) do
+    known[sheet.language or "en"] = true
+    for language in pairs(sheet.words or {}) do known[language] = true end
+  end
+  for language in pairs(known) do names[#names + 1] = language end
+  table.sort(names)
+  return names, known
+end
+
+--- From now on all sheets speak that language; nil: each its own.
+function course.speak(language)
+  local names, known = course.languages()
+  if language and not known[language] then error("the languages of the sheets are " .. table.concat(names, ", "), 0) end
+  course.speaks = language
+end
+
+-- ---- what belongs to a number
+
 --- A number with at most ten digits, so that what a student sees is what he types.
 function course.rounded(x, digits) return tonumber(string.format("%." .. (digits or 10) .. "g", x)) end
 
@@ -60,7 +131,10 @@ local function world_of(number, n)
 end
 
 local function questions_of(world)
-  world.questions = world.questions or world.sheet.questions(world.given, world.secret)
+  if not world.questions then
+    world.questions = world.sheet.questions(world.given, world.secret)
+    for _, question in ipairs(world.questions) do question.sheet = world.sheet end
+  end
   return world.questions
 end
 
@@ -69,7 +143,9 @@ function course.given(number, n) return world_of(number, n).given end
 function course.experiment(number, n, x)
   local world = world_of(number, n)
   if not world.sheet.experiment then error(string.format("sheet %d has no experiment: simulate its system", n), 0) end
-  return world.sheet.experiment(world.given, world.secret, x)
+  local good, result = pcall(world.sheet.experiment, world.given, world.secret, x)
+  if not good then error(type(result) == "string" and say(world.sheet, result) or result, 0) end
+  return result
 end
 
 -- ---- judging
@@ -90,7 +166,7 @@ end
 -- What goes wrong everywhere: what such a mistake makes of the answer, what is said, and the units of the answers that it can
 -- happen to ("" is a plain number): a torque is never in degrees.
 local angles = { ["rad"] = true, ["rad per time unit"] = true }
-local swings = { ["rad"] = true, ["time units"] = true, ["speed"] = true, ["M0/k"] = true }
+local swings = { ["rad"] = true, ["time units"] = true, ["speed"] = true, ["Mc/k"] = true }
 local turns = { ["rad"] = true, ["rad per time unit"] = true, ["time units"] = true, ["T0"] = true, [""] = true }
 local plain, percent, degrees, times = { [""] = true }, { ["percent"] = true }, { ["degrees"] = true }, { ["time units"] = true }
 local usual = {
@@ -102,8 +178,8 @@ local usual = {
   { function(x) return x/2 end, "that is half of it: where does the factor 2 come in?" },
   { math.deg, "that is in degrees; radians are asked for", angles },
   { math.rad, "that is in radians; degrees are asked for", degrees },
-  { function(x) return x/(2*math.pi) end, "there is a 2 pi missing in it: whole turns for radians, or radians for turns?", turns },
-  { function(x) return 2*math.pi*x end, "there is a 2 pi too much in it: whole turns for radians, or radians for turns?", turns },
+  { function(x) return x/(2*math.pi) end, "a factor of 2 pi is missing: whole turns for radians, or radians for turns?", turns },
+  { function(x) return 2*math.pi*x end, "there is a factor of 2 pi too much: whole turns for radians, or radians for turns?", turns },
   { function(x) return 1/x end, "that is its reciprocal: a frequency, where a time is asked for?", times },
   { function(x) return x/100 end, "that is a hundred times too small: a fraction where percent are asked for?", percent },
   { function(x) return 100*x end, "that is a hundred times too much: percent where the plain number is asked for?", plain },
@@ -129,9 +205,12 @@ local function known_mistakes(question, value)
     end
   end
   table.sort(made, function(a, b) return made[a] < made[b] end)
-  if #made > 0 then return table.concat(made, ". Or: ") end
+  if #made > 0 then
+    for i, said in ipairs(made) do made[i] = say(question.sheet, said) end
+    return table.concat(made, say(question.sheet, ". Or: "))
+  end
   for _, mistake in ipairs(question.mistakes or {}) do
-    if type(mistake[1]) == "function" and mistake[1](value) then return mistake[2] end
+    if type(mistake[1]) == "function" and mistake[1](value) then return say(question.sheet, mistake[2]) end
   end
   return nil
 end
@@ -141,15 +220,15 @@ local function hint_for(question, value)
   if mistakes then return mistakes end
   if question.whole then
     local said = whole_hint(question, value)
-    if said then return said end
+    if said then return say(question.sheet, said) end
   end
   for _, case in ipairs(usual) do
     local fits = not case[3] or case[3][question.unit or ""]
-    if fits and near_in_proportion(value, case[1](question.answer), question) then return case[2] end
+    if fits and near_in_proportion(value, case[1](question.answer), question) then return say(question.sheet, case[2]) end
   end
   local tolerance = question.within or not question.whole and question.tolerance*math.abs(question.answer)
   if tolerance and math.abs(value - question.answer) <= 4*tolerance then
-    return string.format("near, but outside the tolerance of this method (%s)", question.within and
+    return say(question.sheet, "near, but outside the tolerance of this method (%s)", question.within and
       string.format("%.2g", question.within) or string.format("%.2g %%", 100*question.tolerance))
   end
   return nil
@@ -191,11 +270,13 @@ function course.name(number, name) return (select(2, question_of(number, name)))
 
 --- Whether the value is right, and what is said about it.
 function course.verdict(question, value)
+  local sheet = question.sheet
   if near(value, question.answer, question) then
-    return true, "right" .. (question.praise and "; " .. question.praise or "")
+    return true, say(sheet, "right") .. (question.praise and "; " .. say(sheet, question.praise) or "")
   end
-  local task = question.task and string.format(", and not one of the usual mistakes: read task %s again", question.task)
-  return false, hint_for(question, value) or "not right" .. (task or "")
+  local task = question.task
+  return false, hint_for(question, value) or
+    (task and say(sheet, "not right, and not one of the usual mistakes: read task %s again", task) or say(sheet, "not right"))
 end
 
 --- The same of the question of that name of a student. The answer is never in it.
@@ -204,6 +285,61 @@ function course.judge(number, name, value)
   question, name = question_of(number, name)
   local right, said = course.verdict(question, value)
   return right, string.format("%s: %s", name, said)
+end
+
+-- ---- the script to begin with
+
+--- The sheet and language of a name: "3" is sheet 3 in its own language, "hoja-3" the Spanish one.
+local function named_sheet(name)
+  local word, digits = name:match("^(%a*)[-_ ]?(%d+)$")
+  local sheet = sheet_of(tonumber(digits) or name)
+  if word == "" then return sheet, sheet.language end
+  for _, language in ipairs((course.languages())) do
+    local own, common = sheet.words and sheet.words[language] or {}, course.words[language] or {}
+    if word:lower() == (own.sheet or common.sheet or "sheet") then return sheet, language end
+  end
+  error(string.format("'%s' is no name of a sheet; for example %d, or hoja-%d in Spanish", name, sheet.number, sheet.number), 0)
+end
+
+--- The name of the file, the script to begin with, and what is said about it.
+function course.start(name, number)
+  local sheet, language = named_sheet(name)
+  course.speaks = language
+  local lines = {}
+  local function add(line, ...) lines[#lines + 1] = say(sheet, line, ...) end
+  local function add_code(code) lines[#lines + 1] = code and code:gsub("%-%- (%C+)", function(words) return "-- " .. say(sheet, words) end) end
+  local file = string.format("%d-%d.lua", sheet.number, number)
+  add(string.format("-- %d: %s", sheet.number, say(sheet, sheet.title)))
+  add("-- " .. say(sheet, "dinal --report %s makes the page to hand in.", file))
+  add(language and language ~= "en" and string.format("lab.number(%d, %q)", number, language) or string.format("lab.number(%d)", number))
+  add(string.format("local page = report{ title = %q, author = %q }", say(sheet, sheet.title), say(sheet, "your name")))
+  add(string.format("\nlocal given = lab.given(%d)", sheet.number))
+  add_code(sheet.setup)
+  local questions, placed = questions_of(world_of(number, sheet.number)), {}
+  local function add_checks(task)
+    for _, question in ipairs(questions) do
+      if not placed[question] and (task == nil or question.task == task) then
+        placed[question] = true
+        lines[#lines + 1] = string.format('-- check("%d%s", )', sheet.number, question.name)
+      end
+    end
+  end
+  for _, task in ipairs(sheet.tasks or {}) do
+    lines[#lines + 1] = string.format("\n-- %s %s", task[1], say(sheet, task[2]))
+    add_code(task[3])
+    add_checks(task[1])
+  end
+  add_checks()
+  local world = world_of(number, sheet.number)
+  local open = sheet.discussion and #sheet.discussion(world.given, world.secret) or 0
+  if open > 0 then
+    lines[#lines + 1] = "\n-- " .. say(sheet, "Questions: write your answers here; an empty line begins a paragraph")
+    lines[#lines + 1] = string.format("page:heading %q\npage:text [[", say(sheet, "Questions"))
+    for i = 1, open do lines[#lines + 1] = i .. "." .. (i < open and "\n" or "") end
+    lines[#lines + 1] = "]]"
+  end
+  lines[#lines + 1] = 'page:save "answers.html"\nprint(lab.marks())\n'
+  return file, table.concat(lines, "\n"), say(sheet, "%s is yours to fill in; dinal --report %s makes the page to hand in", file, file)
 end
 
 -- ---- for the instructor
@@ -273,7 +409,7 @@ local function test_question(question, where)
     if type(mistake[1]) == "number" then
       local right, said = course.verdict(question, mistake[1])
       must(not right, "the mistake %.9g ('%s') is within the tolerance of the answer %.9g", mistake[1], mistake[2], question.answer)
-      must(said:find(mistake[2], 1, true), "the mistake %.9g gets the hint '%s', not '%s'", mistake[1], said, mistake[2])
+      must(said:find(say(question.sheet, mistake[2]), 1, true), "the mistake %.9g gets the hint '%s', not '%s'", mistake[1], said, mistake[2])
     end
   end
 end
@@ -286,6 +422,17 @@ local function shown(value)
   return "{ " .. table.concat(parts, ", ") .. " }"
 end
 
+--- Raises unless each language that the sheet has words of has all of its hints.
+local function test_words(sheet, question, where)
+  for language, words in pairs(sheet.words or {}) do
+    local hints = { question.praise }
+    for _, mistake in ipairs(question.mistakes or {}) do hints[#hints + 1] = mistake[2] end
+    for _, hint in ipairs(language ~= sheet.language and hints or {}) do
+      if not words[hint] then error(string.format("%s: words.%s lacks the hint '%s'", where, language, hint), 0) end
+    end
+  end
+end
+
 --- Works the sheet with student numbers 1 to 20 and returns what the first of them sees.
 function course.test(n)
   for number = 1, 20 do
@@ -296,6 +443,7 @@ function course.test(n)
     for i, question in ipairs(questions_of(world)) do
       local where = string.format("sheet %d, student number %d, question %s", n, number, question.name or "number " .. i)
       test_question(question, where)
+      test_words(world.sheet, question, where)
       if names[question.name] then error(where .. ": the name is used twice", 0) end
       names[question.name] = true
     end

@@ -132,8 +132,10 @@ std::string take_message(lua_State* course) {
     return message;
 }
 
-/// course.FUNCTION(argument) in a course of its own, which returns text.
-text::Expected<std::string> text_of_course(const char* function, std::int64_t argument = 0) {
+/// course.FUNCTION(name, argument), or without the name if it is empty, in a course of its own: the texts it returns.
+template <std::size_t count = 1>
+text::Expected<std::array<std::string, count>> texts_of_course(const char* function, std::int64_t argument = 0,
+                                                               const std::string& name = "") {
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(new_state(), lua_close);
     lua_State* course = state.get();
     lua_pushcfunction(course, open_course);
@@ -141,12 +143,22 @@ text::Expected<std::string> text_of_course(const char* function, std::int64_t ar
     if (opened) {
         lua_getglobal(course, "course");
         lua_getfield(course, -1, function);
+        if (!name.empty()) lua::push_text(course, name);
         lua_pushinteger(course, argument);
     }
-    if (!opened || lua_pcall(course, 1, 1, 0) != LUA_OK) {
+    if (!opened || lua_pcall(course, name.empty() ? 1 : 2, count, 0) != LUA_OK) {
         return text::Error{take_message(course)};
     }
-    return std::string(lua_tostring(course, -1));
+    std::array<std::string, count> texts;
+    for (std::size_t i = 0; i < count; ++i)
+        texts[i] = lua_tostring(course, static_cast<int>(i) - static_cast<int>(count));
+    return texts;
+}
+
+text::Expected<std::string> text_of_course(const char* function, std::int64_t argument = 0) {
+    auto texts = texts_of_course(function, argument);
+    if (!texts) return texts.error();
+    return std::move(texts).value()[0];
 }
 
 }  // namespace
@@ -166,12 +178,15 @@ bool is_student_number(std::int64_t number) noexcept {
 
 LabCourse::LabCourse(lua_State* L) : state_(new_state(), lua_close) {
     lua_State* course = state_.get();
+    void* of_allocator = nullptr;
+    lua_Alloc allocator = lua_getallocf(L, &of_allocator);  // the one that counts, where memory is limited
+    lua_setallocf(course, allocator, of_allocator);
     const lua::RunningThread note(L, course);
     lua_pushcfunction(course, open_course);
     if (lua_pcall(course, 0, 0, 0) != LUA_OK) {
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);
         lua::raise(L, "the lab course cannot be loaded: " + take_message(course));
     }
-    charge_ = lua::MemoryCharge(static_cast<std::size_t>(lua_gc(course, LUA_GCCOUNT)) << 10U);
 }
 
 text::Expected<int> LabCourse::call(lua_State* L, const char* function, int arguments) {
@@ -208,16 +223,35 @@ void add_lab_sheets(std::vector<LabSheet> sheets) {
     added_sheets = std::move(sheets);
 }
 
-text::Expected<std::string> lab_solutions(std::string_view number) {
+namespace {
+
+/// The student number that the word is, for an option that is used as in the example.
+text::Expected<std::int64_t> student_number(std::string_view number, std::string_view option,
+                                            std::string_view example) {
     std::int64_t value = 0;
     const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
     if (parsed.ec != std::errc() || parsed.ptr != number.data() + number.size() || !is_student_number(value)) {
-        return text::Error{
-            fmt::format("option --lab-solutions needs a student number after it, a whole one from 1 to {}, for example "
-                        "--lab-solutions 4711{}",
-                        greatest_student_number, number.empty() ? "" : fmt::format("; '{}' is not one", number))};
+        return text::Error{fmt::format(
+            "option {} needs a student number after it, a whole one from 1 to {}, for example {}{}", option,
+            greatest_student_number, example, number.empty() ? "" : fmt::format("; '{}' is not one", number))};
     }
-    return text_of_course("solutions", value);
+    return value;
+}
+
+}  // namespace
+
+text::Expected<std::string> lab_solutions(std::string_view number) {
+    const auto value = student_number(number, "--lab-solutions", "--lab-solutions 4711");
+    if (!value) return value.error();
+    return text_of_course("solutions", *value);
+}
+
+text::Expected<LabStart> lab_start(const std::string& sheet, std::string_view number) {
+    const auto value = student_number(number, "--lab", "--lab 1 4711 or --lab hoja-1 4711");
+    if (!value) return value.error();
+    auto texts = texts_of_course<3>("start", *value, sheet);
+    if (!texts) return texts.error();
+    return LabStart{(*texts)[0], (*texts)[1], (*texts)[2]};
 }
 
 text::Expected<std::string> lab_sheet_test() {
@@ -240,6 +274,7 @@ struct LabJournal {
 
 std::optional<LabJournal> journal;      // set once, before any script runs
 std::string (*tries_file)() = nullptr;  // the same
+Tries use_of_tries = Tries::read;       // the same
 std::optional<text::Error> lost_mark;   // the first line that could not be written
 std::vector<LabMark> session_answers;
 
@@ -259,7 +294,8 @@ std::string beginning_of(std::int64_t number, std::string_view question) {
 }
 
 void keep_wrong_value(const LabMark& mark) {
-    const auto file = tries_file != nullptr ? files::Journal::open(tries_file()) : text::Error{};
+    if (tries_file == nullptr || use_of_tries == Tries::read) return;
+    const auto file = files::Journal::open(tries_file());
     if (file) static_cast<void>(file->add(fmt::format("{}{}", beginning_of(mark.number, mark.question), mark.value)));
 }
 
@@ -282,8 +318,9 @@ std::optional<text::Error> note_lab_answers(const std::string& file, const std::
     return lost_mark;
 }
 
-void keep_lab_tries(std::string (*file)()) {
+void keep_lab_tries(std::string (*file)(), Tries use) {
     tries_file = file;
+    use_of_tries = use;
 }
 
 std::optional<text::Error> lost_lab_mark() {
@@ -388,7 +425,7 @@ void refuse_more(lua_State* L, const char* call, const char* wanted, int most) {
 
 int lab_number(lua_State* L) {
     LabDesk& desk = desk_of(L, "lab.number");
-    refuse_more(L, "lab.number", "one number", 1);
+    refuse_more(L, "lab.number", "a number and a language", 2);
     if (lua_gettop(L) > 0) {
         int is_whole = 0;
         const lua_Integer number = lua_tointegerx(L, 1, &is_whole);
@@ -398,6 +435,12 @@ int lab_number(lua_State* L) {
                 fmt::format("lab.number: a student number is a whole number from 1 to {}", greatest_student_number),
                 lua_isnumber(L, 1) != 0 && lua_type(L, 1) == LUA_TSTRING ? "; write it without quotes" : "");
         }
+        if (lua_type(L, 2) != LUA_TSTRING && !lua_isnoneornil(L, 2)) {
+            lua::raise_got(L, 2, "lab.number", "lab.number: the language is a word, such as \"es\"");
+        }
+        lua_settop(L, 2);
+        lua_pushvalue(L, 2);
+        ask_course(L, desk, "lab.number", "speak", 1, lua_isnil(L, 2) ? "" : lua_tostring(L, 2));
         desk.number = number;
     }
     desk.number == 0 ? lua_pushnil(L) : lua_pushinteger(L, desk.number);
@@ -477,13 +520,31 @@ bool is_judged(const LabAnswer& answer, double value) {
            std::find(answer.wrong.begin(), answer.wrong.end(), value) != answer.wrong.end();
 }
 
+/// The sentence of the course about a question, in the language of the student: a format with the values on the top of
+/// the stack, the first of which is the name of the question.
+std::string said_by_course(lua_State* L, LabDesk& desk, const std::string& question, const char* sentence, int values) {
+    const int first = lua_gettop(L) - values + 1;
+    lua_pushinteger(L, std::strtoll(question.c_str(), nullptr, 10));
+    lua_insert(L, first);
+    lua_pushstring(L, sentence);
+    lua_insert(L, first + 1);
+    ask_course(L, desk, "check", "say", values + 2, question);
+    std::string said = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    return said;
+}
+
 /// Lets the course judge, notes the verdict, and returns what to print.
 std::string judged(lua_State* L, LabDesk& desk, const std::string& question, double value) {
     if (!is_judged(answer_of(desk, question), value)) {
-        return fmt::format(
-            "{}: not judged, because {} different values were wrong for number {}. Do the task again, or ask your "
-            "instructor",
-            question, most_wrong, desk.number);
+        lua::push_text(L, question);
+        lua_pushinteger(L, most_wrong);
+        lua_pushinteger(L, desk.number);
+        return said_by_course(
+            L, desk, question,
+            "%s: not judged, because %d different values were wrong for number %d. Do the task again, "
+            "or ask your instructor",
+            3);
     }
     lua_pushinteger(L, desk.number);
     lua::push_text(L, question);
@@ -491,11 +552,13 @@ std::string judged(lua_State* L, LabDesk& desk, const std::string& question, dou
     ask_course(L, desk, "check", "judge", 3, question);
     const bool right = lua_toboolean(L, -2) != 0;
     LabAnswer& answer = answer_of(desk, question);
-    answer.said = lua_tostring(L, -1);
-    if (answer.right) {
-        if (!right) answer.said += " (an earlier answer was right, and counts)";
-        return answer.said;
+    const std::string said = lua_tostring(L, -1);
+    if (answer.right) {  // what lab.marks() shows stays that of the answer that counts
+        if (right) return said;
+        lua_pushvalue(L, -1);
+        return said_by_course(L, desk, question, "%s (an earlier answer was right, and counts)", 1);
     }
+    answer.said = said;
     answer.right = right;
     if (right || add_wrong(answer, value) || answer.tries == 0) {
         ++answer.tries;
@@ -531,9 +594,10 @@ int lab_marks(lua_State* L) {
 
 constexpr lua::Member lab_module_members[] = {
     {lua::a_function<lab_number>,
-     {"lab.number(n) -> number",
+     {"lab.number(n, language) -> number",
       "Sets the student number, a whole number from 1 to 999999999. The systems of the sheets "
-      "and the right answers depend on it. lab.number() returns it, nil if none was set.",
+      "and the right answers depend on it. With a language, such as \"es\", verdicts and hints are in that language. "
+      "lab.number() returns the number, nil if none was set.",
       "lab.number(4711)\nprint(lab.number())  --> 4711"}},
     {lua::a_function<lab_given>,
      {"lab.given(sheet) -> table", "The data of that sheet for this student; the sheet explains them.",
@@ -544,7 +608,8 @@ constexpr lua::Member lab_module_members[] = {
       "of the bench; the sheet explains it, if there is one.",
       "lab.number(4711)\nprint(table.concat(lab.experiment(1).names, \" \"))  --> t theta"}},
     {lua::a_function<lab_marks>,
-     {"lab.marks() -> data", "Your answers so far: question, verdict, number of tries, and the last message.",
+     {"lab.marks() -> data",
+      "Your answers so far: question, verdict, number of tries, and what was said about the answer that counts.",
       "lab.number(4711)\ncheck(\"0\", 42)\nprint(lab.marks().verdict[1])  --> right"}},
 };
 
@@ -553,7 +618,7 @@ constexpr lua::Member check_members[] = {
      {"check(question, value)",
       "Prints whether an answer in the lab is right, or the probable mistake; never the answer. "
       "The tolerance depends on the method. After twelve different wrong values a question is no "
-      "longer judged; they are kept from session to session. Question \"0\" is for trying it "
+      "longer judged; they are kept from session to session, except in safe mode. Question \"0\" is for trying it "
       "out: six times seven.",
       "lab.number(4711)\ncheck(\"0\", 42)"}},
 };
@@ -563,7 +628,7 @@ constexpr lua::Member check_members[] = {
 const lua::Class lab_module = {
     "lab",
     {"lab.NAME(...)",
-     "The lab course: seven sheets of two hours each, in docs/lab. Systems differ by student "
+     "The lab course: seven sheets of two hours each, in docs/lab and, in Spanish, docs/es. Systems differ by student "
      "number, and check(question, value) judges answers.",
      "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
     lab_module_members};

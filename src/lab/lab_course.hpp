@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "lua/bind.hpp"
-#include "lua/memory_limit.hpp"
 
 namespace dinal::lab {
 
@@ -33,7 +32,6 @@ public:
 
 private:
     std::unique_ptr<lua_State, void (*)(lua_State*)> state_;
-    lua::MemoryCharge charge_;  // its allocator is Lua's own, which does not count
 };
 
 /// The student number that the script has set with lab.number; 0: none.
@@ -56,6 +54,14 @@ void add_lab_sheets(std::vector<LabSheet> sheets);
 /// Returns all answers of a number, for instructors. Fails when there is no such number.
 text::Expected<std::string> lab_solutions(std::string_view number);
 
+/// The script with which a student begins.
+struct LabStart {
+    std::string file, text;
+    std::string said;  ///< about the file, in the language of the sheet
+};
+/// That of a sheet, "1" or "hoja-1", and a student number. Fails when there is no such sheet or number.
+text::Expected<LabStart> lab_start(const std::string& sheet, std::string_view number);
+
 /// Works the last sheet that was added with twenty student numbers. Returns what a student sees, or fails with the
 /// first fault.
 text::Expected<std::string> lab_sheet_test();
@@ -67,9 +73,10 @@ text::Expected<std::string> lab_question_names();
 /// begun. Returns the reason if the file cannot be written.
 std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script);
 
-/// Keeps wrong values in the file of that name, so that they count in the next session, too. If it cannot be written
-/// they count in this session only.
-void keep_lab_tries(std::string (*file)());
+/// Wrong values of earlier sessions stand in the file of that name; those of this one are added with Tries::write. If
+/// it cannot be written they count in this session only.
+enum class Tries { read, write };
+void keep_lab_tries(std::string (*file)(), Tries use);
 
 /// The reason why an answer could not be noted; nothing if all are noted.
 std::optional<text::Error> lost_lab_mark();

@@ -86,7 +86,7 @@ bool answer_on(Arguments& arguments, std::string_view value) {
 
 enum class Takes {
     nothing,
-    value,  ///< --max-time 10 or --max-time=10
+    value,   ///< --max-time 10 or --max-time=10
     all,    ///< nothing, and what follows is not looked at
 };
 
@@ -116,6 +116,7 @@ constexpr CommandLineOption options[] = {
     {"--max-memory", limit_memory, Takes::value, "a size", "256M"},
     {"--lab-marks", take<&Arguments::lab_marks>, Takes::value, "the name of a file", "marks.csv"},
     {"--sheets", take<&Arguments::sheets>, Takes::value, "the name of a folder", "sheets"},
+    {"--lab", ask<Request::lab_start>, Takes::value},
     {"--lab-solutions", ask<Request::lab_solutions>, Takes::value},
     {"--test-sheet", ask<Request::test_sheet>, Takes::value},
     {"--mark", ask<Request::mark>, Takes::value},
@@ -248,6 +249,8 @@ without a script: a prompt on a terminal, otherwise standard input is run as a s
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
   --max-time SECONDS end a script that needs more processor time; at the prompt,
                      an input
+  --lab SHEET NUMBER write the script to begin a lab sheet with: --lab 1 4711, or in
+                     Spanish --lab hoja-1 4711
   --lab-marks FILE   append the verdict on each answer in the lab to FILE
   --lab-solutions NUMBER  the answers of a student number, for instructors
   --mark FOLDER      run all hand-ins of a folder in safe mode: a table, a summary,

@@ -10,7 +10,7 @@
 
 namespace dinal::prompt {
 
-enum class Request { run, help, version, manual, lab_solutions, test_sheet, mark, jupyter_install };
+enum class Request { run, help, version, manual, lab_start, lab_solutions, test_sheet, mark, jupyter_install };
 
 /// -e, -l or -W: they are carried out in the order in which they stand.
 struct StartStep {

@@ -36,8 +36,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double grace = 5;                  // seconds that a stopped script has for its page
-constexpr rlim_t largest_file = 10'000'000;  // bytes: no hand-in fills the disk with what it prints
+constexpr double grace = 5;                          // seconds that a stopped script has for its page
+constexpr rlim_t largest_file = 10'000'000;          // bytes: no hand-in fills the disk with what it prints
+constexpr std::uintmax_t largest_desk = 50'000'000;  // nor with many files
 constexpr std::uintmax_t largest_script = 1'000'000;
 constexpr std::size_t longest_name = 60;
 constexpr int deepest_folder = 3;
@@ -103,21 +104,40 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     ::_exit(exit_code::usage);
 }
 
-/// The status of the child, or nothing if it did not end in time and was killed.
-std::optional<int> wait_for(pid_t child, double seconds) {
+/// The bytes of all files below the folder.
+std::uintmax_t size_of_files(const fs::path& folder) {
+    std::uintmax_t sum = 0;
+    std::error_code wrong;
+    for (fs::recursive_directory_iterator place(folder, wrong); !wrong && place != fs::recursive_directory_iterator();
+         place.increment(wrong)) {
+        std::error_code vanished;
+        const std::uintmax_t size = place->is_regular_file(vanished) ? place->file_size(vanished) : 0;
+        sum += vanished ? 0 : size;
+    }
+    return sum;
+}
+
+struct Ending {
+    std::optional<int> status;  ///< of the child; nothing if it was killed
+    bool filled = false;        ///< killed because its folder became too large
+};
+
+Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
+    constexpr int looks_a_second = 500, looks_between_sizes = 50;
     const auto latest = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     int status = 0;
-    std::optional<int> ended;
-    while (!ended && std::chrono::steady_clock::now() < latest) {
+    Ending ending;
+    for (int look = 1; !ending.status && !ending.filled && std::chrono::steady_clock::now() < latest; ++look) {
         if (::waitpid(child, &status, WNOHANG) == child) {
-            ended = status;
+            ending.status = status;
         } else {
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            std::this_thread::sleep_for(std::chrono::seconds(1) / looks_a_second);
+            ending.filled = look % looks_between_sizes == 0 && size_of_files(desk) > largest_desk;
         }
     }
     ::kill(-child, SIGKILL);  // with all that it has started
-    if (!ended) ::waitpid(child, &status, 0);
-    return ended;
+    if (!ending.status) ::waitpid(child, &status, 0);
+    return ending;
 }
 
 /// The first line that the program has said about an error.
@@ -132,7 +152,9 @@ std::string first_error(const std::string& desk) {
     return text::displayable(text::cut_to_columns(line.substr(0, line.find('\n')), longest_line));
 }
 
-std::optional<std::string> fault_of(std::optional<int> status, const std::string& desk) {
+std::optional<std::string> fault_of(const Ending& ending, const std::string& desk) {
+    const std::optional<int> status = ending.status;
+    if (ending.filled) return "wrote more than 50 MB in all and was killed";
     if (!status) return "did not end and was killed";
     if (WIFSIGNALED(*status)) return WTERMSIG(*status) == SIGXFSZ ? "wrote more than 10 MB" : "was ended by the system";
     return WEXITSTATUS(*status) == exit_code::ok ? std::nullopt : std::optional(first_error(desk));
@@ -345,7 +367,10 @@ std::string csv_of(const Rows& rows) {
     std::string text;
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
-            std::string field = row[i];
+            // A table program takes a text that begins like this for a formula, and a hand-in chooses its name.
+            const bool formula =
+                row[i].size() > 1 && std::string_view("=+-@").find(row[i][0]) != std::string_view::npos;
+            std::string field = (formula ? "'" : "") + row[i];
             for (std::size_t at = field.find('"'); at != std::string::npos; at = field.find('"', at + 2))
                 field.insert(at, 1, '"');
             text += (i == 0 ? "\"" : ",\"") + field + "\"";
@@ -387,8 +412,8 @@ void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {
     words.insert(words.end(), {"--", script});
     const pid_t child = ::fork();
     if (child == 0) become_hand_in(desk.string(), words);
-    const auto status = child < 0 ? std::nullopt : wait_for(child, lua::longest_wait * marking.seconds + grace);
-    if (auto fault = fault_of(status, desk.string())) hand_in.remarks.push_back(std::move(*fault));
+    const auto ending = child < 0 ? Ending{} : wait_for(child, lua::longest_wait * marking.seconds + grace, desk);
+    if (auto fault = fault_of(ending, desk.string())) hand_in.remarks.push_back(std::move(*fault));
     read_marks(hand_in, marks);
     fs::remove(marks, wrong);
 }
@@ -474,6 +499,18 @@ text::Expected<std::string> solutions_of(const std::string& student) {
         return text::Error{file + " is not the course of this program: make it again, as docs/lab/instructor.md says"};
     }
     return lab::lab_solutions(student);
+}
+
+text::Expected<std::string> start_script(const Arguments& arguments) {
+    const auto start =
+        lab::lab_start(arguments.student, arguments.has_script() ? arguments.words[arguments.script] : "");
+    if (!start) return start.error();
+    std::error_code wrong;
+    if (fs::exists(fs::symlink_status(start->file, wrong))) {
+        return text::Error{fmt::format("{} exists already: move it away to begin again", start->file)};
+    }
+    if (const auto written = files::write_file(start->file, start->text); !written) return written.error();
+    return start->said + "\n";
 }
 
 std::optional<text::Error> add_sheets(const std::string& folder) {

@@ -17,7 +17,11 @@ int mark(const Arguments& arguments);
 /// "1-4711.lua uses number 4712, but its name says 4711", for the number that the script has set; "" if they agree.
 std::string other_number(const std::string& file, std::int64_t used);
 
-// What an instructor asks for on the command line: solutions, sheets of his own and their test.
+// What a student and an instructor ask for on the command line: a script to begin with, solutions, sheets of his own
+// and their test.
+
+/// Writes the script with which a student begins a sheet into the current folder. Returns what to do with it.
+text::Expected<std::string> start_script(const Arguments& arguments);
 
 /// Returns all answers of a student number. Fails if this user has no file of the instructor, or that of another
 /// version.

@@ -310,7 +310,9 @@ int run(const Arguments& arguments, Kernel kernel) {
             return exit_code::script_error;
         }
     } else {
-        lab::keep_lab_tries([] { return state_file("lab-tries"); });
+        const bool of_a_stranger = arguments.safe && !arguments.report;  // who shall not use up the tries of anyone
+        lab::keep_lab_tries([] { return state_file("lab-tries"); },
+                            of_a_stranger ? lab::Tries::read : lab::Tries::write);
     }
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
     lua_State* L = state.get();

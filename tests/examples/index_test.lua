@@ -22,7 +22,7 @@ end
 
 local index = read(examples .. "/README.md")
 local count = 0
-for _, folder in ipairs{ "", "report/", "data/", "lab/" } do
+for _, folder in ipairs{ "", "report/", "data/" } do
   for _, name in ipairs(listing(examples .. "/" .. folder)) do
     count = count + 1
     local path = folder .. name

@@ -104,6 +104,8 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
   hand_in('a",1,1a,right,1,"b', "lab.number(3004)\ncheck('1a', 1)") -- a name like a line of marks
   hand_in("1-5555", "lab.number(1001)\ncheck('1a', 1)\nlab.number(1002)\ncheck('1a', 1) check('1b', 1)")
+  hand_in("many", "local x = vector.linspace(0, 1, 2e5) for i = 1, 1e6 do data{ x = x }:save(i .. '.csv') end")
+  hand_in("=1+1", "lab.number(3007)\ncheck('1a', 1)") -- a formula for a table program
   hand_in("copy", support.read(home .. "/hand-ins/1-1003.lua"))
   hand_in("disguised", (support.read(home .. "/hand-ins/1-1004.lua"):gsub("1004", "3006"):gsub("\n", " -- mine\n\n")))
   output(("ln -s /etc/passwd '%s/hand-ins/link.lua'; mkfifo '%s/hand-ins/pipe.lua'; mkdir '%s/hand-ins/sub'"):format(home, home, home))
@@ -134,8 +136,10 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   assert(rows.link:find "not run: it is not a file", rows.link)
   assert(rows.pipe:find "not run: it is not a file", rows.pipe)
   assert(said:find("\nsub/?[31m", 1, true) and not said:find("\27", 1, true), said)
+  assert(rows.many:find "wrote more than 50 MB in all and was killed", rows.many)
   assert(said:find "\n1d +28 +28 +0 +28x that is Rd/k", said)
   assert(support.read(home .. "/hand-ins-marked/marks.csv"):find('\n"1-1001.lua","1001","+","-",".","2"', 1, true))
+  assert(support.read(home .. "/hand-ins-marked/marks.csv"):find('\n"\'=1+1.lua","3007"', 1, true))
   local desk = output(("ls -d '%s/hand-ins-marked/'*-1-1001"):format(home)):gsub("\n", "")
   assert(support.read(desk .. "/output.txt"):find "1%-1001%.html")
   assert(support.read(desk .. "/1-1001.html"):find("<td>1b</td><td>17</td><td>wrong</td>", 1, true))
@@ -158,6 +162,8 @@ test("wrong values are counted per student and question, not per process", funct
   assert(shell("dinal -e 'lab.number(7) check(\"1a\", 5)'"):find "^1a: not right") -- tells nothing new
   assert(shell("dinal -e 'lab.number(8) check(\"1a\", 13)'"):find "^1a: not right")
   assert(shell("dinal --safe -e 'lab.number(7) check(\"1a\", 13)'"):find "not judged")
+  shell "dinal --safe -e 'lab.number(9) for i = 1, 20 do check(\"1a\", i) end'" -- a stranger's script locks nothing
+  assert(shell("dinal -e 'lab.number(9) check(\"1a\", 21)'"):find "^1a: not right")
   assert(shell("dinal --lab-marks x.csv -e 'lab.number(7) check(\"1a\", 13)'"):find "^1a: not right") -- marking begins anew
 end)
 

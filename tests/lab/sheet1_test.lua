@@ -30,7 +30,7 @@ walk.sheet("1-free-decay", function(session)
   walk.mistakes{
     { "1a", 1/T0, "the period is its reciprocal" },
     { "1a", 2*math.pi/T0, "that is omega0" },
-    { "1a", math.sqrt(viscous.I/viscous.k), "a 2 pi missing" },
+    { "1a", math.sqrt(viscous.I/viscous.k), "2 pi is missing" },
     { "1a", 2*math.pi*math.sqrt(viscous.k/viscous.I), "have changed places" },
     { "1a", T0/2, "that is half of it" },
     { "1a", -T0, "the sign is not" },

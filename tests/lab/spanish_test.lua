@@ -8,20 +8,49 @@ local function blocks(name)
   return list
 end
 
-for spanish, english in pairs {
-  ["tutorial"] = "docs/tutorial.md", ["hoja-1"] = "docs/lab/1-free-decay.md", ["hoja-2"] = "docs/lab/2-sticking.md",
-} do
+local pages = { ["tutorial"] = "docs/tutorial.md" }
+for n, name in ipairs { "free-decay", "sticking", "resonance", "belief", "identification", "governor", "friction-damper" } do
+  pages["hoja-" .. n] = ("docs/lab/%d-%s.md"):format(n, name)
+end
+
+--- The block as the English page has it: the Spanish one asks for answers in Spanish.
+local function in_english(block)
+  return (block:gsub('lab%.number%(4711, "es"%)', "lab.number(4711)"):gsub("\n0: correcto", "\n0: right"))
+end
+
+for spanish, english in pairs(pages) do
   support.test(spanish .. " has the blocks and the questions of " .. english, function()
     local there, here = blocks(english), blocks("docs/es/" .. spanish .. ".md")
     support.equal(#here, #there)
-    for i = 1, #there do support.equal(here[i], there[i]) end
-    local function questions(name)
-      local found = {}
-      for question in support.read(name):gmatch "%*%*(%d%l)%*%*" do found[#found + 1] = question end
-      return table.concat(found, " ")
+    for i = 1, #there do support.equal(in_english(here[i]), there[i]) end
+    local function found(name, pattern)
+      local list = {}
+      for question in support.read(name):gmatch(pattern) do list[#list + 1] = question end
+      return table.concat(list, " ")
     end
-    support.equal(questions("docs/es/" .. spanish .. ".md"), questions(english))
+    for _, pattern in ipairs { "%*%*(%d%l)%*%*", "\n### (%d%.%d)", "\n(%d%.) " } do
+      support.equal(found("docs/es/" .. spanish .. ".md", pattern), found(english, pattern))
+    end
   end)
 end
+
+support.test("what is said follows the language of the number, and that of the sheet", function()
+  local pipe <close> = io.popen "cat src/lab/judge.lua sheets/[1-9]*.lua"
+  local judge = setmetatable({}, { __index = _G })
+  assert(load(pipe:read "a", "=course", "t", judge))()
+  local course = judge.course
+  judge.sheet(8, { title = "Pendel", language = "de", words = { de = { ["right"] = "richtig" } }, given = function() return {} end,
+    questions = function() return { { name = "a", asks = "x", how = "x", answer = 3, tolerance = 0.01, mistakes = { { 1, "zu klein" } } } } end })
+  local function said(number, question, value) return select(2, course.judge(number, question, value)) end
+  support.equal(said(1, "8a", 3), "8a: richtig")
+  support.equal(said(1, "8a", 1), "8a: zu klein")
+  support.equal(said(1, "0", -42), "0: the size is right, the sign is not")
+  assert(course.test(8):find "All answers are right")
+  course.speak "es"
+  support.equal(said(1, "8a", 3), "8a: correcto")
+  support.equal(said(1, "0", -42), "0: el tamaño es correcto, el signo no")
+  support.equal(table.concat(course.languages(), " "), "de en es")
+  support.equal(select(2, pcall(course.speak, "fr")), "the languages of the sheets are de, en, es")
+end)
 
 support.finish()

@@ -26,28 +26,31 @@ function walk.follow(sheet, number)
   return session
 end
 
---- What is said about this value.
-function walk.said(question, value)
+local pipe <close> = io.popen "cat src/lab/judge.lua sheets/[1-9]*.lua"
+local judge = setmetatable({}, { __index = _G })
+assert(load(pipe:read "a", "=course", "t", judge))()
+
+--- What is said about this value, in a language.
+function walk.said(question, value, language)
+  judge.course.speak(language)
+  return (select(2, judge.course.judge(lab.number(), question, value)))
+end
+
+--- The program itself finds the value right.
+function walk.right(question, value)
   check(question, value)
   local marks = lab.marks()
-  for i = 1, #marks do
-    if marks.question[i] == question then return marks.said[i] end
-  end
-  error(question .. " was not judged")
+  local right = marks:filter(function(row) return row.question == question and row.verdict == "right" end)
+  assert(#right == 1, ("number %d: %s (%.9g)"):format(lab.number(), walk.said(question, value), value))
 end
 
-function walk.right(question, value)
-  local said = walk.said(question, value)
-  assert(said:find("^" .. question .. ": right"), ("number %d: %s (%.9g)"):format(lab.number(), said, value))
-end
-
---- Each typical mistake has its hint: list of { question, value, piece of the hint }. After the right answers, so that tries
---- do not run out. No hint contains a digit beyond its question's name that could be the answer.
+--- Each typical mistake has its hint: list of { question, value, piece of the hint }, and the hint has a Spanish one.
 function walk.mistakes(list)
   for _, case in ipairs(list) do
     local question, value, piece = table.unpack(case)
     local said = walk.said(question, value)
     assert(said:find(piece, 1, true), ("number %d: %.9g gave '%s', not '%s'"):format(lab.number(), value, said, piece))
+    assert(walk.said(question, value, "es") ~= said, said .. " has no Spanish words")
   end
 end
 
@@ -57,14 +60,16 @@ function walk.sheet(name, work)
     support.test(("sheet %s is done by number %d with honest work, and typical mistakes get their hints"):format(name, number),
       function() work(walk.follow(name, number), number) end)
   end
-  support.test("the script of sheet " .. name .. " runs as it is given", function()
-    -- It writes its page into the folder in which it runs: one that goes away.
-    local script = ('folder=$(mktemp -d) && cp examples/lab/%s.lua "$folder" && program=$(realpath "%s") && cd "$folder" && '
-      .. '"$program" %s.lua 2>&1; code=$?; rm -r "$folder"; exit $code'):format(name, support.program(), name)
-    local pipe = io.popen(script)
-    local text = pipe:read "a"
-    assert(pipe:close(), text)
-  end)
+  local program = io.popen(('realpath "%s"'):format(support.program())):read "l"
+  for _, sheet in ipairs { name:match "^%d", "hoja-" .. name:match "^%d" } do
+    support.test("the script to begin sheet " .. sheet .. " with makes a page as it is given", function()
+      local pipe = io.popen(([[folder=$(mktemp -d) && cd "$folder" && '%s' --lab %s 4711 && '%s' --report %s-4711.lua && cat %s-4711.html 2>&1
+        code=$?; rm -r "$folder"; exit $code]]):format(program, sheet, program, name:match "^%d", name:match "^%d"))
+      local text = pipe:read "a"
+      assert(pipe:close(), text)
+      assert(text:find("<h2>" .. (sheet:find "hoja" and "Preguntas" or "Questions"), 1, true), text)
+    end)
+  end
   support.finish()
 end
 
