@@ -4,6 +4,7 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 
 local fig = case.figure("05a", "amplitude under sin(omega t) with dry friction", ...)
 local picture = {
+  ends = true,
   xlabel = "ω/ω₀", ylabel = "Φ", xlim = { 0, 2 }, ylim = { 0, 3 }, xticks = 0.5, size = { 12, 9 },
 }
 

@@ -5,6 +5,7 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 
 local fig = case.figure("05b", "phase lag under sin(omega t) with dry friction", ...)
 local picture = {
+  ends = true,
   xlabel = "ω/ω₀", ylabel = "α, degrees", xlim = { 0, 2 }, ylim = { -45, 180 }, xticks = 0.5, yticks = 45,
   size = { 12, 9 },
 }

@@ -828,9 +828,27 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& p
     return curves;
 }
 
-/// What data bring along, as a curve of the same columns.
-plots::Curve overlay_curve(const lua::Options& options, const Data& data, const std::string& name, const std::string& x,
-                           const std::string& y) {
+/// The curve in parts by the words of a column, each with its word as the label.
+std::vector<plots::Curve> parts_by(const std::vector<std::string>& words, const plots::Curve& whole) {
+    std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> parts;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        auto& [x, y] = parts[words[i]];
+        x.push_back(whole.x.values[i]);
+        y.push_back(whole.y.values[i]);
+    }
+    std::vector<plots::Curve> curves;
+    for (auto& [word, places] : parts) {
+        plots::Curve& curve = curves.emplace_back(whole);
+        curve.x = plots::Numbers::own(std::move(places.first));
+        curve.y = plots::Numbers::own(std::move(places.second));
+        curve.label = word;
+    }
+    return curves;
+}
+
+/// What data bring along, as curves of the same columns: one, or one for each kind of point of a map.
+std::vector<plots::Curve> overlay_curves(const lua::Options& options, const Data& data, const std::string& name,
+                                         const std::string& x, const std::string& y) {
     const DataCompanion* companion = data.companion(name);
     if (companion == nullptr) {
         std::vector<std::string_view> names;
@@ -853,7 +871,8 @@ plots::Curve overlay_curve(const lua::Options& options, const Data& data, const 
         *numbers = plots::Numbers::own({values.begin(), values.end()});
     }
     curve.label = name;
-    return curve;
+    const DataColumn* kind = companion->drawn ? drawn.find("kind") : nullptr;
+    return kind == nullptr ? std::vector{curve} : parts_by(kind->words(), curve);
 }
 
 /// Those that are not the same in all rows.
@@ -916,8 +935,10 @@ int plot(lua_State* L) {
         map.front().x.label = label_of(*data, x.front());
         map.front().y.label = label_of(*data, y.front());
         for (const std::string& name : asked_names(L, options, "overlay")) {
-            map.front().curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
-            map.front().curves.back().colour = vermilion;
+            for (plots::Curve& curve : overlay_curves(options, *data, name, x.front(), y.front())) {
+                curve.colour = vermilion;
+                map.front().curves.push_back(std::move(curve));
+            }
         }
         apply_options(L, options, map.front());
         return deliver(L, options, std::move(map));
@@ -952,8 +973,10 @@ int plot(lua_State* L) {
         if (figure.curves.front().label.empty()) figure.curves.front().label = label_of(*data, y.front());
         constexpr std::array<plots::Dashes, 3> dashes{plots::Dashes::dashed, plots::Dashes::dash_dotted,
                                                       plots::Dashes::dotted};
-        figure.curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
-        figure.curves.back().dashes = dashes[overlays++ % dashes.size()];
+        for (plots::Curve& overlay : overlay_curves(options, *data, name, x.front(), y.front())) {
+            overlay.dashes = dashes[overlays++ % dashes.size()];
+            figure.curves.push_back(std::move(overlay));
+        }
     }
     figure.y.logarithmic = data->is_spectrum;
     if (y.size() == 1) {

@@ -272,18 +272,40 @@ bool is_column(lua_State* L, int index) {
     return number;
 }
 
-/// plot(x, y) and plot(x, y, { options }) become plot{ { x, y }, options }.
-void join_columns(lua_State* L) {
-    const int given = lua_gettop(L);
-    if (given < 2 || given > 3 || !is_column(L, 1) || !is_column(L, 2) || (given == 3 && !lua_istable(L, 3))) return;
-    if (given == 2) lua_newtable(L);
-    lua::push_copy(L, 3);
-    lua_createtable(L, 2, 0);
-    for (const int i : {1, 2}) {
-        lua_pushvalue(L, i);
-        lua_rawseti(L, -2, i);
+/// How many columns the table at `index` lists; 0 for everything else.
+lua_Integer columns_in(lua_State* L, int index) {
+    const auto count = lua_istable(L, index) ? static_cast<lua_Integer>(lua_rawlen(L, index)) : 0;
+    for (lua_Integer i = 1; i <= count; ++i) {
+        const bool column = lua_rawgeti(L, index, i) != LUA_TNUMBER && is_column(L, lua_gettop(L));
+        lua_pop(L, 1);
+        if (!column) return 0;
     }
-    lua_rawseti(L, 4, 1);
+    return count;
+}
+
+/// plot(run), plot(x, y), plot(x, { y, z }) and the same with a table of options become plot{ run, options } and
+/// plot{ { x, y }, { x, z }, options }.
+void join_columns(lua_State* L) {
+    const bool run = lua::test<RunHandle>(L, 1) != nullptr;
+    const int given = lua_gettop(L), columns = run ? 1 : 2;
+    const lua_Integer several = run || given < 2 ? 0 : columns_in(L, 2);
+    const bool fits = run || (given >= 2 && is_column(L, 1) && (several > 0 || is_column(L, 2)));
+    if (!fits || given > columns + 1 || (given == columns + 1 && !lua_istable(L, given))) return;
+    if (given == columns) lua_newtable(L);
+    lua::push_copy(L, columns + 1);
+    const int joined = lua_gettop(L);
+    if (run) {
+        lua_pushvalue(L, 1);
+        lua_rawseti(L, joined, 1);
+    }
+    for (lua_Integer curve = 1; !run && curve <= std::max<lua_Integer>(several, 1); ++curve) {
+        lua_createtable(L, 2, 0);
+        lua_pushvalue(L, 1);
+        lua_rawseti(L, -2, 1);
+        several > 0 ? static_cast<void>(lua_rawgeti(L, 2, curve)) : lua_pushvalue(L, 2);
+        lua_rawseti(L, -2, 2);
+        lua_rawseti(L, joined, curve);
+    }
     lua_replace(L, 1);
     lua_settop(L, 1);
 }
@@ -589,6 +611,7 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
     figure.title = asked.title.value_or(figure.title);
     figure.x.label = asked.xlabel.value_or(figure.x.label);
     figure.y.label = asked.ylabel.value_or(figure.y.label);
+    figure.y.names_curves = figure.y.names_curves && !asked.ylabel;
     figure.x.logarithmic = asked.xlog.value_or(figure.x.logarithmic);
     figure.y.logarithmic = asked.ylog.value_or(figure.y.logarithmic);
     if (asked.xlim) {
@@ -601,6 +624,7 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
     set_ticks(L, options, "yticks", figure.y);
     figure.equal = asked.equal.value_or(figure.equal);
     figure.axes = asked.axes.value_or(figure.axes);
+    figure.ends = asked.ends;
     if (options.has("xticks") || options.has("yticks")) {
         const plots::View view = plots::view_of(figure);
         check_ticks(options, "xticks", figure.x, view.x);

@@ -51,6 +51,7 @@ struct FigureOptions {
     std::optional<std::string> title = {}, xlabel = {}, ylabel = {};
     std::optional<std::vector<double>> xlim = {}, ylim = {};
     std::optional<bool> xlog = {}, ylog = {}, equal = {}, axes = {};
+    bool ends = false;
 };
 
 inline constexpr text::Range tick_distance{"be positive: it is the distance between ticks",
@@ -69,6 +70,9 @@ inline constexpr text::Option figure_options[] = {
     {.name = "ylog", .meaning = "a logarithmic axis", .filled = text::fills<&FigureOptions::ylog>},
     {.name = "equal", .meaning = "one unit is as long on both axes", .filled = text::fills<&FigureOptions::equal>},
     {.name = "axes", .meaning = "false leaves only the curves", .filled = text::fills<&FigureOptions::axes>},
+    {.name = "ends",
+     .meaning = "in a file the names of lines stand where these end, not in the legend",
+     .filled = text::fills<&FigureOptions::ends>},
 };
 
 /// Where a picture goes, and how large it is.

@@ -198,12 +198,16 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
     points.pieces_of = "curve";
     const auto drawn = [over, located] {
         std::vector<double> x, y;
+        std::vector<std::string> kind;
         for (std::size_t i = 0; i < located.size(); ++i) {
-            if (i > 0 && located[i].curve != located[i - 1].curve) x.push_back(no_number), y.push_back(no_number);
-            x.push_back(located[i].beside);
-            y.push_back(located[i].at.parameter);
+            const auto put = [&](double across, double at) {
+                x.push_back(across), y.push_back(at), kind.emplace_back(analysis::name(located[i].at.kind));
+            };
+            if (i > 0 && located[i].curve != located[i - 1].curve) put(no_number, no_number);
+            put(located[i].beside, located[i].at.parameter);
         }
-        return Data{.columns = {column_of(over.front().name, std::move(x)), column_of(over.back().name, std::move(y))}};
+        return Data{.columns = {column_of(over.front().name, std::move(x)), column_of(over.back().name, std::move(y)),
+                                column_of("kind", std::move(kind))}};
     };
     return {"points", [points] { return Data(points); }, drawn};
 }

@@ -72,6 +72,7 @@ struct Axis {
     std::vector<double> ticks = {};       ///< where they stand; none: at round numbers
     std::optional<double> division = {};  ///< or at the multiples of this (DIVX, DIVY of DRAAR)
     bool logarithmic = false;
+    bool names_curves = false;  ///< the label is a unit alone: on paper the names of the curves stand before it
 };
 
 enum class MarkKind { start, end, impact, switched };
@@ -93,6 +94,7 @@ struct Figure {
     Axis x, y;
     bool equal = false;    ///< one unit is as long on both axes
     bool axes = true;      ///< frame, ticks, labels and grid
+    bool ends = false;     ///< on paper the names of lines stand where these end, not in the legend
     bool circles = false;  ///< about the origin, through the ticks: lines of equal energy in a phase plane
     std::shared_ptr<const Shades> shades = {};  ///< a map, behind all the rest
     std::vector<Curve> curves;

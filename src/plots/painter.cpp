@@ -197,6 +197,7 @@ public:
         add_stuck();
         for (const LegendEntry& entry : panel_.legend) add_to_legend(entry);
         add_colour_bar();
+        add_end_names();
         page_.words(panel_.title);
     }
 
@@ -252,10 +253,20 @@ private:
         });
     }
 
+    /// The colour of a dot of what has none: stripes on white, or on grey and the other way.
+    static std::uint32_t hatch(int row, int column, bool nothing) {
+        constexpr int apart = 12, wide = 2;
+        constexpr std::uint32_t stripe = 0xA8A8A8, light = 0xECECEC, white = 0xFFFFFF;
+        const int across = nothing ? column - row : column + row;
+        return ((across % apart) + apart) % apart < wide ? stripe : nothing ? light : white;
+    }
+
     /// A map may have any number of places, so it is an image.
     void add_shades() const {
         const Shades& shades = *figure_.shades;
         const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
+        const std::optional<Interval> range = colour_range(shades);
+        const Absences absent = absences_of(shades);
         const std::vector<double> right = edges_between(shades.x, panel_.view.x.logarithmic());
         const std::vector<double> up = edges_between(shades.y, panel_.view.y.logarithmic());
         const auto place = [](const std::vector<double>& edges, double value) {  // edges.size() - 1: outside
@@ -267,10 +278,17 @@ private:
             const std::size_t j = place(up, panel_.view.y.at(1 - (row + 0.5) / map.height));
             for (int column = 0; column < map.width && j < shades.y.size(); ++column) {
                 const std::size_t i = place(right, panel_.view.x.at((column + 0.5) / map.width));
-                const auto band = i < shades.x.size() ? band_of(bands, shades.at(i, j)) : std::nullopt;
-                if (!band) continue;
+                if (i >= shades.x.size()) continue;
+                const double z = shades.at(i, j);
+                const auto band = band_of(bands, z);
+                const bool nothing = absent.nothing && z == 0;
+                std::uint32_t colour = hatch(row, column, nothing);
+                if (band && !nothing) {
+                    colour =
+                        range ? flowing_colour((z - range->low) / range->length()) : shade_colour(*band, bands.size());
+                }
                 map.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.width) +
-                         static_cast<std::size_t>(column)] = 0xFF000000U | shade_colour(*band, bands.size());
+                         static_cast<std::size_t>(column)] = 0xFF000000U | colour;
             }
         }
         map.put(page_.to);
@@ -499,6 +517,47 @@ private:
         add_bar(all, panel_.bottom + below_ticks, ink_colour);
     }
 
+    void add_hatched_sample(const LegendEntry& entry, double end) const {
+        Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, fineness);
+        for (int row = 0; row < sample.height; ++row) {
+            for (int column = 0; column < sample.width; ++column) {
+                sample.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(sample.width) +
+                            static_cast<std::size_t>(column)] =
+                    0xFF000000U | hatch(row, column, entry.sample == Sample::nothing);
+            }
+        }
+        sample.put(page_.to);
+    }
+
+    /// Names at the ends of lines: those at the right edge outside, one below the other.
+    void add_end_names() {
+        std::vector<NamedEnd> outside;
+        for (const NamedEnd& end : named_ends(figure_, panel_.view)) {
+            if (end.outside()) {
+                outside.push_back(end);
+                continue;
+            }
+            page_.words({figure_.curves[end.curve].label, panel_.left + end.right * size_.width + 0.4 * em,
+                         panel_.bottom - end.up * size_.height - 0.6 * em},
+                        Align::left);
+        }
+        std::stable_sort(outside.begin(), outside.end(),
+                         [](const NamedEnd& a, const NamedEnd& b) { return a.up > b.up; });
+        constexpr double apart = 1.2 * em;
+        std::vector<double> places;
+        for (const NamedEnd& end : outside) {
+            const double y = panel_.bottom - end.up * size_.height;
+            places.push_back(places.empty() ? y : std::max(y, places.back() + apart));
+        }
+        double lowest = panel_.bottom;
+        for (std::size_t i = places.size(); i-- > 0; lowest -= apart) lowest = places[i] = std::min(places[i], lowest);
+        for (std::size_t i = 0; i < outside.size(); ++i) {
+            const double y = panel_.bottom - outside[i].up * size_.height;
+            page_.line({panel_.right, y}, {panel_.right + 0.7 * em, places[i]}, 0.6, colour_of(outside[i].curve));
+            page_.words({figure_.curves[outside[i].curve].label, panel_.right + to_end_name, places[i]}, Align::left);
+        }
+    }
+
     void add_to_legend(const LegendEntry& entry) {
         const double end = entry.x + sample_width(entry.sample);
         const Point middle{(entry.x + end) / 2, entry.y};
@@ -509,6 +568,7 @@ private:
         if (entry.sample == Sample::mark) add_mark(static_cast<MarkKind>(entry.curve), middle);
         if (entry.sample == Sample::dead_zone) block(bar, grey, 1);
         if (entry.sample == Sample::stuck) block(bar, ink_colour, 1);
+        if (entry.sample == Sample::nothing || entry.sample == Sample::no_value) add_hatched_sample(entry, end);
         if (entry.sample != Sample::curve) return;
         const Style style = figure_.curves[entry.curve].style;
         if (style == Style::points) add_point(page_.to, entry.curve, middle);
@@ -524,7 +584,10 @@ private:
         const double cell = size_.height / std::max(1.0, static_cast<double>(colours.cells));
         for (std::size_t i = 0; i < colours.cells; ++i) {
             const double y = panel_.bottom - static_cast<double>(i) * cell;
-            page_.rectangle({colours.left, y - cell}, {colours.right, y}, shade_colour(i, colours.cells));
+            const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(colours.cells);
+            const double below = colours.continuous && i > 0 ? 0.5 : 0;  // no seams
+            page_.rectangle({colours.left, y - cell}, {colours.right, y + below},
+                            colours.continuous ? flowing_colour(part) : shade_colour(i, colours.cells));
         }
         for (const auto& [place, text] : colours.labels) {
             page_.words({text, colours.right + 0.4 * em, panel_.bottom - place * cell}, Align::left);

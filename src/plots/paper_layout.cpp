@@ -1,6 +1,7 @@
 #include "plots/paper_layout.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "plots/shades.hpp"
 #include "text/characters.hpp"
@@ -43,10 +44,17 @@ std::string with_offset(const std::string& label, const Ticks& ticks) {
     return ticks.offset.empty() ? label : label + " (" + typeset(ticks.offset) + ")";
 }
 
+/// A curve without any point is there for the legend.
+bool ends_with_name(const Figure& figure, const Curve& curve) {
+    const auto& y = curve.y.values;
+    return figure.ends && curve.style == Style::line && !curve.label.empty() &&
+           std::any_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+}
+
 std::vector<LegendEntry> legend_of(const Figure& figure) {
     std::vector<LegendEntry> entries;
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
-        if (!figure.curves[i].label.empty()) {
+        if (!figure.curves[i].label.empty() && !ends_with_name(figure, figure.curves[i])) {
             entries.push_back({Sample::curve, i, figure.curves[i].label});
         }
     }
@@ -65,6 +73,11 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
     }
     if (!figure.stuck.empty()) {
         entries.push_back({Sample::stuck, 0, "stuck"});
+    }
+    if (figure.shades != nullptr) {
+        const Absences absent = absences_of(*figure.shades);
+        if (absent.nothing) entries.push_back({Sample::nothing, 0, figure.shades->label + " = 0"});
+        if (absent.no_value) entries.push_back({Sample::no_value, 0, "no value"});
     }
     return entries;
 }
@@ -136,8 +149,19 @@ void set_x_ticks(PaperPanel& panel, double limit) {
 
 constexpr double bar_gap = 1.0 * em, bar_width = 1.1 * em, bar_ticks = 0.5 * em;
 
-/// Bands of one number have it in their middle, others the number where the next one begins.
+/// Bands of one number have it in their middle, others the number where the next one begins; colours that flow have
+/// round numbers at their places.
 ColourBar bar_of(const Shades& shades) {
+    if (const auto range = colour_range(shades)) {
+        constexpr std::size_t fine = 64;
+        const Ticks ticks = ticks_of(Axis{}, Scale(*range, false), 6);
+        ColourBar colours{.cells = fine, .continuous = true};
+        for (std::size_t i = 0; i < ticks.at.size(); ++i) {
+            const double place = fine * (ticks.at[i] - range->low) / range->length();
+            if (place > -0.5 && place < fine + 0.5) colours.labels.emplace_back(place, typeset(ticks.text[i]));
+        }
+        return colours;
+    }
     const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
     ColourBar colours{.cells = bands.size()};
     for (std::size_t i = 0; i < bands.size(); ++i) {
@@ -156,6 +180,16 @@ ColourBar bar_of(const Shades& shades) {
     return colours;
 }
 
+/// "θ, M/k, m": a unit alone would not say of what.
+std::string y_label_of(const Figure& figure) {
+    if (!figure.y.names_curves) return figure.y.label;
+    std::string label;
+    for (const Curve& curve : figure.curves) {
+        if (!curve.label.empty()) label += (label.empty() ? "" : ", ") + curve.label;
+    }
+    return label.empty() || figure.y.label.empty() ? label + figure.y.label : label + ", " + figure.y.label;
+}
+
 /// The margins of a panel, the ticks that fit between them, and the box, which begins `inset` from the left or later.
 /// Panels beside it may need more room above and below the box, so that all boxes are as high.
 void place(PaperPanel& panel, double left, double width, double height, double inset, const PaperPanel& beside) {
@@ -164,7 +198,7 @@ void place(PaperPanel& panel, double left, double width, double height, double i
         return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
     };
     panel.y_ticks = y_ticks(height);
-    panel.y_label.text = with_offset(figure.y.label, panel.y_ticks);
+    panel.y_label.text = with_offset(y_label_of(figure), panel.y_ticks);
     const double label_room = panel.y_label.text.empty() ? 0 : 1.6 * em;
     panel.left = left + 0.4 * em + (figure.axes ? label_room + widest(panel.y_ticks.text) + 0.9 * em : 0);
     panel.left = std::max(panel.left, left + inset);
@@ -177,6 +211,11 @@ void place(PaperPanel& panel, double left, double width, double height, double i
         panel.bar_label.x = panel.right - 0.3 * em;
         panel.right -= bar_gap + bar_width + bar_ticks + numbers + (panel.bar_label.text.empty() ? 0 : 1.2 * em);
     }
+    double names = 0;
+    for (const NamedEnd& end : named_ends(figure, panel.view)) {
+        if (end.outside()) names = std::max(names, width_of(figure.curves[end.curve].label));
+    }
+    if (names > 0) panel.right -= to_end_name + names - (figure.axes ? 0.7 : 0) * em;
     const double bars = figure.stuck.empty() ? 0 : 0.6 * em;
     panel.bottom = figure.axes ? 2.1 * em + bars + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
     panel.bottom = panel.below = std::max(panel.bottom, beside.below);
@@ -294,6 +333,22 @@ void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, 
 }
 
 }  // namespace
+
+std::vector<NamedEnd> named_ends(const Figure& figure, const View& view) {
+    std::vector<NamedEnd> ends;
+    for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+        const Curve& curve = figure.curves[i];
+        if (!ends_with_name(figure, curve)) continue;
+        for (std::size_t place = curve.size(); place-- > 0;) {
+            const NamedEnd end{i, view.x(curve.x.values[place]), view.y(curve.y.values[place])};
+            if (end.right >= 0 && end.right <= 1 && end.up >= 0 && end.up <= 1) {
+                ends.push_back(end);
+                break;
+            }
+        }
+    }
+    return ends;
+}
 
 Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     const bool any_height = size.height <= 0;

@@ -21,7 +21,7 @@ struct PaperSize {
     double height = 0;
 };
 
-enum class Sample { curve, mark, dead_zone, stuck, none };
+enum class Sample { curve, mark, dead_zone, stuck, nothing, no_value, none };
 
 /// A line of the legend: a sample, and words to its right.
 struct LegendEntry {
@@ -39,8 +39,18 @@ inline constexpr double after_sample = 0.4 * em;
 struct ColourBar {
     double left = 0, right = 0;
     std::size_t cells = 0;
+    bool continuous = false;                                  ///< the colours flow into each other
     std::vector<std::pair<double, std::string>> labels = {};  ///< places in cells from the bottom
 };
+
+/// Where a line ends that has its name there, in fractions of the box; at the right edge names stand outside.
+struct NamedEnd {
+    std::size_t curve;
+    double right, up;
+    [[nodiscard]] bool outside() const { return right > 0.9; }
+};
+std::vector<NamedEnd> named_ends(const Figure& figure, const View& view);
+inline constexpr double to_end_name = 0.9 * em;  // from the box
 
 /// Words somewhere on the sheet.
 struct Words {

@@ -194,6 +194,7 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
     } else {
         const Measure measure = symbol_of(names.front()).measure;
         figure.y.label = measure == Measure::torque ? model::of_unit("torque", run.units.M) : unit_of(run, measure);
+        figure.y.names_curves = measure != Measure::torque;
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.trajectory);

@@ -74,6 +74,20 @@ std::vector<ShadeBand> bands_of(const Shades& shades, int most) {
     return bands;
 }
 
+std::optional<Interval> colour_range(const Shades& shades) {
+    const std::vector<double> sorted = finite_values(shades);
+    if (sorted.empty() || (!shades.limits && !few_whole_numbers(sorted).empty())) return std::nullopt;
+    const Interval range = shades.limits.value_or(range_of_shades(sorted));
+    const bool wide = range.length() > 1e-12 * std::max(std::fabs(range.low), std::fabs(range.high));
+    return wide ? std::optional(range) : std::nullopt;
+}
+
+Absences absences_of(const Shades& shades) {
+    const std::vector<double> sorted = finite_values(shades);
+    const bool some = !sorted.empty() && sorted.front() == 0 && sorted.back() > 0 && colour_range(shades).has_value();
+    return {some, std::any_of(shades.z.begin(), shades.z.end(), [](double z) { return std::isnan(z); })};
+}
+
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z) {
     if (std::isnan(z) || bands.empty()) return std::nullopt;
     const bool single = std::isfinite(bands.back().to);  // each band is one number
@@ -98,12 +112,27 @@ std::vector<double> edges_between(const std::vector<double>& values, bool logari
     return edges;
 }
 
+namespace {
+// viridis of matplotlib (van der Walt and Smith, 2015), every ninth part
+constexpr std::array<std::uint32_t, 10> viridis{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,
+                                                0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
+}  // namespace
+
+std::uint32_t flowing_colour(double part) {
+    const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(viridis.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), viridis.size() - 2);
+    const double weight = place - static_cast<double>(before);
+    std::uint32_t mixed = 0;
+    for (const unsigned shift : {16U, 8U, 0U}) {
+        const double from = (viridis[before] >> shift) & 255U, to = (viridis[before + 1] >> shift) & 255U;
+        mixed |= static_cast<std::uint32_t>(std::lround(from + weight * (to - from))) << shift;
+    }
+    return mixed;
+}
+
 std::uint32_t shade_colour(std::size_t band, std::size_t count) {
-    // viridis of matplotlib (van der Walt and Smith, 2015), every ninth part
-    constexpr std::array<std::uint32_t, 10> colours{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,
-                                                    0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
-    const std::size_t place = count < 2 ? colours.size() / 2 : band * (colours.size() - 1) / (count - 1);
-    return colours[std::min(place, colours.size() - 1)];
+    const std::size_t place = count < 2 ? viridis.size() / 2 : band * (viridis.size() - 1) / (count - 1);
+    return viridis[std::min(place, viridis.size() - 1)];
 }
 
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii) {

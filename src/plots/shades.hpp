@@ -31,6 +31,16 @@ std::vector<ShadeBand> bands_of(const Shades& shades, int most);
 /// Which band has the value; none for nan, and for an infinite value where each band is one number.
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z);
 
+/// The values from the first to the last colour of a map on paper, whose colours flow; nothing where each value has a
+/// band of its own, or there is one value only.
+std::optional<Interval> colour_range(const Shades& shades);
+
+/// What has no colour on paper: places without a value, and where a quantity that is positive elsewhere is 0.
+struct Absences {
+    bool nothing = false, no_value = false;
+};
+Absences absences_of(const Shades& shades);
+
 /// Half way between the values, and as far beyond the first and the last.
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
 
@@ -39,6 +49,8 @@ Curve contour(const Shades& shades, double level);
 
 /// 0x440154 to 0xFDE725: from dark to bright, also for the colour-blind and in grey print.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);
+/// The same for a part of the way, 0 to 1, between the ten.
+std::uint32_t flowing_colour(double part);
 /// A character for the band: its digit when all are digits, else a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);
 inline constexpr int most_text_bands = 5, most_paper_bands = 10;

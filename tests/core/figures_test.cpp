@@ -138,7 +138,38 @@ TEST_CASE("a map has a bar of its colours, with a number between two of them or 
         return all;
     };
     CHECK(labels({0, 1, 2, 0, 1, 2}) == "0 at 0.5; 1 at 1.5; 2 at 2.5; ");
-    CHECK(labels({0, 0.1, 0.2, 0.3, 0.4, 0.5}).starts_with("0.0 at 0.0; 0.1 at 1.0; "));
+    CHECK(labels({0, 0.1, 0.2, 0.3, 0.4, 0.5}).starts_with("0.0 at 0.0; 0.1 at 12.; "));  // of 64 colours that flow
+}
+
+TEST_CASE("lines have their names at their ends if that is asked for, outside of the box at its right edge",
+          "[plots]") {
+    Figure figure = decay(10);
+    figure.curves.assign(2, figure.curves.front());
+    figure.curves[0].label = "first", figure.curves[1].label = "second";
+    figure.curves[1].x = Numbers::own({0, 1, 2});
+    figure.curves[1].y = Numbers::own({0, 0.5, 0.2});
+    const PaperPanel legend = lay_out({&figure, 1}, {12, 9}).panels[0];
+    CHECK(legend.legend.size() == 2);
+    figure.ends = true;
+    const PaperPanel ends = lay_out({&figure, 1}, {12, 9}).panels[0];
+    CHECK(ends.legend.empty());
+    CHECK(ends.right < legend.right);
+    const std::vector<NamedEnd> named = named_ends(figure, ends.view);
+    REQUIRE(named.size() == 2);
+    CHECK(named[0].outside());
+    CHECK(!named[1].outside());
+    CHECK(std::fabs(named[1].right - ends.view.x(2)) < 1e-12);
+}
+
+TEST_CASE("an axis of several curves names them before their unit", "[plots]") {
+    Figure figure = decay(10);
+    figure.curves.assign(2, figure.curves.front());
+    figure.curves[0].label = "θ", figure.curves[1].label = "M/k";
+    figure.y.label = "m";
+    figure.y.names_curves = true;
+    CHECK(lay_out({&figure, 1}, {}).panels[0].y_label.text == "θ, M/k, m");
+    figure.y.label = "";
+    CHECK(lay_out({&figure, 1}, {}).panels[0].y_label.text == "θ, M/k");
 }
 
 }  // namespace dinal::figures_test

@@ -15,7 +15,7 @@ local folder = os.tmpname()
 os.remove(folder)
 assert(os.execute("mkdir '" .. folder .. "'"))
 local drawn = assert(loadfile(docs .. "pictures.lua"))(folder)
-assert(#drawn == 4)
+assert(#drawn == 6)
 for _, path in ipairs(drawn) do
   local name = path:match "[^/]*$"
   local now, kept = read(path), read(docs .. "pictures/" .. name)

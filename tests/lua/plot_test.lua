@@ -279,6 +279,17 @@ test("files begin as files of their kind begin, and an old one is replaced as a 
     plot { plot { line, show = false }, free:phase_plot { show = false }, file = temporary ".svg", size = { 16, 6 } }
 end)
 
+test("plot(run) is plot{ run }, and plot(x, { y, z }) has a curve for each", function()
+    local run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 9 }
+    local size = { width = 60, height = 12, show = false }
+    local function shown(...) return tostring(plot(...)) end
+    equal(shown(run, size), shown(merged({ run }, size)))
+    local x = vector.linspace(0, 3, 31)
+    equal(shown(x, { x:sin(), x:cos() }, size), shown(merged({ { x, x:sin() }, { x, x:cos() } }, size)))
+    local list = x:table()
+    equal(shown(list, list, size), shown(merged({ { list, list } }, size)))
+end)
+
 test("plot(x, y) is plot{ { x, y } }", function()
     local x = vector.linspace(0, 1, 11)
     local options = { width = 40, height = 8, title = "square", show = false }
