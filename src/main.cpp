@@ -44,8 +44,7 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
         case dinal::prompt::Request::version:
             return print(dinal::prompt::version_text());
         case dinal::prompt::Request::manual:
-            return print(
-                dinal::help::manual(arguments.whole_manual ? dinal::help::Extent::all : dinal::help::Extent::page));
+            return print(dinal::help::manual(arguments.student));
         case dinal::prompt::Request::lab_start:
             return print(dinal::prompt::start_script(arguments));
         case dinal::prompt::Request::lab_solutions:

@@ -1,6 +1,7 @@
 #include "help/manual.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "text/characters.hpp"
 #include "text/version.hpp"
 #include "text/words.hpp"
 
@@ -15,11 +17,62 @@ namespace dinal::help {
 
 namespace {
 
+/// The place of a heading in a page, as GitHub names it.
 std::string anchor(std::string_view title) {
-    std::string text = text::lower(title);
-    std::replace(text.begin(), text.end(), ' ', '-');
-    return text;
+    std::string place;
+    for (const char c : text::lower(title)) {
+        if (text::is_name_char(c) || c == '-') place += c;
+        if (c == ' ') place += '-';
+    }
+    return place;
 }
+
+struct Page {
+    std::string_view name, title;
+    std::vector<std::string_view> sections;
+};
+
+const std::vector<Page>& manual_pages() {
+    static const std::vector<Page> all{
+        {"systems",
+         "systems, friction, springs",
+         {"Systems", "A system", "A system of several bodies", "Laws of friction", "A law of friction", "Springs",
+          "A spring"}},
+        {"excitations", "excitations", {"Excitations", "An excitation"}},
+        {"runs", "runs", {"Integrators", "An integrator", "A run", "The energy of a run", "Files"}},
+        {"questions",
+         "steady motions, sweeps, identification",
+         {"A steady motion", "Identification", "A fit", "Sweeps"}},
+        {"theory", "closed forms", {"Theory"}},
+        {"data", "vectors and data", {"Vectors", "A vector", "Data", "Named columns"}},
+        {"pictures", "pictures and reports", {"Plots", "A picture", "Reports", "A report", "Progress"}},
+        {"program", "the lab, help, the table dinal", {}},  // and all that is in none of the others
+    };
+    return all;
+}
+
+const Page& page_of(const Section& section) {
+    const auto has = [&section](const Page& topic) {
+        return std::find(topic.sections.begin(), topic.sections.end(), section.title) != topic.sections.end();
+    };
+    const auto found = std::find_if(manual_pages().begin(), manual_pages().end(), has);
+    return found == manual_pages().end() ? manual_pages().back() : *found;
+}
+
+/// What a function draws, where a picture of the documents shows it.
+struct Drawing {
+    std::string_view name, file, words;
+};
+constexpr Drawing drawings[] = {
+    {"run:plot", "pictures/stick-slip.svg",
+     "A block pulled through a spring: the angle rises in steps, the load in a straight line; bars show when it sticks"},
+    {"run:phase_plot", "report/fig22.svg",
+     "Angle and friction over time, and beside them the phase plane: half circles that end in the dead zone"},
+    {"sys:response", "pictures/resonance.svg",
+     "Left, under a slow load the true block stays while that with tanh creeps; right, a resonance with two folds"},
+    {"d:plot", "pictures/map.svg",
+     "A map of the amplitude over speed and damping, with lines of folds and Hopf points"},
+};
 
 /// Without the limits of a number, which an error states: "(s, must be positive)" becomes "(s)".
 std::string without_limits(std::string meaning) {
@@ -75,11 +128,11 @@ constexpr Task tasks[] = {
     {"pictures", "plot, run:plot, d:plot, run:phase_plot, run:animate"},
 };
 
-/// Writes entries; the page has no options that stand in `shared`, and an example for each section only.
+/// Writes entries; a page has no options that stand in `shared`, and an example for each section only.
 struct Writer {
     std::string text;
-    Extent extent = Extent::page;
-    std::vector<std::string> shared;
+    bool all = false;  ///< every entry by itself, with its example
+    std::vector<std::string> shared = {};
 
     void options(const text::Call& call) {
         std::string elsewhere;
@@ -90,12 +143,13 @@ struct Writer {
                 elsewhere += fmt::format("{}`{}`", elsewhere.empty() ? "" : ", ", line.option);
             }
         }
-        if (!elsewhere.empty()) text += fmt::format("- [shared](#options-of-several-calls): {}\n", elsewhere);
+        if (!elsewhere.empty())
+            text += fmt::format("- [shared](../manual.md#options-of-several-calls): {}\n", elsewhere);
         if (!call.options.empty()) text += "\n";
     }
     void example(const lua::Doc& doc) { text += fmt::format("```lua\n{}\n```\n", doc.example); }
     void entry(const lua::Doc& doc) {
-        const std::string call = extent == Extent::page ? doc.signature : signature(doc);
+        const std::string call = all ? signature(doc) : doc.signature;
         text += fmt::format("`{}`\n\n{}\n\n", call, doc.summary);
         for (const text::Call* each : calls_of(doc)) options(*each);
     }
@@ -116,7 +170,8 @@ struct Writer {
         };
         bool table = false;
         for (const lua::Member& member : section.description->members) {
-            if (!in_table(member)) continue;
+            // That each object has a text stands on the first page.
+            if (!in_table(member) || std::string_view(member.doc.signature).starts_with("tostring(")) continue;
             if (!table) text += "\n| | |\n|---|---|\n";
             table = true;
             row(member.doc);
@@ -125,38 +180,74 @@ struct Writer {
             if (in_table(member)) continue;
             text += fmt::format("\n### {}\n\n", listed_name(section, member));
             entry(member.doc);
-            if (extent == Extent::all) example(member.doc);
+            if (all) example(member.doc);
+            if (!all) picture_of(listed_name(section, member));
+        }
+    }
+    void picture_of(std::string_view name) {
+        for (const Drawing& drawing : drawings) {
+            if (drawing.name == name) text += fmt::format("![{}](../{})\n", drawing.words, drawing.file);
         }
     }
 };
 
+/// All names of a section, each with the place where it stands.
+std::string index_of(const Section& section, const Page& topic) {
+    std::string text = fmt::format("[{}](manual/{}.md#{}):", section.title, topic.name, anchor(section.title));
+    for (const lua::Member& member : section.description->members) {
+        if (member.kind == lua::Kind::metamethod) continue;
+        const std::string name = listed_name(section, member);
+        text += calls_of(member.doc).empty() ? fmt::format(" {},", name)
+                                             : fmt::format(" [{}](manual/{}.md#{}),", name, topic.name, anchor(name));
+    }
+    text.back() = '.';
+    return text;
+}
+
+std::string index_page() {
+    std::string text = fmt::format(
+        "# dinal {}: manual of the Lua API\n\nAll names, by topic. At the prompt `help(x)` prints the entry of x with an "
+        "example and all limits. Everything is in the table `dinal`, and its members are globals as well. Options are "
+        "named; an unknown one is an error. Objects cannot be changed; print shows each as text. In the examples `-->` is followed by what the line "
+        "prints.\n",
+        DINAL_VERSION);
+    for (const Page& topic : manual_pages()) {
+        text += fmt::format("\n**[{}](manual/{}.md)**\n\n", topic.title, topic.name);
+        for (const Section& section : sections()) {
+            if (&page_of(section) == &topic) text += fmt::format("- {}\n", index_of(section, topic));
+        }
+    }
+    text += "\n| task | look at |\n|---|---|\n";
+    for (const Task& task : tasks) text += fmt::format("| {} | {} |\n", task.task, task.names);
+    return text + fmt::format("\n## Options of several calls\n\n{}\nNext: [limits](limits.md).\n",
+                              fmt::join(shared_options(), ""));
+}
+
+std::string text_of_page(const Page& topic) {
+    Writer writer{.text = fmt::format("# Manual: {}\n\n[All topics and names](../manual.md).\n", topic.title),
+                  .shared = shared_options()};
+    for (const Section& section : sections()) {
+        if (&page_of(section) == &topic) writer.section(section);
+    }
+    return std::move(writer.text);
+}
+
 }  // namespace
 
-std::string manual(Extent extent) {
-    Writer writer;
-    writer.text = fmt::format(
-        "# dinal {}: manual of the Lua API\n\n"
-        "`dinal --manual` prints this page; at the prompt `help(x)` prints the entry of x with an example and all limits. "
-        "Everything is in the table `dinal`, and its members are globals as well. "
-        "Options are named; an unknown one is an error. Objects cannot be changed. "
-        "In the examples `-->` is followed by what the line prints.\n\n",
-        DINAL_VERSION);
-    writer.extent = extent;
-    if (extent == Extent::page) {
-        writer.shared = shared_options();
-        writer.text += "| task | look at |\n|---|---|\n";
-        for (const Task& task : tasks) writer.text += fmt::format("| {} | {} |\n", task.task, task.names);
-        writer.text += "\n- [Options of several calls](#options-of-several-calls)\n";
+text::Expected<std::string> manual(std::string_view page) {
+    if (page.empty()) return index_page();
+    if (page == "all") {
+        Writer writer{.text = "# Every entry\n", .all = true};
+        for (const Section& section : sections()) writer.section(section);
+        return std::move(writer.text);
     }
-    for (const Section& section : sections()) {
-        writer.text += fmt::format("- [{}](#{})\n", section.title, anchor(section.title));
+    std::vector<std::string_view> names;
+    for (const Page& topic : manual_pages()) {
+        if (topic.name == page) return text_of_page(topic);
+        names.push_back(topic.name);
     }
-    if (extent == Extent::page) {
-        writer.text += fmt::format("\n## Options of several calls\n\n{}", fmt::join(writer.shared, ""));
-    }
-    for (const Section& section : sections()) writer.section(section);
-    if (extent == Extent::page) writer.text += "\nNext: [limits](limits.md).\n";
-    return std::move(writer.text);
+    return text::Error{
+        fmt::format("the manual has no page '{}': the pages are {} and all", page, fmt::join(names, ", "))};
 }
 
 }  // namespace dinal::help

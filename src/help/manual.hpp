@@ -1,15 +1,16 @@
-// docs/manual.md, generated from the documentation of everything that Lua can see.
+// docs/manual.md and docs/manual/, generated from the documentation of everything that Lua can see.
 #pragma once
 
 #include <string>
+#include <string_view>
+
+#include "text/expected.hpp"
 
 namespace dinal::help {
 
-enum class Extent {
-    page,  ///< docs/manual.md: what has no options is a row of a table; options of several calls stand in one place
-    all,   ///< every entry as help() prints it, with its example: for the tests
-};
-
-std::string manual(Extent extent = Extent::page);
+/// The page of that name: "" is docs/manual.md, which leads to the others by an index of all names; a topic is
+/// docs/manual/TOPIC.md, where what has no options is a row of a table; "all" is every entry as help() prints it, with
+/// its example, for the tests. Fails if there is no such page.
+text::Expected<std::string> manual(std::string_view page = "");
 
 }  // namespace dinal::help

@@ -57,11 +57,6 @@ bool ask(Arguments& arguments, std::string_view value) {
     return true;
 }
 
-bool ask_whole_manual(Arguments& arguments, std::string_view value) {
-    arguments.whole_manual = true;
-    return ask<Request::manual>(arguments, value);
-}
-
 bool turn_warnings_on(Arguments& arguments, std::string_view /*value*/) {
     arguments.steps.push_back({'W', ""});
     return true;
@@ -87,7 +82,8 @@ bool answer_on(Arguments& arguments, std::string_view value) {
 enum class Takes {
     nothing,
     value,   ///< --max-time 10 or --max-time=10
-    all,    ///< nothing, and what follows is not looked at
+    joined,  ///< --manual or --manual=runs, and what follows is not looked at
+    all,     ///< nothing, and likewise
 };
 
 struct CommandLineOption {
@@ -105,8 +101,7 @@ constexpr CommandLineOption options[] = {
     {"-h", ask<Request::help>, Takes::all},
     {"--help", ask<Request::help>, Takes::all},
     {"--version", ask<Request::version>, Takes::all},
-    {"--manual", ask<Request::manual>, Takes::all},
-    {"--manual=all", ask_whole_manual, Takes::all},
+    {"--manual", ask<Request::manual>, Takes::joined},
     {"--jupyter-install", ask<Request::jupyter_install>, Takes::all},
     {"--no-init", set<&Arguments::no_init>},
     {"--strict", set<&Arguments::strict>},
@@ -126,7 +121,8 @@ constexpr CommandLineOption options[] = {
 /// The option that the word is, "--max-time" also for "--max-time=10"; nullptr when it is none of these.
 const CommandLineOption* option_of(std::string_view word) {
     const auto* found = std::find_if(std::begin(options), std::end(options), [word](const CommandLineOption& option) {
-        return option.name == (option.takes == Takes::value ? word.substr(0, word.find('=')) : word);
+        return option.name ==
+               (option.takes == Takes::value || option.takes == Takes::joined ? word.substr(0, word.find('=')) : word);
     });
     return found == std::end(options) ? nullptr : found;
 }
@@ -197,7 +193,7 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
             if (auto wrong = carry_out(*option, arguments, i)) {
                 return *wrong;
             }
-            if (option->takes == Takes::all) {
+            if (option->takes == Takes::all || option->takes == Takes::joined) {
                 return arguments;
             }
         } else if (word[1] == 'e' || word[1] == 'l') {
@@ -264,7 +260,7 @@ without a script: a prompt on a terminal, otherwise standard input is run as a s
                      on the descriptor N, as lines of JSON
   --help     this text
   --version  version, licence and what is built in
-  --manual   the whole manual, as Markdown
+  --manual   the index of the manual, as Markdown; --manual=runs and the like: a topic
 
 exit codes: 0 all went well, 1 an error in Lua code, 2 a wrong option, 130 interrupted
 inside: help() shows where to start

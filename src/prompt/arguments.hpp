@@ -20,7 +20,6 @@ struct StartStep {
 
 struct Arguments {
     Request request = Request::run;
-    bool whole_manual = false;        ///< --manual=all
     bool interactive = false;         ///< -i
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e

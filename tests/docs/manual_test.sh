@@ -2,8 +2,11 @@
 # docs/manual.md is what `dinal --manual` writes, and the man page is free of mistakes.
 set -e
 program=$1 source=$2
-"$program" --manual | diff -u "$source/docs/manual.md" - ||
-    { echo "docs/manual.md is stale: write it again with: scripts/dinal --manual > docs/manual.md"; exit 1; }
+stale() { echo "$1 is stale: write the manual again with scripts/manual"; exit 1; }
+"$program" --manual | diff -u "$source/docs/manual.md" - || stale docs/manual.md
+for page in $(grep -o '(manual/[a-z]*\.md)' "$source/docs/manual.md" | sed 's/.*\/\(.*\)\.md)/\1/'); do
+    "$program" "--manual=$page" | diff -u "$source/docs/manual/$page.md" - || stale "docs/manual/$page.md"
+done
 complaints=$(groff -man -ww -Tutf8 "$source/docs/dinal.1" 2>&1 >/dev/null)
 [ -z "$complaints" ] || { echo "$complaints"; exit 1; }
 version=$("$program" -e 'print(dinal.version)')
@@ -15,7 +18,7 @@ for name in $("$program" -e 'for name in pairs(dinal) do print(name) end'); do
         { echo "the man page lacks dinal.$name"; exit 1; }
 done
 # The help and the manual say nothing that is not so.
-! grep -n "for any M" "$source/docs/manual.md" || { echo "the manual promises too much"; exit 1; }
+! grep -rn "for any M" "$source/docs/manual" || { echo "the manual promises too much"; exit 1; }
 # Each option that the program lists has its place in the man page.
 "$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z-]*' | tr -d ' ,' | sort -u >options.$$
 for option in $(cat options.$$); do

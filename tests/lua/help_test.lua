@@ -5,7 +5,12 @@ local function printed(option)
     local pipe <close> = io.popen(('"%s" %s'):format(program(), option))
     return pipe:read "a"
 end
-local manual, page = printed "--manual=all", printed "--manual"
+local manual, index = printed "--manual=all", printed "--manual"
+local pages, page = {}, ""
+for name in index:gmatch "%*%*%[[^%]]*%]%(manual/(%l+)%.md%)" do
+    pages[name] = printed("--manual=" .. name)
+    page = page .. pages[name]
+end
 
 --- The entries of the manual: heading, signature, summary, example.
 local entries = {}
@@ -18,16 +23,32 @@ for part in (manual .. "\n## "):gsub("\n###? ", "\n\0"):gmatch "%z([^\0]*)" do
     end
 end
 
-test("docs/manual.md is what the program prints", function()
-    assert(read "docs/manual.md" == page, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
+test("docs/manual.md and the pages of its topics are what the program prints", function()
+    assert(read "docs/manual.md" == index, "docs/manual.md is old: run scripts/manual")
+    for name, text in pairs(pages) do assert(read("docs/manual/" .. name .. ".md") == text, name .. ".md is old: run scripts/manual") end
+    local pipe <close> = io.popen(('"%s" --manual=nothing 2>&1'):format(program()))
+    has(pipe:read "a", "the manual has no page 'nothing': the pages are systems, ")
+end)
+
+test("the index of the manual names everything, and leads to what has options", function()
+    for _, name in ipairs { "sys:simulate", "run:at", "vector.linspace", "sweep", "theory.den_hartog", "check", "r:save", "fit.silent" } do
+        assert(index:find(" " .. name .. "[,.]") or index:find("[" .. name .. "](manual/", 1, true), name)
+    end
+    for file, place in index:gmatch "%(manual/(%l+)%.md#([^)]*)%)" do
+        local there = false
+        for heading in pages[file]:gmatch "\n##+ ([^\n]*)" do
+            there = there or heading:lower():gsub("[^%w_%- ]", ""):gsub(" ", "-") == place
+        end
+        assert(there, file .. "#" .. place)
+    end
 end)
 
 test("the page has what takes no options as a row, and options of several calls once", function()
     has(page, "\n| `sys.I -> number` | The moment of inertia. |\n")
     has_not(page, "\n### sys.I\n")
-    equal(select(2, page:gsub("\n%- `units`: names of the units, for cards", "")), 1)
-    has(page, "- [shared](#options-of-several-calls): `M`, `theta0`, `velocity0`")
-    for _, entry in ipairs(entries) do assert(page:find("`" .. entry.signature:match "^[^({ ]+", 1, true), entry.heading) end
+    equal(select(2, index:gsub("\n%- `units`: names of the units, for cards", "")), 1)
+    has(page, "- [shared](../manual.md#options-of-several-calls): `M`, `theta0`, `velocity0`")
+    for _, entry in ipairs(entries) do assert(entry.heading:find "^tostring" or page:find("`" .. entry.signature:match "^[^({ ]+", 1, true), entry.heading) end
 end)
 
 test("every entry has a signature, a summary that is a sentence, and an example", function()
