@@ -132,7 +132,15 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
             bodies.push_back(std::move(scene));
         }
     }
-    return animation::side_by_side(std::move(bodies), std::move(links));
+    // Angles that nothing brings back belong to what turns, however far it gets in this run.
+    const bool angles = units.theta.empty() || units.theta == "rad";
+    const auto links_begin = system.joints.begin() + static_cast<std::ptrdiff_t>(system.bodies.size());
+    const bool is_free = std::all_of(system.joints.begin(), links_begin, [](const model::Joint& joint) {
+        return joint.stiffness == 0 && joint.spring.none() && !joint.walls;
+    });
+    animation::RigScene rig = animation::side_by_side(std::move(bodies), std::move(links));
+    rig.discs = rig.discs || (angles && is_free);
+    return rig;
 }
 
 /// For a terminal: what goes round comes back at half a turn.

@@ -84,6 +84,16 @@ test("a part of a run, a run from a file, units", function()
     has(animated(run, { units = { theta = "<m>", t = "s" } }), "θ, &lt;m&gt;")
 end)
 
+test("what nothing brings back turns as discs, in metres or on springs it slides", function()
+    local function clutch(k, units)
+        local rig = system{ bodies = { motor = { I = 1, k = k }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } }, units = units }
+        return animated(rig:simulate{ velocity0 = { motor = 3 }, t_end = 1 }, {})
+    end
+    has(clutch(0), "as discs on one axis")
+    has(clutch(4), "side by side")
+    has(clutch(0, { theta = "m" }), "side by side")
+end)
+
 test("what cannot be shown is said", function()
     raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
     refuses(function(o) run:animate(o) end, {
