@@ -155,29 +155,26 @@ struct Writer {
     }
     void row(const lua::Doc& doc) {
         std::string summary = doc.summary;
-        for (std::size_t at = summary.find_first_of("|\n"); at != std::string::npos;
-             at = summary.find_first_of("|\n", at + 2)) {
-            summary.replace(at, 1, summary[at] == '|' ? "\\|" : " ");
-        }
-        text += fmt::format("| `{}` | {} |\n", signature(doc), summary);
+        std::replace(summary.begin(), summary.end(), '\n', ' ');
+        text += fmt::format("- `{}`: {}\n", signature(doc), summary);
     }
     void section(const Section& section) {
         text += fmt::format("\n## {}\n\n", section.title);
         entry(section.description->doc);
         example(section.description->doc);
-        const auto in_table = [this](const lua::Member& member) {
+        const auto in_list = [this](const lua::Member& member) {
             return !shared.empty() && calls_of(member.doc).empty();
         };
-        bool table = false;
+        bool any = false;
         for (const lua::Member& member : section.description->members) {
             // That each object has a text stands on the first page.
-            if (!in_table(member) || std::string_view(member.doc.signature).starts_with("tostring(")) continue;
-            if (!table) text += "\n| | |\n|---|---|\n";
-            table = true;
+            if (!in_list(member) || std::string_view(member.doc.signature).starts_with("tostring(")) continue;
+            if (!any) text += "\n";
+            any = true;
             row(member.doc);
         }
         for (const lua::Member& member : section.description->members) {
-            if (in_table(member)) continue;
+            if (in_list(member)) continue;
             text += fmt::format("\n### {}\n\n", listed_name(section, member));
             entry(member.doc);
             if (all) example(member.doc);

@@ -9,7 +9,7 @@
 namespace dinal::help {
 
 /// The page of that name: "" is docs/manual.md, which leads to the others by an index of all names; a topic is
-/// docs/manual/TOPIC.md, where what has no options is a row of a table; "all" is every entry as help() prints it, with
+/// docs/manual/TOPIC.md, where what has no options is a line of a list; "all" is every entry as help() prints it, with
 /// its example, for the tests. Fails if there is no such page.
 text::Expected<std::string> manual(std::string_view page = "");
 

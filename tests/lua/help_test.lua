@@ -44,7 +44,7 @@ test("the index of the manual names everything, and leads to what has options", 
 end)
 
 test("the page has what takes no options as a row, and options of several calls once", function()
-    has(page, "\n| `sys.I -> number` | The moment of inertia. |\n")
+    has(page, "\n- `sys.I -> number`: The moment of inertia.\n")
     has_not(page, "\n### sys.I\n")
     equal(select(2, index:gsub("\n%- `units`: names of the units, for cards", "")), 1)
     has(page, "- [shared](../manual.md#options-of-several-calls): `M`, `theta0`, `velocity0`")

@@ -756,7 +756,7 @@ class Help(unittest.TestCase):
         import re
         owners = {"excitation": dinal.excitation, "theory": dinal.theory, "friction": dinal.friction,
                   "integrator": dinal.integrator, "run": dinal.Run, "sys": dinal.System}
-        members = set(re.findall(r"^(?:### |\| `)(%s)[.:](\w+)" % "|".join(owners), manual, re.M))
+        members = set(re.findall(r"^(?:### |- `)(%s)[.:](\w+)" % "|".join(owners), manual, re.M))
         for owner, own in owners.items():
             self.assertGreater(len([name for of, name in members if of == owner]), 3, owner)
         for owner, name in sorted(members):
