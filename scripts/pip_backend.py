@@ -20,7 +20,6 @@ Version: {}
 Summary: A laboratory for oscillators with dry friction
 License: MIT
 Requires-Python: >=3.10
-Requires-Dist: numpy
 """
 WHEEL = """Wheel-Version: 1.0
 Generator: dinal

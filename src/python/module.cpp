@@ -25,6 +25,7 @@
 #include "source/value_text.hpp"
 #include "sweep/sweep_run.hpp"
 #include "terminal/display.hpp"
+#include "terminal/progress.hpp"
 #include "text/version.hpp"
 
 namespace dinal::python {
@@ -346,6 +347,7 @@ PYBIND11_MODULE(_dinal, module) {
     module.def("joined", joined);
     module.def("set_up", set_up);
     module.def("after_fork", after_fork);
+    module.def("show_no_progress_here", terminal::show_no_progress_here);
 }
 
 }  // namespace dinal::python

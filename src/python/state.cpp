@@ -175,7 +175,7 @@ int take_exception(lua_State* L) {
     const text::Error* facts = lua::facts_of(L, message);
     const text::Error known = facts != nullptr ? *facts : text::Error{};
     const py::object cause = *last_exception ? *last_exception : py::none();
-    exception = hooks().attr("error_of")(cause, py::bytes(message + during), py::bytes(known.call),
+    exception = hooks().attr("error_of")(cause, facts != nullptr, py::bytes(message + during), py::bytes(known.call),
                                          py::bytes(known.option), py::bytes(known.culprit));
     return 0;
 }

@@ -61,6 +61,7 @@ struct SweepWork {
     const PointGrid& grid;
     SweepResults& results;
     std::vector<std::size_t> points;  ///< to be done
+    std::size_t first = 0;            ///< the point of the first result
     long long seed = 0;               ///< of math.random, with the number of the point
     const char* call = "sweep";       ///< heads sentences
     double max_time = 0;              ///< seconds of a point; 0: any
@@ -68,7 +69,6 @@ struct SweepWork {
     const std::function<void(lua_State* worker)>& adapt;
     /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
     std::function<bool()> look = {};
-    std::function<void()> after_point = {};  ///< where one thread does all
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> finished = 0;
     std::atomic<bool> ends = false;
@@ -129,7 +129,6 @@ struct PointLoop {
             for (std::size_t i = first; i < last; ++i) {
                 if (lua::interrupt_requested() || work.ends || !point(work.points[i])) return;
                 work.finished.fetch_add(1, std::memory_order_relaxed);
-                if (work.after_point) work.after_point();
             }
         }
     }
@@ -161,35 +160,36 @@ struct PointLoop {
         }
         const int status = lua_pcall(L, 1, 1, handler);
         lua::settle_refusal();
-        if (work.max_time > 0 && is_given_up(number)) return true;
+        const std::size_t place = number - work.first;
+        if (work.max_time > 0 && is_given_up(place)) return true;
         if (status != LUA_OK && lua::interrupt_requested()) return false;
         const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
         if (!trouble.empty()) {
-            work.results.fail(number, trouble);
+            work.results.fail(place, trouble);
             return true;
         }
         lua_pushnil(L);
         while (lua_next(L, columns + 1) != 0) {
             lua_pushvalue(L, -2);
             lua_rawget(L, columns);
-            static_cast<double*>(lua_touserdata(L, -1))[number] = lua_type(L, -2) == LUA_TSTRING
-                                                                      ? work.results.word(lua::text_at(L, -2))
-                                                                  : lua_isboolean(L, -2) ? lua_toboolean(L, -2)
-                                                                                         : lua_tonumber(L, -2);
+            static_cast<double*>(lua_touserdata(L, -1))[place] = lua_type(L, -2) == LUA_TSTRING
+                                                                     ? work.results.word(lua::text_at(L, -2))
+                                                                 : lua_isboolean(L, -2) ? lua_toboolean(L, -2)
+                                                                                        : lua_tonumber(L, -2);
             lua_pop(L, 2);
         }
-        work.results.finish(number);
+        work.results.finish(place);
         return true;
     }
 
     /// Ends the task; whether it was given up, which is then its result.
-    [[nodiscard]] bool is_given_up(std::size_t number) const {
+    [[nodiscard]] bool is_given_up(std::size_t place) const {
         const bool late = watch.has_given_up();
         ++watch.task;
         watch.since = std::numeric_limits<double>::infinity();
         if (!late || lua::interrupt_requested()) return false;
         lua_sethook(L, nullptr, 0, 0);
-        work.results.fail(number, fmt::format("it ran longer than the {:g} s that max_time allows", work.max_time));
+        work.results.fail(place, fmt::format("it ran longer than the {:g} s that max_time allows", work.max_time));
         return true;
     }
 
@@ -310,12 +310,7 @@ public:
 
 private:
     void run_here(lua_State* L) {
-        terminal::Progress progress =
-            terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
         lua::WorkerWatch watch;
-        work_.after_point = [&] {
-            progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
-        };
         lua_pushcfunction(L, lua::guarded<work_on_points>);
         lua_pushvalue(L, function_);
         if (work_.adapt) work_.adapt(L);
@@ -486,7 +481,8 @@ public:
     SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {
         if (!task.file.empty()) open_journal();
         if (task.file.empty() && !task.points) results_ = take_unfinished(L_, print_);
-        if (!results_) results_ = std::make_shared<SweepResults>(task.grid.size(), chunk_size_for(task.grid.size()));
+        const std::size_t size = task.points ? task.points->second - task.points->first : task.grid.size();
+        if (!results_) results_ = std::make_shared<SweepResults>(size, chunk_size_for(size));
     }
 
     Data run() {
@@ -527,10 +523,6 @@ public:
         L_ = L;
         return journal_ && journal_->result() ? told(*journal_->result()) : finished();
     }
-    [[nodiscard]] std::size_t done() const {
-        return journal_ && journal_->result() ? results_->size() : results_->done();
-    }
-    [[nodiscard]] std::size_t size() const { return results_->size(); }
 
 private:
     void open_journal() {
@@ -549,17 +541,20 @@ private:
         if (const auto wrong = journal_->open()) lua::fail(L_, task_.call, *wrong);
     }
 
+    /// The point of the first result.
+    [[nodiscard]] std::size_t first() const { return task_.points ? task_.points->first : 0; }
+
     void work() {
         SweepWork work{.grid = task_.grid,
                        .results = *results_,
                        .points = {},
+                       .first = first(),
                        .seed = static_cast<long long>(task_.seed),
                        .call = task_.call,
                        .max_time = task_.max_time,
                        .adapt = task_.adapt};
-        const auto [first, last] = task_.points.value_or(std::pair<std::size_t, std::size_t>(0, task_.grid.size()));
-        for (std::size_t point = first; point < last; ++point) {
-            if (!results_->is_done(point)) work.points.push_back(point);
+        for (std::size_t place = 0; place < results_->size(); ++place) {
+            if (!results_->is_done(place)) work.points.push_back(work.first + place);
         }
         if (journal_) {
             work.look = [this] {
@@ -587,7 +582,9 @@ private:
     [[nodiscard]] Data told() const {
         const std::vector<std::size_t> points = results_->done_points();
         if (task_.told) return told(task_.told(*results_, points));
-        std::vector<DataColumn> columns = task_.grid.columns(points);
+        std::vector<std::size_t> places = points;
+        for (std::size_t& place : places) place += first();
+        std::vector<DataColumn> columns = task_.grid.columns(places);
         for (DataColumn& column : results_->columns(points)) columns.push_back(std::move(column));
         return told(std::move(columns));
     }

@@ -7,6 +7,7 @@ import concurrent.futures
 import contextlib
 import copy
 import gc
+import importlib.util
 import inspect
 import io
 import math
@@ -206,6 +207,21 @@ class Objects(unittest.TestCase):
             self.run.plot(y=["theta", "velocity"], ax=ax)
         dinal.plot([[0, 1], [1, 2]], ([0, 1], [2, 3], dict(style="fill")), ax=ax)
         self.assertEqual(len(ax.told["fill_between"]), 1)
+
+    def test_matplotlib(self):
+        if not importlib.util.find_spec("matplotlib"):
+            self.skipTest("no matplotlib: apt-get install python3-matplotlib")
+        import matplotlib
+        matplotlib.use("agg")
+        from matplotlib import pyplot
+        figure, axes = pyplot.subplots(2)
+        self.run.plot(y=["theta", "velocity"], ax=axes)
+        self.run.phase_plot(ax=axes[0])
+        self.sys.response(over={"frequency": [.1, .2, .3]}).plot(ax=axes[1])
+        dinal.identify(data=self.run).plot(ax=axes)
+        with tempfile.NamedTemporaryFile(suffix=".png") as file:
+            figure.savefig(file.name)
+            self.assertGreater(os.path.getsize(file.name), 5000)
 
     def test_at(self):
         times = np.linspace(0, 20, 7)
@@ -482,6 +498,11 @@ class Errors(unittest.TestCase):
                 call()
             self.assertIn(words, str(caught.exception))
             self.assertNotRegex(str(caught.exception), r"\{|nil|a table|[a-z]:[a-z]")
+
+    def test_errors_of_users_stay(self):
+        with self.assertRaises(dinal.Error) as caught:
+            dinal.lua("error('a:b must be { c = 1 }, got nil', 0)")
+        self.assertEqual((str(caught.exception), type(caught.exception)), ("a:b must be { c = 1 }, got nil", dinal.Error))
 
     def test_a_run_that_fails_warns(self):
         with self.assertWarnsRegex(dinal.RunWarning, "simulate: ") as caught:

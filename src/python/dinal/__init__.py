@@ -10,7 +10,23 @@ are the options, columns are NumPy arrays. Names that are keywords of Python end
 function has its help: help(dinal.system), dinal.help("dead zone").
 """
 
+import importlib.machinery as _machinery
+import importlib.util as _util
 import os as _os
+import sys as _sys
+
+
+def _find_numpy():
+    """In a plain virtual environment Debian's NumPy, and nothing else of Debian."""
+    if "numpy" in _sys.modules or _util.find_spec("numpy"):
+        return
+    spec = _machinery.PathFinder.find_spec("numpy", ["/usr/lib/python3/dist-packages"])
+    if spec is not None:
+        module = _sys.modules["numpy"] = _util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+
+
+_find_numpy()
 
 from . import _dinal, _objects, _words
 from ._objects import Error, Function, Object, Record, RunWarning

@@ -143,10 +143,11 @@ class Module(types.ModuleType):
 
 # ---- for the C++ side
 
-def error_of(cause, message, *facts):
-    call, option, culprit = (fact.decode(errors="replace") for fact in facts)
-    message = _words.in_sentence(message.decode(errors="replace"))
-    kind = next((kind for said, kind in KINDS if (call or culprit) and re.search(said, message)), None)
+def error_of(cause, is_own, message, *facts):
+    """Of the program's own errors the words and the kind are Python's; others are of the user's Lua."""
+    message, call, option, culprit = (text.decode(errors="replace") for text in (message, *facts))
+    message = _words.in_sentence(message) if is_own else message
+    kind = next((kind for said, kind in KINDS if is_own and re.search(said, message)), None)
     error = error_again(kind or Exception, message, _words.in_sentence(call), option, culprit)
     error.__cause__ = cause
     return error

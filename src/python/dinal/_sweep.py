@@ -82,6 +82,7 @@ def part(run, options, first, last, home):
     """The points from the first to the one before the last, as data."""
     if os.getpid() != home and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that collects
+        _dinal.show_no_progress_here()
     if isinstance(run, LuaFile):
         run = run_of_file(run.text, run.name)
     if not isinstance(run, Object) and parameters_of(run) == 2:

@@ -301,7 +301,7 @@ def signature_of(member, has_self, owner):
     if len(shown) == has_self and not only_options and not re.search(r"(\(|\{ ?)[)}]$", head):
         shown["arguments"] = P("arguments", P.VAR_POSITIONAL, annotation=Type("Any"))
     for name, words, _, needed, kind, choices, wanted in member["options"]:
-        default = P.empty if needed and not several else Default(words.partition(" = ")[2] or "...")
+        default = P.empty if needed and not several else Default(NAMES.get(words.partition(" = ")[2]) or words.partition(" = ")[2] or "...")
         if name == "k" and owner == "":
             default = Default("...")
         own = python_name(name)
