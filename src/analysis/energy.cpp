@@ -37,24 +37,25 @@ public:
         base_.add(work.base);
         acts_.add(work.acts);
         impacts_.add(work.impacts);
+        kept_.add(work.kept);
     }
     [[nodiscard]] Work value() const {
-        return {input_.value(), viscous_.value(), dry_.value(),    belt_.value(),
-                base_.value(),  acts_.value(),    impacts_.value()};
+        return {input_.value(), viscous_.value(), dry_.value(),     belt_.value(),
+                base_.value(),  acts_.value(),    impacts_.value(), kept_.value()};
     }
 
 private:
-    Sum input_, viscous_, dry_, belt_, base_, acts_, impacts_;
+    Sum input_, viscous_, dry_, belt_, base_, acts_, impacts_, kept_;
 };
 
 Work operator-(const Work& a, const Work& b) {
-    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry,        a.belt - b.belt,
-            a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts};
+    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry,         a.belt - b.belt,
+            a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts, a.kept - b.kept};
 }
 
 Work operator+(const Work& a, const Work& b) {
-    return {a.input + b.input, a.viscous + b.viscous, a.dry + b.dry,        a.belt + b.belt,
-            a.base + b.base,   a.acts + b.acts,       a.impacts + b.impacts};
+    return {a.input + b.input, a.viscous + b.viscous, a.dry + b.dry,         a.belt + b.belt,
+            a.base + b.base,   a.acts + b.acts,       a.impacts + b.impacts, a.kept + b.kept};
 }
 
 Stored operator+(const Stored& a, const Stored& b) {
@@ -176,7 +177,8 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose who
     energy.t_start = trajectory.t_start;
     energy.t_end = trajectory.t_stop;
     energy.finish = store.at(cut.back().end);
-    energy.total.change = store.change(trajectory.initial, cut.back().end);
+    energy.finish.spring += energy.total.work.kept;
+    energy.total = {energy.total.work, store.change(trajectory.initial, cut.back().end)};
     energy.whose = whose;
     if (!std::isfinite(energy.flow) || !std::isfinite(energy.total.error())) {
         return text::Error{
@@ -192,7 +194,7 @@ Energy sum_of(std::vector<Energy> joints) {
     for (std::size_t j = 1; j < joints.size(); ++j) {
         const Energy& own = joints[j];
         sum.start = sum.start + own.start, sum.finish = sum.finish + own.finish;
-        sum.total = {sum.total.work + own.total.work, sum.total.change + own.total.change};
+        sum.total.work = sum.total.work + own.total.work, sum.total.change = sum.total.change + own.total.change;
         sum.flow += own.flow;
     }
     return sum;
@@ -209,8 +211,9 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose
         const model::State y{theta[row], velocity[row]};
         const Stored s = store.at(y);
         const Balance balance{sum.value(), store.change(trajectory.initial, y)};
-        columns.row(row++) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
-            balance.error(), balance.work.belt, balance.work.base, balance.work.acts, balance.work.impacts;
+        columns.row(row++) << balance.work.input, s.kinetic, s.spring + balance.work.kept, balance.work.viscous,
+            balance.work.dry, balance.error(), balance.work.belt, balance.work.base, balance.work.acts,
+            balance.work.impacts;
     };
     WorkSum before;
     trajectory.course->legs([&](const motion::Leg& leg) {

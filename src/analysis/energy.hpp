@@ -29,6 +29,9 @@ using motion::Work;
 struct Balance {
     Work work;
     Stored change;
+    Balance() = default;
+    /// What springs with a memory store is told by the work on them.
+    Balance(const Work& done, const Stored& by_state) : work(done), change(by_state) { change.spring += done.kept; }
     /// What does not add up: input - (kinetic + spring + viscous + dry + impacts).
     [[nodiscard]] double error() const {
         const double given = work.belt + work.base + work.acts;

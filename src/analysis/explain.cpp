@@ -91,6 +91,7 @@ public:
 
     std::string told() {
         if (joint_.rigid) return tell_rigid();
+        if (!is_link_ && whole_.system.bodies[joint_.first()].moved) return tell_moved();
         tell_setting();
         tell_start();
         tell_counts();
@@ -105,7 +106,7 @@ private:
     [[nodiscard]] bool named() const { return whole_.system.named; }
     [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
     /// All torques on a standing mass and the limit of its friction are known.
-    [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.friction.is_constant(); }
+    [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
     [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
     /// Where a stretch ended.
     [[nodiscard]] static std::string place(const Stretch& s) {
@@ -165,6 +166,19 @@ private:
         } else {
             say("{} rubs on a belt of velocity vb.", name_or("The mass"));
         }
+    }
+
+    std::string tell_moved() {
+        const auto torque = run_.find("torque");
+        say("{} is moved by its {}", joint_.name,
+            whole_.system.bodies[joint_.first()].moved->by_angle ? "angle" : "velocity");
+        if (torque && run_.size() > 0) {
+            const auto column = run_.rows.col(*torque);
+            add(", which takes torques from {:.5g} to {:.5g} at the rows", column.minCoeff(), column.maxCoeff());
+        }
+        add(".");
+        end_paragraph();
+        return std::move(text_);
     }
 
     std::string tell_rigid() {
@@ -297,6 +311,11 @@ private:
         const auto Re = [&](model::Motion way) { return law.holding(way); };
         using enum model::Motion;
         if (joint_.friction.bristle() != nullptr) return "friction of bristles, which neither stick nor slip";
+        if (law.is_one_way()) return fmt::format("a freewheel with Rd = {:.5g}", Rd(forward));
+        if (!joint_.friction.sliders.empty()) {
+            return fmt::format("{} behind springs{}", text::counted(joint_.friction.sliders.size(), "dry slider"),
+                               law.none() ? "" : " beside dry friction");
+        }
         if (!joint_.friction.is_constant()) return "dry friction that varies";
         if (law.none()) return "no dry friction";
         if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {

@@ -298,9 +298,15 @@ private:
 
 }  // namespace
 
-SteadyQuestion SteadyQuestion::of(model::AssemblyHandle system, model::Drive drive, std::optional<std::size_t> joint) {
-    model::Oscillator body = motion::engine::seen_alone(*system, joint.value_or(0)).value();
-    return {.system = std::move(system), .drive = std::move(drive), .body = std::move(body), .joint = joint};
+text::Expected<SteadyQuestion> SteadyQuestion::of(model::AssemblyHandle system, model::Drive drive,
+                                                  std::optional<std::size_t> joint) {
+    if (system->has_moved()) {
+        return text::Error{"a body is moved by its theta or velocity: simulate does that, steady motions do not yet"};
+    }
+    auto body = motion::engine::seen_alone(*system, joint.value_or(0));
+    if (!body) return body.error();
+    return SteadyQuestion{
+        .system = std::move(system), .drive = std::move(drive), .body = std::move(body).value(), .joint = joint};
 }
 
 SteadyQuestion SteadyQuestion::of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats) {

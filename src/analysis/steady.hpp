@@ -16,6 +16,7 @@
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
 #include "motion/engine/run.hpp"
+#include "text/expected.hpp"
 
 namespace dinal::analysis {
 
@@ -39,7 +40,9 @@ struct SteadyQuestion {
     double longest = model::never;  ///< stretch of its runs, time units
 
     /// About one body without a name and with constant friction, or all or one of others.
-    static SteadyQuestion of(model::AssemblyHandle system, model::Drive drive, std::optional<std::size_t> joint = {});
+    /// Fails where a body is moved by its theta or velocity.
+    static text::Expected<SteadyQuestion> of(model::AssemblyHandle system, model::Drive drive,
+                                             std::optional<std::size_t> joint = {});
 
     /// About one body without a name.
     static SteadyQuestion of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats);

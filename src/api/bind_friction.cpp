@@ -11,6 +11,8 @@
 #include "model/laws/asymmetric.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
+#include "model/laws/freewheel.hpp"
+#include "model/laws/jenkins.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
 #include "model/laws/user_law.hpp"
@@ -108,6 +110,22 @@ constexpr lua::Member friction_module_members[] = {
       "law = friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }\n"
       "print(law:torque(1), law:torque(-1))  --> 0.1\t0.3",
       {&laws::asymmetric_call}}},
+    {lua::a_function<law_of_options<laws::Freewheel, laws::freewheel_call>>,
+     {"friction.freewheel{ OPTIONS } -> law",
+      "A one-way clutch: it turns forward (slip > 0) against Rd, and holds any torque backward. What would turn it "
+      "backward at once, such as an impact, stops it.",
+      "rig = system{ bodies = { motor = { I = 1 }, load = { I = 1 } },\n    links = { clutch = { \"load\", \"motor\", "
+      "friction = friction.freewheel{} } } }\n"
+      "run = rig:simulate{ M = { motor = 1 }, t_end = 2 }\nprint(run.load.velocity[#run])  --> 1.0",
+      {&laws::freewheel_call}}},
+    {lua::a_function<law_of_options<laws::Jenkins, laws::jenkins_call>>,
+     {"friction.jenkins{ OPTIONS } -> law",
+      "A spring in series with a dry slider: the torque is stiffness (x - s), at most Rd, relaxed at the start. Its "
+      "slider has the events stick and slip; its spring counts as stored energy. Only system{ ... } takes it, also in "
+      "a list of laws, which act side by side: Iwan's hysteresis.",
+      "sys = system{ I = 1, k = 1, friction = { friction.jenkins{ stiffness = 9, Rd = 1 }, friction.coulomb{ Rd = 0.1 } "
+      "} }\nprint(sys:simulate{ M = 2, t_end = 10 }.events.kind[1])  --> slip",
+      {&laws::jenkins_call}}},
     {lua::a_function<law_of_options<laws::Tabulated, laws::tabulated_call>>,
      {"friction.table{ OPTIONS } -> law",
       "Measured friction: straight lines between torques at some speeds, the same in both directions.",

@@ -488,7 +488,7 @@ int steady_of_system(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     const std::optional<double> period = asked_period(options);
-    auto question = analysis::SteadyQuestion::of(system, asked_drive(L, options, *system));
+    auto question = options.value_or_fail(analysis::SteadyQuestion::of(system, asked_drive(L, options, *system)));
     question.periods = asked.periods.value_or(0);
     find_period(L, question);
     question.repeats = repetition_or_fail(L, options, question, period);
@@ -505,7 +505,7 @@ int steady_of_run(lua_State* L) {
         options.fail({"a body has no steady motion by itself: ask the run of all bodies, run:steady()"});
     }
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
-    auto question = analysis::SteadyQuestion::of(run->origin->system, run->origin->drive);
+    auto question = options.value_or_fail(analysis::SteadyQuestion::of(run->origin->system, run->origin->drive));
     question.periods = asked.periods.value_or(0);
     const motion::Trajectory& ended = run->trajectory;
     if (question.is_plain()) {

@@ -50,6 +50,19 @@ void check_rigid_start(const lua::Options& options, const model::Assembly& syste
                                           joint.name, system.angle_in_words(joint), given, speed));
 }
 
+void check_one_way(const lua::Options& options, const model::Assembly& system, std::size_t j,
+                   const model::Drive& drive) {
+    const model::Joint& joint = system.joints[j];
+    const double belt = drive.belts[j].components().empty() ? 0 : drive.belts[j].value_after(0);
+    double size = std::fabs(belt);
+    for (const auto& [body, by] : joint.of) size += std::fabs(by * drive.velocity0[body]);
+    const double slip = joint.sum(drive.velocity0) - belt;
+    constexpr double rounded = 1e-14;
+    if (slip >= -rounded * size) return;
+    options.fail("velocity0", fmt::format("velocity0: the freewheel{} turns forward only, but begins with {:.6g}",
+                                          system.named ? " " + joint.name : "", slip));
+}
+
 }  // namespace
 
 model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::Assembly& system) {
@@ -82,12 +95,22 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
                 options.fail(name, fmt::format("{} must be a finite number, got {}", part_of_option(system, name, i),
                                                lua::describe(L, -1)));
             }
+            const auto& moved = system.bodies[i].moved;
+            if (moved && (moved->by_angle || to == &drive.velocity0)) {
+                options.fail(name, fmt::format("{}: this body is moved by its {}", part_of_option(system, name, i),
+                                               moved->by_angle ? "theta" : "velocity"));
+            }
             (*to)[i] = lua_tonumber(L, -1);
         });
     }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const model::Joint& joint = system.joints[j];
-        if (joint.rigid) check_rigid_start(options, system, joint, drive.velocity0);
+        // What is moved takes those along that are linked to it.
+        const bool free = std::none_of(joint.of.begin(), joint.of.end(), [&](const model::Weight& weight) {
+            return system.bodies[weight.body].moved.has_value();
+        });
+        if (joint.rigid && free) check_rigid_start(options, system, joint, drive.velocity0);
+        if (joint.friction.law.is_one_way() && free) check_one_way(options, system, j, drive);
         if (!joint.walls) continue;
         const double angle = joint.sum(drive.theta0);
         if (auto wrong = joint.walls->crossed_by(angle)) {

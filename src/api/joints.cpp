@@ -19,6 +19,8 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
+#include "model/laws/freewheel.hpp"
+#include "model/laws/sum.hpp"
 #include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "source/describe.hpp"
@@ -31,7 +33,24 @@ namespace {
 
 namespace engine = motion::engine;
 
-constexpr text::Option inertia_option[] = {model::mechanical_options[0]};
+constexpr text::Option inertia_option[] = {
+    {"I", "torque time^2 per rad", text::its_own, text::positive,
+     "moment of inertia; needed unless the body is moved by theta or velocity",
+     text::fills<&model::OscillatorParameters::inertia>},
+};
+constexpr text::Option moved_options[] = {
+    {.name = "theta",
+     .unit = "rad",
+     .meaning = "moves the body to these angles: a number, an excitation or a function of t; the column torque is what "
+                "that takes",
+     .object = "excitation",
+     .wanted = "a number, an excitation or a function of t"},
+    {.name = "velocity",
+     .unit = "rad per time unit",
+     .meaning = "moves the body at this velocity, from theta0 on: a number, an excitation or a function of t",
+     .object = "excitation",
+     .wanted = "a number, an excitation or a function of t"},
+};
 constexpr text::Option joint_options[] = {
     {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
      text::fills<&model::OscillatorParameters::stiffness>},
@@ -39,7 +58,7 @@ constexpr text::Option joint_options[] = {
     model::mechanical_options[6],
     model::mechanical_options[7],
 };
-constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
+constexpr auto body_options = text::joined(inertia_option, moved_options, joint_options, friction_options);
 constexpr text::Option link_numbers[] = {
     {.name = "ratio",
      .otherwise = "1",
@@ -150,10 +169,19 @@ model::Joint asked_joint(lua_State* L, const lua::Options& options, double& iner
     return joint;
 }
 
-/// The same from the table on the top.
-model::Joint read_joint(lua_State* L, const std::string& call, std::span<const text::Option> rows, double& inertia) {
-    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", rows};
-    return asked_joint(L, lua::Options(L, lua_gettop(L), own), inertia);
+/// A body, and its joint with the ground, from the table on the top.
+model::Joint read_body(lua_State* L, const std::string& call, model::Body& body) {
+    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", body_options};
+    const lua::Options options(L, lua_gettop(L), own);
+    for (const char* motion : {"theta", "velocity"}) {
+        if (!options.has(motion)) continue;
+        if (body.moved) options.fail(motion, "theta and velocity exclude each other; give one of them");
+        body.moved = model::Moved{.by_angle = *motion == 't', .motion = read_motion(L, options, motion)};
+    }
+    model::Joint joint = asked_joint(L, options, body.inertia);
+    if (!options.has("I") && !body.moved) options.missing("I");
+    if (body.moved && !options.has("I")) body.inertia = 0, body.moved->without_inertia = true;
+    return joint;
 }
 
 }  // namespace
@@ -290,11 +318,10 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     system.units = asked_units(L, options).value_or(model::Units());
     for (std::size_t i = 0; i < names.size(); ++i) {
         lua_getfield(L, -1, names[i].c_str());
-        double inertia = 0;
-        model::Joint joint =
-            read_joint(L, fmt::format("{}: bodies.{}", options.call(), names[i]), body_options, inertia);
+        model::Body body{.name = names[i]};
+        model::Joint joint = read_body(L, fmt::format("{}: bodies.{}", options.call(), names[i]), body);
         joint.name = names[i], joint.of = {{i, 1}};
-        system.bodies.push_back({names[i], inertia});
+        system.bodies.push_back(std::move(body));
         system.joints.push_back(std::move(joint));
         lua_pop(L, 1);
     }
@@ -324,6 +351,49 @@ int push_body(lua_State* L, const lua::Options& options) {
     return push_alone(L, options.call(), system, 0);
 }
 
+namespace {
+
+/// The laws of the list on the top, side by side: their sum, and the sliders, which go into `friction`.
+model::Friction read_list(lua_State* L, const lua::Options& options, model::ContactFriction& friction) {
+    using enum model::Motion;
+    model::Friction main;
+    std::array<double, 2> sliding{}, holding{};
+    for (lua_Integer i = 1, n = static_cast<lua_Integer>(lua_rawlen(L, -1)); i <= n; ++i) {
+        lua_rawgeti(L, -1, i);
+        const auto* law = lua::test<model::Friction>(L, -1);
+        if (law == nullptr) {
+            options.fail("friction",
+                         fmt::format("friction[{}] must be a law such as friction.jenkins{{ stiffness = 100, "
+                                     "Rd = 1 }}, got {}",
+                                     i, lua::describe(L, -1)));
+        }
+        friction.listed.push_back(*law);
+        if (law->as<model::laws::Bristle>() != nullptr || (law->depends_on_speed() && main.depends_on_speed())) {
+            options.fail("friction",
+                         fmt::format("friction[{}]: a list takes one law that depends on the speed, and none of "
+                                     "bristles",
+                                     i));
+        }
+        if (const auto* slider = law->as<model::laws::Jenkins>()) {
+            friction.sliders.push_back(*slider);
+        } else if (law->depends_on_speed()) {
+            main = *law;
+        } else {
+            for (const auto& [side, way] : {std::pair(0U, backward), std::pair(1U, forward)}) {
+                sliding.at(side) += law->sliding(way, 0), holding.at(side) += law->holding(way);
+            }
+        }
+        lua_pop(L, 1);
+    }
+    if (main.depends_on_speed()) {
+        return model::laws::Sum<true>{.main = main, .more_sliding = sliding, .more_holding = holding};
+    }
+    if (sliding == std::array<double, 2>{} && holding == std::array<double, 2>{}) return {};
+    return model::laws::Sum<false>{.main = {}, .more_sliding = sliding, .more_holding = holding};
+}
+
+}  // namespace
+
 model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
     model::ContactFriction friction;
     const auto varying = [&](const char* name) -> std::optional<model::Excitation> {
@@ -349,12 +419,30 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
     // A constant load of a law is part of it, so that nobody else needs to know; of bristles it stretches the state.
     const auto of_law = [&](const model::Friction& law) {
         friction.law = law;
+        if (const auto* slider = law.as<model::laws::Jenkins>()) friction.sliders = {*slider}, friction.law = {};
+        if ((!friction.sliders.empty() || law.is_one_way()) && friction.normal && !normal) {
+            options.fail("normal", "the normal load of freewheel and jenkins must be a number");
+        }
         if (!normal || friction.bristle() != nullptr) return friction;
-        friction.law = law.under(*normal);
+        friction.law = friction.law.under(*normal);
         friction.normal.reset();
         return friction;
     };
     options.push("friction");
+    if (lua_istable(L, -1) && lua_rawlen(L, -1) > 0) {
+        for (const char* other : {"Rd", "Re"}) {
+            if (options.has(other)) options.fail(other, "friction and Rd exclude each other; give one of them");
+        }
+        const model::Friction law = read_list(L, options, friction);
+        lua_pop(L, 1);
+        const std::vector<model::laws::Jenkins> sliders = std::move(friction.sliders);
+        of_law(law);
+        friction.sliders = sliders;
+        if (!sliders.empty() && friction.normal) {
+            options.fail("normal", "the normal load of freewheel and jenkins must be a number");
+        }
+        return friction;
+    }
     const bool function = lua::is_callable(L, -1) && lua::test<model::Friction>(L, -1) == nullptr;
     if (function) {
         friction.function =
@@ -429,7 +517,12 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
             return;
         }
     } else {
-        lua::set_number(L, "I", system.bodies[j].inertia);
+        const auto& moved = system.bodies[j].moved;
+        if (!moved || !moved->without_inertia) lua::set_number(L, "I", system.bodies[j].inertia);
+        if (moved) {
+            push_acting(L, moved->motion);
+            lua_setfield(L, -2, moved->by_angle ? "theta" : "velocity");
+        }
     }
     lua::set_number(L, "k", joint.stiffness);
     lua::set_number(L, "C", joint.damping);
@@ -443,7 +536,16 @@ void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
         lua_setfield(L, -2, "friction");
     }
     const model::Friction law = friction.law.under(1);
-    if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
+    if (!friction.listed.empty()) {
+        lua_newtable(L);
+        for (std::size_t k = 0; k < friction.listed.size(); ++k) {
+            lua::push(L, friction.listed[k]);
+            lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
+        }
+        lua_setfield(L, -2, "friction");
+    } else if (!friction.sliders.empty()) {
+        lua::set_value(L, "friction", model::Friction(friction.sliders.front()));
+    } else if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
         lua::set_number(L, "Rd", coulomb->kinetic);
         lua::set_number(L, "Re", coulomb->breakaway);
     } else if (!law.none()) {

@@ -313,7 +313,7 @@ private:
         const double frequency = frequency_at(x);
         auto M = options_.value_or_fail(model::Excitation::make(
             model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
-        auto question = analysis::SteadyQuestion::of(system_, {std::move(M), start()});
+        auto question = options_.value_or_fail(analysis::SteadyQuestion::of(system_, {std::move(M), start()}));
         question.repeats = {0, 1 / frequency};
         return question;
     }

@@ -21,6 +21,7 @@
 #include "model/excitation.hpp"
 #include "model/friction.hpp"
 #include "model/laws/bristle.hpp"
+#include "model/laws/jenkins.hpp"
 #include "model/spring.hpp"
 #include "model/units.hpp"
 #include "model/walls.hpp"
@@ -33,6 +34,8 @@ struct ContactFriction {
     /// Instead of the law's torque while sliding: of (speed, t, theta, velocity, states). The speed is the first of the
     /// states that it is given.
     std::shared_ptr<UserFunction> function = {};
+    std::vector<laws::Jenkins> sliders = {};  ///< beside the law
+    std::vector<Friction> listed = {};        ///< the laws of a list, of which law and sliders were made
     /// Instead of the law's numbers, backward and forward.
     std::array<std::optional<Excitation>, 2> sliding = {}, holding = {};
     /// What multiplies both torques, and counts as 0 where it is negative.
@@ -45,12 +48,23 @@ struct ContactFriction {
         return bristle() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
                !holding[1];
     }
+    /// The law, or another torque, can make the contact stick.
     [[nodiscard]] bool none() const { return is_constant() && law.none(); }
+    /// Returns whether friction is what an Oscillator can have.
+    [[nodiscard]] bool is_plain() const { return is_constant() && sliders.empty() && !law.is_one_way(); }
+};
+
+/// The given motion of a body: its angle, or its velocity.
+struct Moved {
+    bool by_angle = true;
+    Excitation motion;
+    bool without_inertia = false;
 };
 
 struct Body {
     std::string name;
-    double inertia = 1;
+    double inertia = 1;  ///< may be 0 where it is moved
+    std::optional<Moved> moved = {};
 };
 
 struct Weight {
@@ -81,7 +95,7 @@ struct Joint {
     }
     [[nodiscard]] const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
     /// Returns whether it is what an Oscillator can be.
-    [[nodiscard]] bool is_plain() const { return friction.is_constant() && !stops; }
+    [[nodiscard]] bool is_plain() const { return friction.is_plain() && !stops; }
     /// Returns whether it links two bodies without a gear.
     [[nodiscard]] bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
     /// Returns whether sums of what its bodies have are rounded where they are 0.
@@ -108,6 +122,9 @@ struct Assembly {
     /// One body without a name, of which an Oscillator says all.
     [[nodiscard]] bool is_plain() const { return !named && joints.front().is_plain(); }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+    [[nodiscard]] bool has_moved() const {
+        return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.moved.has_value(); });
+    }
     [[nodiscard]] bool is_linked(std::size_t body) const {
         return std::any_of(joints.begin() + static_cast<std::ptrdiff_t>(bodies.size()), joints.end(),
                            [body](const Joint& joint) { return joint.is_on(body); });
@@ -121,7 +138,8 @@ struct Assembly {
             for (const auto& [body, by] : joint.of) stiffness[body] += by * by * joint.stiffness;
         }
         for (std::size_t i = 0; i < bodies.size(); ++i) {
-            periods.push_back(2 * std::numbers::pi / std::sqrt(stiffness[i] / bodies[i].inertia));
+            periods.push_back(bodies[i].moved ? never
+                                              : 2 * std::numbers::pi / std::sqrt(stiffness[i] / bodies[i].inertia));
         }
         return periods;
     }

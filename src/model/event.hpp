@@ -17,16 +17,20 @@ enum class EventKind {
     opened,    ///< nothing presses on the contact any more
     closed,    ///< something presses on it again
     released,  ///< an elastic wall pushes no more
+    slider_sticks,
+    slider_slips,  ///< of a Jenkins element, whose contact has none of its own
 };
-inline constexpr int event_kind_count = 10;
+inline constexpr int event_kind_count = 12;
 
 constexpr std::string_view name(EventKind kind) {
     switch (kind) {
         case EventKind::turn:
             return "turn";
         case EventKind::stick:
+        case EventKind::slider_sticks:
             return "stick";
         case EventKind::slip:
+        case EventKind::slider_slips:
             return "slip";
         case EventKind::rest:
             return "rest";

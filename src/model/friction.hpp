@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -83,7 +84,9 @@ public:
     [[nodiscard]] double sliding(Motion way, double speed) const {
         return law_ ? normal_ * law_->sliding(way, speed) : 0;
     }
-    [[nodiscard]] double holding(Motion way) const { return law_ ? normal_ * law_->holding(way) : 0; }
+    [[nodiscard]] double holding(Motion way) const { return law_ && normal_ > 0 ? normal_ * law_->holding(way) : 0; }
+    /// Returns whether it never lets the contact slip backward.
+    [[nodiscard]] bool is_one_way() const { return std::isinf(holding(Motion::backward)); }
     [[nodiscard]] bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
     /// Rd; the greater one of a law with other numbers each way, at speed 0 where a law has no Rd of its own.
     [[nodiscard]] double kinetic() const;

@@ -39,9 +39,13 @@ Oscillator with_functions(const Oscillator& system, auto&& other) {
 
 AssemblyHandle with_functions(const AssemblyHandle& rig, auto&& other) {
     Assembly changed = *rig;
+    for (Body& body : changed.bodies) {
+        if (body.moved) body.moved->motion = other(body.moved->motion);
+    }
     for (Joint& joint : changed.joints) {
         ContactFriction& rubs = joint.friction;
         rubs.law = with_functions(rubs.law, other);
+        for (Friction& law : rubs.listed) law = with_functions(law, other);
         joint.spring = with_functions(joint.spring, other);
         if (rubs.function != nullptr) rubs.function = other(rubs.function);
         for (auto* value :

@@ -21,6 +21,7 @@ struct Work {
     double base = 0;     ///< of the shaking support
     double acts = 0;     ///< of what a user did at his events
     double impacts = 0;  ///< lost at walls
+    double kept = 0;     ///< stored in the springs of sliders
 };
 
 /// A stretch of smooth motion, integrated as exactly as it was computed. Times are counted from its beginning.

@@ -62,6 +62,11 @@ std::string events_text(std::span<const model::Event> events) {
     if (events.empty()) return "no events";
     std::array<std::size_t, model::event_kind_count> counts{};
     for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
+    const auto add = [&](model::EventKind to, model::EventKind from) {
+        counts.at(static_cast<std::size_t>(to)) += counts.at(static_cast<std::size_t>(from));
+    };
+    add(model::EventKind::stick, model::EventKind::slider_sticks);
+    add(model::EventKind::slip, model::EventKind::slider_slips);
     std::string parts;
     for (const model::EventKind kind :
          {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest,

@@ -57,6 +57,10 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
         if (joint.rigid) parts.emplace_back("rigid = true");
     } else {
         number("I", system.bodies[j].inertia);
+        if (const auto& moved = system.bodies[j].moved) {
+            parts.push_back(
+                fmt::format("{} = {}", moved->by_angle ? "theta" : "velocity", describe(L, moved->motion, whole)));
+        }
     }
     if (system.named) {
         number("k", joint.stiffness);
@@ -73,7 +77,15 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
     if (friction.function != nullptr) parts.push_back("friction = " + function_text(L, *friction.function, whole));
     varying("Rd", friction.sliding[1]);
     varying("Re", friction.holding[1]);
-    const bool none = friction.law.under(1).none();
+    const bool none = friction.law.under(1).none() || !friction.listed.empty();
+    if (!friction.listed.empty()) {
+        std::string list;
+        for (const model::Friction& law : friction.listed)
+            list += (list.empty() ? " " : ", ") + lua_text(L, law, whole);
+        parts.push_back("friction = {" + list + " }");
+    } else if (!friction.sliders.empty()) {
+        parts.push_back("friction = " + friction.sliders.front().lua_text());
+    }
     if (const auto* law = friction.law.as<model::laws::Coulomb>(); law != nullptr && !none) {
         parts.push_back(fmt::format("Rd = {}, Re = {}", law->kinetic, law->breakaway));
     } else if (!none) {

@@ -262,7 +262,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
     }
     if (m_ > 0) {
         each_node([&](std::size_t j, const Moment& at) {
-            mechanics_.rates(at, rate_.data());
+            mechanics_.rates(at, rate_.data(), &mode);
             for (std::size_t k = 0; k < m_; ++k) {
                 found_[frame.groups() + k][j] = rate_[k];
                 good = good && std::isfinite(rate_[k]);
@@ -403,7 +403,7 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
             for (const auto& [group, by] : frame.bodies[i]) out[group] += by * of_bodies[i];
         }
         for (std::size_t g = 0; g < groups; ++g) out[g] /= frame.inertia[g];
-        mechanics_.rates(at, out.data() + groups);
+        mechanics_.rates(at, out.data() + groups, &mode);
         return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
     };
     std::vector<double> above, below;
@@ -582,8 +582,9 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     const std::size_t groups = frame.groups(), count = groups + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    if (slopes_of_ != frame.bodies || slopes_pressed_ != mode.presses) {
-        slopes_known_ = false, slopes_of_ = frame.bodies, slopes_pressed_ = mode.presses;
+    if (slopes_of_ != frame.bodies || slopes_pressed_ != mode.presses || slopes_sliding_ != mode.sliders) {
+        slopes_known_ = false, slopes_of_ = frame.bodies, slopes_pressed_ = mode.presses,
+        slopes_sliding_ = mode.sliders;
     }
     enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
@@ -1202,7 +1203,7 @@ bool Collocation::found_noise(const Segment& s, const Mode& mode) {
             s.state(s.start.until(t) / s.h - 1, y);
             const Moment at{t, Side::at, y};
             if (i >= n_) {
-                mechanics_.rates(at, rates.data());
+                mechanics_.rates(at, rates.data(), &mode);
                 return rates[i - n_];
             }
             mechanics_.loads_of_time(t, Side::at, loads);

@@ -190,6 +190,7 @@ private:
     Eigen::MatrixXd slopes_;
     std::vector<Frame::Shape> slopes_of_;  ///< the shapes of bodies for which slopes_ was computed
     std::vector<int> slopes_pressed_;      ///< which elastic walls were pressed then
+    std::vector<model::Motion> slopes_sliding_;
     bool slopes_known_ = false;
     std::map<double, Factors> factors_;
     std::pair<const double, Factors>* last_factors_ = nullptr;

@@ -25,13 +25,13 @@ public:
         const double x = std::min(std::min(since_start, kept_.length) / kept_.h - 1, 1.0);
         return {cheb::value(own.input, x), cheb::value(own.viscous, x), cheb::value(own.dry, x),
                 cheb::value(own.belt, x),  cheb::value(own.base, x),    0,
-                cheb::value(own.stop, x)};
+                cheb::value(own.stop, x),  cheb::value(own.kept, x)};
     }
 
 private:
     using Integral = cheb::Series<2 * node_count>;
     struct Integrals {
-        Integral input{}, viscous{}, dry{}, belt{}, base{}, stop{};
+        Integral input{}, viscous{}, dry{}, belt{}, base{}, stop{}, kept{};
     };
     [[nodiscard]] Series whole(std::size_t k) const {
         Series series = kept_.series[k];
@@ -58,9 +58,20 @@ private:
         Series damping = v;
         for (double& c : damping) c *= own.damping;
         sums.viscous = work(damping, v);
-        if (at_nodes.stop != nullptr) sums.stop = work(cheb::fit(*at_nodes.stop), v);
+        const Series slip = difference(v, belt);
+        if (at_nodes.springs != nullptr) sums.kept = work(cheb::fit(*at_nodes.springs), at_nodes.presses ? v : slip);
+        if (at_nodes.presses) {
+            sums.stop = work(v, v);
+            for (double& c : sums.stop) c *= own.stops->damping;
+        }
         if (at_nodes.belt != nullptr) sums.belt = work(friction, belt);
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
+        if (at_nodes.slides != 0) {
+            Series torque{};
+            torque[0] = at_nodes.slides;
+            const Integral more = work(torque, slip);
+            for (std::size_t k = 0; k < more.size(); ++k) sums.dry[k] += more[k];
+        }
         return sums;
     }
 

@@ -27,7 +27,9 @@ struct Kept {
     struct Acting {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< none where there is no base, or no belt
-        std::unique_ptr<Nodes> stop{};          ///< what an elastic wall takes that is pressed
+        std::unique_ptr<Nodes> springs{};       ///< what sliders that stick, and pressed walls, take and store
+        bool presses = false;                   ///< an elastic wall, whose damping acts
+        double slides = 0;                      ///< what sliders take that slide
         bool holds = false;                     ///< friction does not slip
     };
     std::vector<Acting> acting{};
@@ -50,8 +52,8 @@ public:
 
 class History {
 public:
-    /// Only the weights and the damping of the joints count; each body's with the ground is in its place. `before` is
-    /// the past of a run that goes on, `most` what may be kept, bytes.
+    /// Only the weights, damping and walls of the joints count; each body's with the ground is in its place. `before`
+    /// is the past of a run that goes on, `most` what may be kept, bytes.
     History(std::vector<model::Joint> joints, std::size_t bodies, std::vector<double> initial, double t_start,
             std::shared_ptr<const History> before, std::size_t most)
         : joints_(std::move(joints)),

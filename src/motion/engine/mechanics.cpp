@@ -350,7 +350,8 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         }
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
-        contact.native = friction.is_constant() && !contact.law;
+        contact.native = friction.is_constant() && !contact.law && friction.sliders.empty();
+        nonlinear_ |= !friction.sliders.empty();
         const auto varies = [](const Signal& limit) { return !limit.none(); };
         contact.may_open =
             !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
@@ -359,8 +360,15 @@ Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, c
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
-        belts_.emplace_back(rubs_.back() != 0 || bends ? drive.belts[j] : model::Excitation(), &asking);
+        const bool touches = rubs_.back() != 0 || bends || !friction.sliders.empty() || joint.rigid;
+        belts_.emplace_back(touches ? drive.belts[j] : model::Excitation(), &asking);
         has_belts_ |= !belts_.back().none();
+    }
+    for (std::size_t j = 0; j < joints(); ++j) {
+        for (const laws::Jenkins& one : system.joints[j].friction.sliders) {
+            const double limit = one.kinetic * system.joints[j].friction.law.normal();
+            sliders_.push_back({j, 2 * bodies() + states(), one.stiffness, limit});
+        }
     }
     const auto add = [this](Signal& s) {
         if (!s.none()) signals_.push_back(&s);
@@ -470,6 +478,10 @@ std::size_t Mechanics::range_of(std::size_t joint, double speed) const {
 }
 
 double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
+    return law_friction(joint, at, mode, belt) - slider_torque(joint, at.y);
+}
+
+double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
     if (bristle(joint) != nullptr) return -bristle_torque(joint, at, belt);
     const Slipping& how = mode.friction[joint];
     if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
@@ -559,7 +571,12 @@ void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<do
     }
 }
 
-void Mechanics::rates(const Moment& at, double* out) const {
+void Mechanics::rates(const Moment& at, double* out, const Mode* mode) const {
+    for (std::size_t s = 0; s < sliders_.size(); ++s) {
+        const bool sticks = mode != nullptr && mode->sliders[s] == Motion::stuck;
+        const std::size_t joint = sliders_[s].joint;
+        out[sliders_[s].bend - 2 * bodies()] = sticks ? velocity(joint, at.y) - belt(joint, at.t, at.side) : 0;
+    }
     for (std::size_t k = 0; k < drive_.states.size(); ++k) out[k] = rates_[k].value(at);
     for (std::size_t b = 0; b < bristles_.size(); ++b) {
         const std::size_t joint = bristles_[b], k = drive_.states.size() + b;
@@ -596,8 +613,12 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
         }
     }
     if (rubs(joint)) {
-        size +=
-            std::max(std::fabs(holding(joint, Motion::forward, at)), std::fabs(holding(joint, Motion::backward, at)));
+        const double forward = std::fabs(holding(joint, Motion::forward, at));
+        size += own.friction.law.is_one_way() ? forward
+                                              : std::max(forward, std::fabs(holding(joint, Motion::backward, at)));
+    }
+    for (const Slider& slider : sliders_) {
+        if (slider.joint == joint) size += slider.limit;
     }
     return size;
 }

@@ -47,8 +47,9 @@ struct Mode {
     }
     /// Returns whether the joint holds an angle, not only a velocity.
     [[nodiscard]] bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
-    std::vector<char> rubs;    ///< of each joint: it has dry friction, and something presses on it
-    std::vector<char> rigid;   ///< of each joint: it holds for ever
+    std::vector<char> rubs;                   ///< of each joint: it has dry friction, and something presses on it
+    std::vector<char> rigid;                  ///< of each joint: it holds for ever
+    std::vector<model::Motion> sliders = {};  ///< of each slider: which way it slides
     std::vector<int> presses;  ///< of each joint: 1 on its upper elastic wall, -1 on its lower one, else 0
 };
 
@@ -111,16 +112,35 @@ public:
     [[nodiscard]] const model::Assembly& system() const { return system_; }
     [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
     [[nodiscard]] std::size_t joints() const { return system_.joints.size(); }
-    /// Those of the user's, and behind them the bend of each joint's bristles.
-    [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size(); }
+    /// Those of the user's, and behind them the bend of each joint's bristles, and of the spring of each slider.
+    [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size() + sliders_.size(); }
     [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
     [[nodiscard]] std::size_t events() const { return drive_.events.size(); }
     /// The bristles of a joint; null where it has none.
     [[nodiscard]] const model::laws::Bristle* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
     [[nodiscard]] const std::vector<std::size_t>& bristles() const { return bristles_; }
+    /// A Jenkins element: a dry slider behind a spring.
+    struct Slider {
+        std::size_t joint, bend;  ///< where its bend stands in the state
+        double stiffness, limit;
+    };
+    [[nodiscard]] const std::vector<Slider>& sliders() const { return sliders_; }
+    /// The torque of its sliders' springs on a joint.
+    [[nodiscard]] double slider_torque(std::size_t joint, std::span<const double> y) const {
+        double torque = 0;
+        for (const Slider& slider : sliders_) {
+            if (slider.joint == joint) torque += slider.stiffness * y[slider.bend];
+        }
+        return torque;
+    }
     /// The torque of its bristles on a joint; 0 where it has none.
     [[nodiscard]] double bristle_torque(std::size_t joint, const Moment& at, double belt) const;
+    /// The inertia of a body; 0 where a body that is moved has none.
+    [[nodiscard]] double own_inertia(std::size_t body) const {
+        const auto& moved = system_.bodies[body].moved;
+        return moved && moved->without_inertia ? 0 : system_.bodies[body].inertia;
+    }
     [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
     /// Torques or rates depend on the motion otherwise than by constants.
     [[nodiscard]] bool nonlinear() const { return nonlinear_; }
@@ -169,7 +189,8 @@ public:
     /// depends on the motion is added to them.
     void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, std::vector<double>& loads,
                  std::vector<double>& of_bodies) const;
-    void rates(const Moment& at, double* out) const;
+    /// Those of sliders need the mode.
+    void rates(const Moment& at, double* out, const Mode* mode = nullptr) const;
     /// Of each joint, without what holds.
     [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// The same at nodes, of a native joint that does not lean, with these angles and velocities of bodies (and states)
@@ -309,6 +330,7 @@ private:
     };
 
     [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;
+    [[nodiscard]] double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Calls it with each function of the user's.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
@@ -320,6 +342,7 @@ private:
     std::vector<Signal*> signals_;  ///< all that are there
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
+    std::vector<Slider> sliders_;
     std::vector<Piecewise> rates_;  ///< of the states of the user
     std::vector<Piecewise> whens_;  ///< of the events of the user
     std::vector<double> jumps_;     ///< found, of belts

@@ -15,6 +15,7 @@ std::vector<model::Oscillator> modes_of(const model::Assembly& system) {
     for (const model::Joint& joint : system.joints) {
         for (const model::Weight& on : joint.of) {
             const auto row = n + static_cast<Eigen::Index>(on.body);
+            if (system.bodies[on.body].moved) continue;
             for (const model::Weight& turned : joint.of) {
                 const auto column = static_cast<Eigen::Index>(turned.body);
                 const double share = -on.by * turned.by / system.bodies[on.body].inertia;

@@ -95,10 +95,12 @@ bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::
 text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint) {
     const model::Joint& own = system.joints[joint];
     model::OscillatorParameters parameters;
+    constexpr double none = 1e-100;  // of a body that is moved
     parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
+    parameters.inertia = std::max(parameters.inertia, none);
     parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
     parameters.spring = own.spring, parameters.walls = own.walls;
-    if (!own.friction.law.under(1).none()) parameters.friction = own.friction.law;
+    if (!own.friction.law.under(1).none() && !own.friction.law.is_one_way()) parameters.friction = own.friction.law;
     parameters.normal = own.friction.law.normal();
     return model::Oscillator::make(parameters);
 }
@@ -109,8 +111,9 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     Trajectory part;
     if (system.is_link(joint)) {
         part.own_names = {"t", "theta", "velocity", "torque", "friction"};
-    } else if (!drive.states.empty()) {
+    } else if (!drive.states.empty() || system.bodies[joint].moved) {
         part.own_names = column_names();
+        if (system.bodies[joint].moved) part.own_names.emplace_back("torque");
     }
     for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
     const auto left = std::make_shared<Left>(run.carry, place.bodies);
@@ -133,6 +136,7 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     part.t_start = run.t_start;
     part.t_stop = run.t_stop;
     part.initial = {place.weights.sum(drive.theta0), place.weights.sum(drive.velocity0)};
+    if (system.has_moved()) part.initial = place.state(run.initial);
     part.state_at_stop = place.state(run.carry->y);
     part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
     part.began_stuck = run.begun.holds(joint);

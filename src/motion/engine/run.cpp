@@ -18,6 +18,7 @@
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
+#include "motion/engine/moving.hpp"
 #include "motion/first_below.hpp"
 #include "motion/roughness.hpp"
 #include "motion/witness.hpp"
@@ -83,7 +84,7 @@ public:
     void run();
 
 private:
-    enum class By { nobody, slip, release, wall, stop, corner, relay, user, kink, stays, condition };
+    enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, stays, condition };
     struct Ending {
         double x = 1;
         By by = By::nobody;
@@ -134,6 +135,8 @@ private:
     bool decide_together(std::size_t full);
     void project(Side when);
     void keep_rigid_places();
+    [[nodiscard]] double angle_given(std::size_t body, Side when) const;
+    [[nodiscard]] double kinetic_energy() const;
     void put_child(std::size_t joint, std::size_t child, double weight, double place);
     enum class Loads { asked, sampled };
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {},
@@ -169,6 +172,19 @@ private:
     void watch_release(std::size_t joint, Ending& ending);
     void watch_walls(std::size_t joint, const model::Walls& walls, By by, Ending& ending) const;
     void watch_stop(std::size_t joint, Ending& ending) const;
+    void watch_slider(std::size_t slider, Ending& ending) const;
+    void let_slide(std::size_t slider, Motion way);
+    bool turn_sliders();
+    void press(std::size_t joint, int side);
+    void catch_freewheels();
+    /// What an impulse along a joint leaves of each velocity where the joint turns no more, and how much of a relative
+    /// velocity each body takes. It conserves momentum, and what is linked rigidly takes its part.
+    struct Thrown {
+        double lightness = 0;
+        std::vector<std::pair<double, double>> velocities = {};
+    };
+    Thrown thrown_along(std::size_t joint);
+    void throw_to(const Thrown& thrown, double relative);
     void watch_corner(std::size_t joint, Ending& ending) const;
     void watch_normal(std::size_t joint, Ending& ending);
     void watch_bristles(std::size_t joint, Ending& ending);
@@ -215,6 +231,9 @@ private:
     [[nodiscard]] bool begun() const { return now_.hi > problem_.window.start || problem_.before != nullptr; }
     [[nodiscard]] Moment here() const { return {now_.hi, side(), y_}; }
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+    /// Those that were asked for: behind them are the joints that move bodies.
+    [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
     [[nodiscard]] double torque_size(std::size_t joint) const;
 
     const AssemblyProblem& problem_;
@@ -314,10 +333,10 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     y_ = problem.drive.theta0;
     y_.insert(y_.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
     for (const model::OwnState& state : problem.drive.states) y_.push_back(state.start);
-    y_.resize(y_.size() + mechanics_.bristles().size(), 0);
+    y_.resize(2 * n() + mechanics_.states(), 0);
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
     low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
-    mode_.presses.assign(joints, 0);
+    mode_.presses.assign(joints, 0), mode_.sliders.assign(mechanics_.sliders().size(), Motion::stuck);
     mode_.rubs = mechanics_.rubbing(), mode_.rigid.assign(joints, 0), rigid_at_.assign(joints, 0);
     for (std::size_t j = 0; j < joints; ++j) mode_.rigid[j] = problem.system.joints[j].rigid ? 1 : 0;
     arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
@@ -337,7 +356,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     keep_rigid_places();
     std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
-        weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping});
+        weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping, .stops = joint.stops});
         has_walls_ |= joint.any_walls() != nullptr;
     }
     history_ = std::make_shared<History>(std::move(weights), n(), y_, now_.hi,
@@ -364,7 +383,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
-    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
     result_.table = Growing<double>(problem.rows.count(), columns);
 }
@@ -503,6 +522,7 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
     const double holding = mechanics_.holding(joint, towards, at) + mode.friction[joint].blunt;
+    if (std::isinf(holding)) return -model::never;  // a freewheel, backward
     if (n() > 1 || !mechanics_.is_native(joint) || mechanics_.has_belts() || mechanics_.states() > 0) {
         return std::fabs(pull) - look.blurred - holding;
     }
@@ -827,9 +847,9 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
         const Joint& joint = problem_.system.joints[j];
         for (const auto& [body, by] : joint.of) D(static_cast<Eigen::Index>(body), c) = by;
         const bool sticks = rubs(j) && mode_.friction[j].way == Motion::stuck;
-        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
-        box.high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
+        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
+        box.high(c) = sticks ? std::min(wall, mechanics_.holding(j, Motion::backward, here())) : 0;
         if (mode_.leans[j] > 0 || mode_.rigid[j] != 0) box.low(c) = -wall;
         if (mode_.leans[j] < 0 || mode_.rigid[j] != 0) box.high(c) = wall;
         box.slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
@@ -968,10 +988,22 @@ void Engine::project(Side when) {
     }
     for (const Frame::Edge& edge : present.edges) {
         if (!mode_.keeps_place(edge.joint)) continue;
+        const bool moved = edge.joint >= told_joints();
+        if (moved && !problem_.system.bodies[moved_body(edge.joint)].moved->by_angle) continue;
+        if (moved) rigid_at_[edge.joint] = angle_given(moved_body(edge.joint), when);
         const int wall = mode_.leans[edge.joint];
         put_child(edge.joint, edge.child, edge.by,
                   wall != 0 ? problem_.system.joints[edge.joint].walls->at(wall) : rigid_at_[edge.joint]);
     }
+}
+
+/// The angle that a body is moved to, now.
+double Engine::angle_given(std::size_t body, Side when) const {
+    const model::Excitation& angle = problem_.system.bodies[body].moved->motion;
+    const bool breaks = when != Side::at && angle.next_break(std::nextafter(now_.hi, -model::never)) == now_.hi;
+    return !breaks                ? angle.value(now_.hi)
+           : when == Side::before ? angle.value_before(now_.hi)
+                                  : angle.value_after(now_.hi);
 }
 
 /// Rigid joints keep the angles that they have now.
@@ -1033,7 +1065,9 @@ bool Engine::open_and_close() {
 /// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
 bool Engine::restart_contacts(Because why, std::size_t at) {
     open_and_close();
+    catch_freewheels();
     press_stops();
+    turn_sliders();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!rubs(j) || mode_.leans[j] != 0) continue;
         Slipping& how = mode_.friction[j];
@@ -1118,6 +1152,7 @@ void Engine::begin() {
         if (after_break_) ask_after_break();
     }
     result_.begun = mode_;
+    result_.initial = y_;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
 }
 
@@ -1548,7 +1583,30 @@ bool Engine::end_at(double x) {
 
 /// Loads, limits and belts may have jumped: what holds is asked again.
 bool Engine::ask_after_break() {
-    return mechanics_.has_belts() ? restart_contacts(Because::belt) : decide(true);
+    if (!mechanics_.has_belts()) return decide(true);
+    // What is moved with a new velocity at once throws all that is rigidly linked to it.
+    const std::vector<double> before = y_;
+    const double energy = kinetic_energy();
+    if (problem_.hidden > 0) project(side());
+    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+        const std::size_t body = moved_body(j);
+        const double v = y_[n() + body], jump = v - before[n() + body];
+        if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
+        history_->add_jump(now_.hi, body, {.input = kinetic_energy() - energy});
+        heading_[body] = model::motion_of(v);
+        has_jumped_ = true;
+        tell(EventKind::impact, static_cast<int>(body));
+        break;
+    }
+    return restart_contacts(Because::belt);
+}
+
+double Engine::kinetic_energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < n() && problem_.hidden > 0; ++i) {
+        sum += mechanics_.own_inertia(i) * y_[n() + i] * y_[n() + i] / 2;
+    }
+    return sum;
 }
 
 /// Where a function of the time has jumped evenly, its next jump is known before it is met.
@@ -1609,15 +1667,31 @@ std::vector<Kept::Acting> Engine::acting() {
             }
         }
         all[j].holds = rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
-        if (mode_.presses[j] != 0) {
-            const Nodes angle = mechanics_.between(j, segment_.y),
-                        velocity = mechanics_.between(j, std::span(segment_.y).subspan(n()));
-            all[j].stop = std::make_unique<Nodes>();
+        if (j >= told_joints()) {  // what moves a body is its input
+            const std::size_t body = moved_body(j);
+            const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
             for (std::size_t node = 0; node < node_count; ++node) {
-                (*all[j].stop)[node] =
-                    problem_.system.joints[j].stops->torque(mode_.presses[j], angle[node], velocity[node]);
+                all[body].M[node] += segment_.holding[j][node] + more * segment_.f[n() + body][node];
+            }
+            continue;
+        }
+        Nodes springs{};
+        all[j].presses = mode_.presses[j] != 0;
+        if (all[j].presses) {
+            const model::Walls& stops = *problem_.system.joints[j].stops;
+            springs = mechanics_.between(j, segment_.y);
+            for (double& q : springs) q = stops.torque(mode_.presses[j], q, 0);
+        }
+        for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
+            const Mechanics::Slider& slider = mechanics_.sliders()[s];
+            if (slider.joint != j) continue;
+            if (mode_.sliders[s] == Motion::stuck) {
+                add(springs, segment_.y[slider.bend], slider.stiffness);
+            } else {
+                all[j].slides += slider.stiffness * segment_.y[slider.bend][0];
             }
         }
+        if (greatest(springs) > 0) all[j].springs = std::make_unique<Nodes>(springs);
         if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
@@ -1628,7 +1702,8 @@ std::vector<Kept::Acting> Engine::acting() {
         } else if (rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 const Moment at = segment_.moment(node, point_);
-                all[j].friction[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
+                all[j].friction[node] =
+                    mechanics_.friction(j, at, mode_, segment_.belts[j][node]) + mechanics_.slider_torque(j, at.y);
             }
         }
     }
@@ -1697,12 +1772,13 @@ bool Engine::handle(const Ending& ending) {
             const int side = ending.side != 0 ? ending.side : mode_.presses[j];
             origin_[j] = stops.at(side), reach_[j] = 0;
             at_wall_[j] = ending.side == 0 && std::fabs(gap(j, origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
-            mode_.presses[j] = ending.side;
-            has_jumped_ = true;
-            tell(ending.side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(j));
+            press(j, ending.side);
             echo(now_.hi, 1);
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
+        case By::slider:
+            let_slide(j, static_cast<Motion>(ending.side));
+            return decide(true) && (!too_often() || fail(Outcome::chattering));
         case By::corner: {
             Slipping& how = mode_.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
@@ -1744,7 +1820,7 @@ void Engine::tell(EventKind kind, int where, int user) {
 
 /// An event of the user concerns every joint: each gets one, with its own angle and velocity.
 void Engine::tell_user(std::size_t event) {
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+    for (std::size_t j = 0; j < told_joints(); ++j) {
         tell(EventKind::user, static_cast<int>(j), static_cast<int>(event));
     }
 }
@@ -1777,6 +1853,7 @@ void Engine::watch(Ending& ending) {
         if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !rubs(j))) watch_normal(j, ending);
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
+    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) watch_slider(s, ending);
     watch_relays(ending);
     if (has_pieces_) watch_conditions(ending);
     watch_users(ending);
@@ -1890,6 +1967,7 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
             }
         } else {
             limit.fill(sticks ? mechanics_.holding(joint, side, here()) : 0);
+            if (std::isinf(limit[0])) continue;  // a freewheel, backward
         }
         if (const Slipping& how = mode_.friction[joint]; how.creeps != Motion::stuck) {
             const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, here());
@@ -2431,32 +2509,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         return !too_often() || fail(Outcome::chattering);
     }
     tell(EventKind::impact, static_cast<int>(joint));
-    // What each body has at relative velocity 0, and how much of that it takes: an impulse conserves momentum, and what
-    // is linked rigidly takes its part.
-    if (!rigid_) {
-        Mode free = mode_;
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) free.leans[j] = 0, free.rubs[j] = 0;
-        rigid_.emplace(problem_.system, free);
-    }
-    double lightness = 0;
-    for (const auto& [group, by] : rigid_->joints[joint]) lightness += by * by / rigid_->inertia[group];
-    const double speed = mechanics_.velocity(joint, y_);
-    std::vector<std::pair<double, double>> velocities(n());
-    for (std::size_t i = 0; i < n(); ++i) {
-        double share = 0;
-        for (const auto& [group, by] : rigid_->bodies[i]) {
-            for (const auto& [own_group, turned] : rigid_->joints[joint]) {
-                if (own_group == group) share += by * turned / rigid_->inertia[group] / lightness;
-            }
-        }
-        velocities[i] = {y_[n() + i] - share * speed, share};
-    }
-    const auto velocity = [&](double relative) {
-        for (std::size_t i = 0; i < n(); ++i) {
-            const auto& [still, share] = velocities[i];
-            if (share != 0) y_[n() + i] = still + share * relative;
-        }
-    };
+    const Thrown thrown = thrown_along(joint);
+    const auto velocity = [&](double relative) { throw_to(thrown, relative); };
     velocity(-wall * e * before);
     has_jumped_ = true;
     bool rests = e * before == 0;
@@ -2470,17 +2524,17 @@ bool Engine::hit(std::size_t joint, int wall) {
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
     const double after = rests ? 0 : e * before;
-    history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / lightness / 2});
+    history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
     echo(now_.hi, 1);
     for (std::size_t i = 0; i < n(); ++i) {
-        if (velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : y_[n() + i]);
+        if (thrown.velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : y_[n() + i]);
     }
     if (rests) {
         velocity(0);
         has_jumped_ = true;
         if (rest > 0 && now_.after(rest) < std::min(mechanics_.next_break(now_.hi), problem_.window.end)) {
             std::vector<double> rates(mechanics_.states());
-            mechanics_.rates(here(), rates.data());
+            mechanics_.rates(here(), rates.data(), &mode_);
             for (std::size_t k = 0; k < rates.size(); ++k) y_[2 * n() + k] += rest * rates[k];
             now_ = now_.later(rest);
         }
@@ -2585,10 +2639,127 @@ bool Engine::press_stops() {
         }
         if (side == mode_.presses[j]) continue;
         changed = true;
-        mode_.presses[j] = side;
-        if (begun()) tell(side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(j));
+        if (begun()) {
+            press(j, side);
+        } else {
+            mode_.presses[j] = side;
+        }
     }
     return changed;
+}
+
+/// What an elastic wall stores when it is left is lost.
+void Engine::press(std::size_t joint, int side) {
+    const model::Walls& stops = *problem_.system.joints[joint].stops;
+    const int wall = side != 0 ? side : mode_.presses[joint];
+    const double depth = mechanics_.angle(joint, y_) - stops.at(wall);
+    const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
+    history_->add_jump(now_.hi, joint, {.impacts = stored, .kept = -stored});
+    mode_.presses[joint] = side;
+    has_jumped_ = true;
+    tell(side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(joint));
+}
+
+/// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
+void Engine::watch_slider(std::size_t slider, Ending& ending) const {
+    const auto& [joint, bend, stiffness, limit] = mechanics_.sliders()[slider];
+    std::vector<double> y;
+    const auto look = [&](const Nodes& values, const auto& exact, Motion way) {
+        Half half = 1;
+        const auto x = Watched(values, exact).leaves(half, -1);
+        if (x && *x < ending.x) ending = {*x, By::slider, slider, static_cast<int>(way)};
+    };
+    Nodes values{};
+    if (mode_.sliders[slider] != Motion::stuck) {
+        const double sign = model::sign_of(mode_.sliders[slider]);
+        values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
+        for (double& value : values) value *= sign;
+        const auto slip_at = [&, joint = joint](double x) {
+            segment_.state(x, y);
+            return sign * (mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at));
+        };
+        return look(values, slip_at, Motion::stuck);
+    }
+    for (const Motion way : {Motion::forward, Motion::backward}) {
+        const double sign = model::sign_of(way);
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = limit - sign * stiffness * segment_.y[bend][j];
+        const auto left_at = [&, bend = bend, stiffness = stiffness, limit = limit](double x) {
+            return limit - sign * stiffness * segment_.at(bend, x);
+        };
+        look(values, left_at, way);
+    }
+}
+
+void Engine::let_slide(std::size_t slider, Motion way) {
+    const Mechanics::Slider& own = mechanics_.sliders()[slider];
+    mode_.sliders[slider] = way;
+    if (way != Motion::stuck) y_[own.bend] = model::sign_of(way) * own.limit / own.stiffness;
+    tell(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, static_cast<int>(own.joint));
+}
+
+/// After velocities have jumped: sliders whose slip has turned stick.
+bool Engine::turn_sliders() {
+    bool turned = false;
+    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
+        const double way = model::sign_of(mode_.sliders[s]);
+        if (!(way * slip(mechanics_.sliders()[s].joint) < 0)) continue;
+        let_slide(s, Motion::stuck);
+        turned = true;
+    }
+    return turned;
+}
+
+Engine::Thrown Engine::thrown_along(std::size_t joint) {
+    if (!rigid_) {
+        Mode free = mode_;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) free.leans[j] = 0, free.rubs[j] = 0;
+        rigid_.emplace(problem_.system, free);
+    }
+    Thrown thrown;
+    for (const auto& [group, by] : rigid_->joints[joint]) thrown.lightness += by * by / rigid_->inertia[group];
+    const double speed = mechanics_.velocity(joint, y_);
+    for (std::size_t i = 0; i < n(); ++i) {
+        double share = 0;
+        for (const auto& [group, by] : rigid_->bodies[i]) {
+            for (const auto& [own_group, turned] : rigid_->joints[joint]) {
+                if (own_group == group) share += by * turned / rigid_->inertia[group] / thrown.lightness;
+            }
+        }
+        thrown.velocities.emplace_back(y_[n() + i] - share * speed, share);
+    }
+    return thrown;
+}
+
+void Engine::throw_to(const Thrown& thrown, double relative) {
+    for (std::size_t i = 0; i < n(); ++i) {
+        const auto& [still, share] = thrown.velocities[i];
+        if (share != 0) y_[n() + i] = still + share * relative;
+    }
+}
+
+/// A freewheel that something throws backward stops, and so does what leans on a wall and is thrown into it: one after
+/// the other, until all have.
+void Engine::catch_freewheels() {
+    bool any = false;
+    for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
+    const std::size_t most = any ? 500 * mechanics_.joints() : 0;
+    for (std::size_t k = 0; k < most; ++k) {
+        std::size_t worst = mechanics_.joints();
+        double least = 0;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && rubs(j);
+            if (!one_way && mode_.leans[j] == 0) continue;
+            const double v = one_way ? slip(j) : -mode_.leans[j] * mechanics_.velocity(j, y_);
+            if (v < -16 * rounding * mechanics_.speed_scale(j, y_) && v < least) worst = j, least = v;
+        }
+        if (worst == mechanics_.joints()) return;
+        const Thrown thrown = thrown_along(worst);
+        if (!(thrown.lightness > 0)) return;
+        const double before = mechanics_.velocity(worst, y_);
+        const double after = mode_.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.hi, side());
+        throw_to(thrown, after);
+        history_->add_jump(now_.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+    }
 }
 
 /// What stands at a wall, and does not move away from it, leans there.
@@ -2635,7 +2806,7 @@ bool Engine::passes_on(std::size_t event) {
     const double step = soon * h_;
     if (!look({now_.hi, side(), departing()}, mode_, frame(), look_)) return true;
     std::vector<double> rates(mechanics_.states()), y = y_;
-    mechanics_.rates(here(), rates.data());
+    mechanics_.rates(here(), rates.data(), &mode_);
     const auto value = [&](double after) {
         for (std::size_t i = 0; i < n(); ++i) {
             y[i] = y_[i] + after * y_[n() + i];
@@ -2710,7 +2881,7 @@ bool Engine::put_row(double t, double x) {
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
         if (!problem_.joined_elsewhere) good = put(look_.accelerations[i]) && good;
     }
-    for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
+    for (std::size_t j = n(); j < told_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
         double torque = -mechanics_.joint_torque(j, at, mode_, belt);
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
@@ -2721,6 +2892,11 @@ bool Engine::put_row(double t, double x) {
         good = put(torque) && good;
         good = put(friction(j, at, look_)) && good;
     }
+    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+        const std::size_t body = moved_body(j);
+        const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
+        good = put(look_.holding[j] + more * look_.accelerations[body]) && good;
+    }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
     if (good) ++next_row_;
     return good;
@@ -2730,7 +2906,7 @@ bool Engine::put_row(double t, double x) {
 double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
     // The wall carries what presses against it, friction what pulls away from it.
     if (rubs(joint) && mode_.friction[joint].way == Motion::stuck) {
-        const double held = look.holding[joint];
+        const double held = look.holding[joint] - mechanics_.slider_torque(joint, at.y);
         return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
     }
     return mechanics_.friction(joint, at, mode_, mechanics_.belt(joint, at.t, at.side));
@@ -2748,13 +2924,37 @@ std::vector<std::string> column_names_of(const model::Assembly& system, const mo
         system.is_link(j) ? add(name, {"theta", "velocity", "torque", "friction"})
                           : add(name, {"theta", "velocity", "M", "friction", "damping", "acceleration"});
     }
+    for (const model::Body& body : system.bodies) {
+        if (body.moved) add(body.name, {"torque"});
+    }
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     return names;
 }
 
 AssemblyRun run_plain(const AssemblyProblem& problem) {
     AssemblyRun result;
-    Engine engine(problem, result);
+    if (!problem.system.has_moved()) {
+        Engine engine(problem, result);
+        engine.run();
+        return result;
+    }
+    const Moving moving(problem.system, problem.drive, problem.window.start,
+                        (problem.window.end - problem.window.start) / 64);
+    const AssemblyProblem held{.system = moving.system,
+                               .drive = moving.drive,
+                               .window = problem.window,
+                               .rows = problem.rows,
+                               .monitor = problem.monitor,
+                               .limits = problem.limits,
+                               .before = problem.before,
+                               .tolerance = problem.tolerance,
+                               .longest = problem.longest,
+                               .step = problem.step,
+                               .keeps_torques = problem.keeps_torques,
+                               .history_bytes = problem.history_bytes,
+                               .hidden = moving.system.joints.size() - problem.system.joints.size(),
+                               .joined_elsewhere = problem.joined_elsewhere};
+    Engine engine(held, result);
     engine.run();
     return result;
 }
@@ -2767,6 +2967,11 @@ AssemblyRun run(const AssemblyProblem& problem) {
         return system.named ? fmt::format("{}.{}", what, system.joints[joint].name) : std::string(what);
     };
     const model::Drive drive = witnesses.heard(problem.drive, of);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        if (auto& moved = system.bodies[i].moved) {
+            moved->motion = witnesses.heard(moved->motion, of(moved->by_angle ? "theta" : "velocity", i));
+        }
+    }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         model::Joint& joint = system.joints[j];
         for (auto& sliding : joint.friction.sliding) {

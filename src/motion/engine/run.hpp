@@ -37,7 +37,8 @@ struct AssemblyRun {
     std::vector<model::Event> events;
     model::Outcome outcome = model::Outcome::reached_end;
     double t_start = 0, t_stop = 0;
-    double gap = 0;       ///< the longest between two looks at a user's function
+    std::vector<double> initial = {};  ///< all angles, velocities and states at the start
+    double gap = 0;                    ///< the longest between two looks at a user's function
     double unproven = 0;  ///< the longest stretch in which functions that are read may do more than was seen
     model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
     Mode begun = {};                                      ///< how the contacts stood at the start
@@ -51,7 +52,7 @@ struct AssemblyRun {
 };
 inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
 /// t; theta, velocity, M, friction, damping and acceleration of each body, theta, velocity, torque and friction of each
-/// link, as in "load.theta"; states.
+/// link, as in "load.theta"; torque of each body that is moved; states.
 std::vector<std::string> column_names_of(const model::Assembly& system, const model::Drive& drive);
 
 struct AssemblyProblem {
@@ -67,6 +68,7 @@ struct AssemblyProblem {
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
     bool keeps_torques = false;     ///< beside a dense motion, for its energy
     std::size_t history_bytes = limits.memory / 4;
+    std::size_t hidden = 0;         ///< rigid joints behind those of the system, which move bodies
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
 };
 

@@ -1,0 +1,136 @@
+-- Laws with a direction or a memory: freewheels, Jenkins elements, and laws side by side.
+dofile "tests/lua/support.lua"
+
+local function closes(run)
+    local total = run:energy().total
+    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.impacts), 1))
+end
+
+test("a freewheel lets its load run on, and takes it along", function()
+    -- The load is driven by the motor and overruns it when the motor brakes.
+    local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } },
+        links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }
+    local M = excitation.constant(2) + excitation.step { amplitude = -3, at = 1 }
+    local run = rig:simulate { M = { motor = M }, t_end = 2 }
+    near(run.load.velocity[#run], 0.5 - 0.3 / 3, 1e-13)
+    near(run.motor.velocity[#run], 0.5 - 1 + 0.3, 1e-13)
+    equal(#run.clutch.events, 1)
+    equal(run.clutch.events[1].kind, "slip")
+    near(run.clutch.events[1].t, 1, 1e-15)
+    closes(run)
+    -- And it meets the motor again.
+    local back = rig:simulate { M = { motor = M + excitation.step { amplitude = 4, at = 2 } }, t_end = 6 }
+    assert(of_kind(back, "stick")[1].t > 2)
+    near(back.load.velocity[#back], back.motor.velocity[#back], 1e-13)
+    closes(back)
+end)
+
+test("a freewheel is a contact with a huge friction backward", function()
+    local ratchet = friction.freewheel { Rd = 0.2 }
+    local huge = friction.asymmetric { forward = { Rd = 0.2 }, backward = { Rd = 1e9 } }
+    local M = { a = excitation.harmonic { amplitude = 3, omega = 1.2 } }
+    local function rig(law) return system { bodies = { a = { I = 1, k = 1 }, b = { I = 2, C = 0.4 } }, links = { clutch = { "a", "b", friction = law } } } end
+    local one, two = rig(ratchet):simulate { M = M, t_end = 30 }, rig(huge):simulate { M = M, t_end = 30 }
+    near(one.a.theta, two.a.theta, 1e-9)
+    near(one.b.theta, two.b.theta, 1e-9)
+    equal(#one.clutch.events, #two.clutch.events)
+    assert(#one.clutch.events > 4)
+    closes(one)
+    -- Against the ground it is a ratchet.
+    local block = system { I = 1, k = 0, friction = ratchet }:simulate { M = M.a, t_end = 10 }
+    assert(block.velocity:min() >= 0)
+    closes(block)
+    equal(block.theta:max(), block.theta[#block])
+end)
+
+test("an impact that would turn a freewheel backward stops it", function()
+    -- c strikes b, which may not fall behind a: all three go on as one mass would.
+    local rig = system { bodies = { a = { I = 2 }, b = { I = 1 }, c = { I = 1 } },
+        links = { one_way = { "a", "b", friction = friction.freewheel {} }, play = { "c", "b", walls = { upper = 0.1, restitution = 0 } } } }
+    local run = rig:simulate { velocity0 = { c = 1 }, t_end = 1 }
+    near(run.c.velocity[#run] + run.b.velocity[#run] + 2 * run.a.velocity[#run], 1, 1e-13)
+    near(run.a.velocity[#run], run.b.velocity[#run], 1e-13)
+    closes(run)
+    raises(function() rig:simulate { velocity0 = { b = 1 }, t_end = 1 } end, "the freewheel one_way turns forward only, but begins with -1")
+end)
+
+-- A Jenkins element by hand: a state that clips.
+local function by_hand(elements, more)
+    local states, sum = {}, {}
+    for i, e in ipairs(elements) do
+        states["z" .. i] = { rate = function(t, theta, velocity, z)
+            local x = z["z" .. i] * e.stiffness
+            if x >= e.Rd and velocity > 0 then return 0 end
+            if x <= -e.Rd and velocity < 0 then return 0 end
+            return velocity
+        end }
+    end
+    return states
+end
+
+test("a jenkins element is a spring in series with a slider", function()
+    local M = excitation.harmonic { amplitude = 3, omega = 1.1 }
+    local sys = system { I = 1, k = 1, friction = friction.jenkins { stiffness = 20, Rd = 1 } }
+    local run = sys:simulate { M = M, t_end = 20 }
+    local fine = system { I = 1, k = 1 }:simulate { M = function(t, theta, velocity, z)
+        return M(t) - 20 * z.z1
+    end, t_end = 20, states = by_hand { { stiffness = 20, Rd = 1 } } }
+    near(run.theta, fine.theta, 1e-6)
+    local kinds = {}
+    for _, event in ipairs(run.events) do kinds[event.kind] = (kinds[event.kind] or 0) + 1 end
+    assert(kinds.slip > 5 and math.abs(kinds.slip - kinds.stick) <= 1)
+    near(run.friction:abs():max(), 1, 1e-12)
+    closes(run)
+    local parts = sys:simulate { M = M, t_end = run.events[1].t + 0.1 }:continue(20)
+    near(parts.theta[#parts], run.theta[#run], 1e-10)
+    -- It is relaxed at the start, wherever that is.
+    equal(system { I = 1, k = 0, friction = friction.jenkins { stiffness = 20, Rd = 1 } }:simulate { theta0 = 3, t_end = 5 }.theta:max(), 3.0)
+    near(system { I = 1, k = 1, normal = 2, friction = friction.jenkins { stiffness = 20, Rd = 0.5 } }:simulate { M = M, t_end = 20 }.theta, run.theta, 1e-12)
+end)
+
+test("a list of jenkins elements obeys Masing's rule", function()
+    -- A very stiff spring moves the block along 0.8 sin(t), whatever its friction is.
+    local elements, list = {}, {}
+    for i = 1, 5 do
+        elements[i] = { stiffness = 2 * i, Rd = 0.3 * i ^ 2 }
+        list[i] = friction.jenkins(elements[i])
+    end
+    local function backbone(x)
+        local sum = 0
+        for _, e in ipairs(elements) do sum = sum + math.min(e.stiffness * x, e.Rd) end
+        return sum
+    end
+    local grounded = system { I = 1, k = 1e8, C = 2e4, friction = list }:simulate { M = function(t) return 1e8 * 0.8 * math.sin(t) + 2e4 * 0.8 * math.cos(t) - 0.8 * math.sin(t) end, velocity0 = 0.8, t_end = 3 * math.pi, dt = math.pi / 100 }
+    -- The branches are twice the backbone from the point of return, scaled by two.
+    for i = 1, #grounded do
+        local t, x, f = grounded.t[i], grounded.theta[i], -grounded.friction[i]
+        if t < math.pi / 2 - 0.01 then
+            near(f, backbone(x), 1e-4)
+        elseif t > math.pi / 2 + 0.01 and t < 3 * math.pi / 2 - 0.01 then
+            near(f, backbone(0.8) - 2 * backbone((0.8 - x) / 2), 1e-4)
+        end
+    end
+    closes(grounded)
+end)
+
+test("laws side by side add their torques", function()
+    local M = excitation.harmonic { amplitude = 3, omega = 1.1 }
+    local function run(friction_) return system { I = 1, k = 1, friction = friction_ }:simulate { M = M, t_end = 20 } end
+    local sum = run { friction.coulomb { Rd = 0.2, Re = 0.3 }, friction.coulomb { Rd = 0.1 } }
+    local one = run(friction.coulomb { Rd = 0.3, Re = 0.4 })
+    near(sum.theta, one.theta, 1e-12)
+    same_events(sum, one, 1e-11)
+    local beside = run { friction.stribeck { Rd = 0.2, Re = 0.3, speed = 0.1 }, friction.coulomb { Rd = 0.1 } }
+    near(beside.theta, run(friction.stribeck { Rd = 0.3, Re = 0.4, speed = 0.1 }).theta, 1e-11)
+    local mixed = run { friction.coulomb { Rd = 0.2 }, friction.jenkins { stiffness = 10, Rd = 0.5 } }
+    assert(#mixed.events > 5)
+    closes(mixed)
+    local text = tostring(system { I = 1, k = 1, friction = { friction.jenkins { stiffness = 9, Rd = 1 }, friction.coulomb { Rd = 0.1 } } })
+    has(text, "friction = { friction.jenkins{ stiffness = 9, Rd = 1 }, friction.coulomb{ Rd = 0.1, Re = 0.1 } }")
+    equal(tostring(load("return " .. text)()), text)
+    raises(function() run { 1 } end, "friction[1] must be a law")
+    raises(function() run { friction.stribeck { Rd = 1, Re = 2, speed = 1 }, friction.stribeck { Rd = 1, Re = 2, speed = 1 } } end, "one law that depends on the speed")
+    raises(function() system { I = 1, k = 1, friction = friction.jenkins { stiffness = 9, Rd = 1 }, normal = math.sin } end, "must be a number")
+end)
+
+finish()

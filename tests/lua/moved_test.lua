@@ -1,0 +1,68 @@
+-- Bodies that are moved: their angle or velocity is given.
+dofile "tests/lua/support.lua"
+
+local function closes(run)
+    local total = run:energy().total
+    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.impacts), 1))
+end
+
+test("an end that is moved is a shaking support", function()
+    local A, w = 0.2, 1.7
+    local rig = system { bodies = { cam = { theta = function(t) return A * math.sin(w * t) end }, load = { I = 2, C = 0.1 } },
+        links = { spring = { "load", "cam", k = 5, C = 0.3 } } }
+    local run = rig:simulate { t_end = 20, velocity0 = { load = A * w } }
+    near(run.cam.theta, A * (w * run.t):sin(), 1e-12)
+    near(run.cam.velocity, A * w * (w * run.t):cos(), 1e-11)
+    -- Relative to the end: x'' = -(k x + C x' + C0 (x' + v))/I + A w^2 sin.
+    local relative = system { I = 2, k = 5, C = 0.4 }:simulate { t_end = 20, base = function(t) return -A * w ^ 2 * math.sin(w * t) end,
+        M = function(t) return -0.1 * A * w * math.cos(w * t) end }
+    near(run.load.theta - run.cam.theta, relative.theta, 1e-10)
+    -- What moves it takes what the spring gives.
+    near(run.cam.torque, -run.spring.torque * -1, 1e-10)
+    closes(run)
+    local heavy = rig:with { bodies = { cam = { I = 3 } } }:simulate { t_end = 20, velocity0 = { load = A * w } }
+    near(heavy.load.theta, run.load.theta, 1e-11)
+    near(heavy.cam.torque, run.cam.torque - 3 * A * w ^ 2 * (w * run.t):sin(), 1e-9)
+    closes(heavy)
+    local half = rig:simulate { t_end = 7.3, velocity0 = { load = A * w } }:continue(20)
+    near(half.load.theta[#half], run.load.theta[#run], 1e-11)
+end)
+
+test("a body that is moved at a velocity is a belt", function()
+    local rig = system { bodies = { disc = { velocity = 0.3 }, block = { I = 1, k = 2, C = 0.05 } }, links = { pad = { "block", "disc", Rd = 0.4, Re = 0.6 } } }
+    local run = rig:simulate { t_end = 30 }
+    local belt = system { I = 1, k = 2, C = 0.05, Rd = 0.4, Re = 0.6 }:simulate { t_end = 30, belt = 0.3 }
+    near(run.block.theta, belt.theta, 1e-11)
+    near(run.disc.theta[#run], 9, 1e-12)
+    closes(run)
+end)
+
+test("the ground may be a body, a jump of velocity is an impulse, and a moved body is infinitely heavy", function()
+    local held = system { bodies = { wall = { theta = 0 }, a = { I = 1 } }, links = { s = { "a", "wall", k = 4, Rd = 0.1 } } }:simulate { theta0 = { a = 1 }, t_end = 10 }
+    local one = system { I = 1, k = 4, Rd = 0.1 }:simulate { theta0 = 1, t_end = 10 }
+    near(held.a.theta, one.theta, 1e-12)
+    local geared = system { bodies = { crank = { velocity = excitation.step { amplitude = 2, at = 1 } }, load = { I = 3 } },
+        links = { gear = { "crank", "load", ratio = 2, rigid = true } } }
+    local run = geared:simulate { t_end = 2 }
+    near(run.load.velocity[#run], 1, 1e-14)
+    near(run:energy().total.input, 1.5, 1e-13)
+    equal(run.crank.events.kind[1], "impact")
+    closes(run)
+    local struck = system { bodies = { bat = { velocity = 1, I = 1 }, ball = { I = 1 } }, links = { gap = { "bat", "ball", walls = { upper = 0.5, restitution = 1 } } } }
+        :simulate { t_end = 1 }
+    near(struck.ball.velocity[#struck], 2, 1e-13)
+    near(struck.bat.velocity[#struck], 1, 1e-15)
+end)
+
+test("a moved body is written, changed and refused", function()
+    local rig = system { bodies = { cam = { theta = 0.5, I = 1 }, a = { I = 1 } }, links = { s = { "a", "cam", k = 1 } } }
+    has(tostring(rig), "cam = { I = 1, theta = ")
+    says(rig:simulate { t_end = 1 }, "cam is moved by its angle, which takes torques from")
+    raises(function() rig:simulate { t_end = 1, theta0 = { cam = 1 } } end, "this body is moved by its theta")
+    raises(function() rig:steady {} end, "a body is moved")
+    raises(function() system { bodies = { cam = { theta = 1, velocity = 1 } } } end, "exclude each other")
+    raises(function() system { bodies = { cam = { k = 1 } } } end, "needs I")
+    raises(function() system { bodies = { cam = { theta = function(t, theta) return theta end } } } end, "function of t alone")
+end)
+
+finish()
