@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "api/bind_modes.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
-#include "api/modes.hpp"
 #include "api/response.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
@@ -18,6 +18,7 @@
 #include "lua/values.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
+#include "model/laws/jenkins.hpp"
 #include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "source/describe.hpp"
@@ -147,8 +148,20 @@ constexpr lua::Member system_module_members[] = {
 constexpr lua::Member system_members[] = {
     {lua::a_method<response_of_system>, response_doc},
     {lua::a_method<steady_of_system>, steady_doc},
+    {lua::a_method<modes_of_system>,
+     {"sys:modes{ OPTIONS } -> list",
+      "The eigenvalues re + i im of small motions beside a rest, or beside an even sliding on a belt, per time unit: a "
+      "list of { re, im, frequency, zeta, shape, quadrature }, one of each pair, sorted by im. frequency is im/(2 pi), "
+      "zeta is -re/|re + i im|, negative where the motion grows. The rest is searched from theta0, and need not be stable; "
+      "contacts with a belt slide, all others hold. shape has by body the part in phase with the body that moves most, "
+      "which has 1, and quadrature the part a quarter of a period ahead.",
+      "sys = system{ I = 1, k = 4, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 } }\n"
+      "mode = sys:modes{ belt = 0.1 }[1]\nprint(string.format(\"%.4f %.4f\", mode.re, mode.zeta))  --> 1.1036 -0.5518\n"
+      "rig = system{ bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 } } }\n"
+      "for _, mode in ipairs(rig:modes()) do\n    print(string.format(\"%.6f %.6f\", mode.im, mode.shape.b / mode.shape.a))\n"
+      "end\n--> 1.000000 1.000000\n--> 3.000000 -1.000000",
+      {&modes_call}}},
     {lua::a_method<simulate_system>, simulate_doc},
-    {lua::a_method<modes_of_system>, modes_doc},
     {lua::a_method<system_with>,
      {"sys:with{ OPTIONS } -> system",
       "A copy of the system with some parameters changed: the options of system{...}, of named bodies and links by their "
@@ -361,8 +374,9 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
             options.fail(name, fmt::format("friction and {} exclude each other; give one of them", name));
         }
     }
-    if (!may_have_state && law->as<model::laws::Bristle>() != nullptr) {
-        options.fail("friction", "a law of bristles has a state of its own, which only system{ ... } supports");
+    const bool has_state = law->as<model::laws::Bristle>() != nullptr || law->as<model::laws::Jenkins>() != nullptr;
+    if (!may_have_state && (has_state || law->is_one_way())) {
+        options.fail("friction", fmt::format("{} is a law that only system{{ ... }} supports", law->lua_text()));
     }
     return *law;
 }

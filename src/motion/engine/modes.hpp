@@ -1,15 +1,26 @@
-// The modes of several bodies between which nothing but linear springs and viscous damping acts.
+// The modes of a system: how it swings, or leaves, when it is pushed a little.
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include "model/assembly.hpp"
+#include "model/drive.hpp"
 #include "model/oscillator.hpp"
+#include "text/expected.hpp"
 
 namespace dinal::motion::engine {
 
-/// Each mode as a system of one body with I = 1: one for each pair of complex eigenvalues, or one without a spring for
-/// each real eigenvalue. Growing modes, which only rounding can make, count as undamped.
+/// The linear motions that bodies and links have together without friction, as systems of one body.
 std::vector<model::Oscillator> modes_of(const model::Assembly& system);
+
+struct EigenMode {
+    std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
+    std::vector<std::complex<double>> shape{};  ///< of each body; the greatest is 1
+};
+
+/// Returns the modes of small motions beside a rest, searched from theta0, or beside an even sliding: contacts on belts
+/// slide, all others hold. Sorted by frequency.
+text::Expected<std::vector<EigenMode>> modes_beside(const model::Assembly& system, const model::Drive& drive);
 
 }  // namespace dinal::motion::engine
