@@ -39,7 +39,8 @@ constexpr text::Option load_options[] = {
      .meaning = "the names of the columns, instead of those in the file",
      .wanted = "a list of names such as { \"t\", \"theta\" }"},
     {.name = "sort",
-     .meaning = "true puts the rows in the order of their times: of the column t, or of the first one of numbers",
+     .meaning =
+         "true puts the rows in the order of their times: of the column t or time, or of the first one of numbers",
      .filled = text::fills<&LoadOptions::sort>},
     {.name = "duplicates",
      .meaning =
@@ -76,8 +77,9 @@ void take_groups(files::ReadColumns& content, const std::vector<std::vector<std:
 void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadColumns& content) {
     if (!asked.sort && asked.duplicates == Duplicates::keep) return;
     auto& columns = content.columns;
-    auto times = std::find_if(columns.begin(), columns.end(),
-                              [](const files::ReadColumn& column) { return column.name == "t" && !column.of_words; });
+    auto times = std::find_if(columns.begin(), columns.end(), [](const files::ReadColumn& column) {
+        return (column.name == "t" || column.name == "time") && !column.of_words;
+    });
     if (times == columns.end()) {
         times = std::find_if(columns.begin(), columns.end(), [](const auto& column) { return !column.of_words; });
     }
