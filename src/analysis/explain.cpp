@@ -15,7 +15,6 @@
 #include "model/laws/stribeck.hpp"
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 
 namespace dinal::analysis {
@@ -679,7 +678,7 @@ public:
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             if (whole_.joint && *whole_.joint != j) continue;
             // A joint whose numbers are beyond all bounds has no story.
-            const auto seen = motion::engine::seen_alone(system_, j);
+            const auto seen = model::oscillator_at(system_, j);
             if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).told();
         }
         if (all) text_ += "\n";
@@ -775,7 +774,7 @@ private:
     }
 
     const RunToTell& whole_;
-    const model::Assembly& system_;
+    const model::System& system_;
     const motion::Trajectory& run_;
 };
 
@@ -787,7 +786,7 @@ std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
                     motion::MethodView method) {
-    const auto whole = motion::engine::assembly_of(system);
+    const auto whole = model::as_system(system);
     return explain({.system = whole, .drive = drive, .parts = {&trajectory}, .method = method});
 }
 

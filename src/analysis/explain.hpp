@@ -16,7 +16,7 @@
 namespace dinal::analysis {
 
 struct RunToTell {
-    const model::Assembly& system;
+    const model::System& system;
     const model::Drive& drive;
     std::vector<const motion::Trajectory*> parts;  ///< the run as seen from each body and link
     motion::MethodView method;

@@ -5,7 +5,6 @@
 
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/spectral/spectral.hpp"
 #include "motion/stillness.hpp"
@@ -66,7 +65,7 @@ void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMo
 
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
                        std::shared_ptr<const motion::Trajectory> run) {
-    const model::Assembly& system = *question.system;
+    const model::System& system = *question.system;
     const std::size_t joint = question.joint.value_or(0);
     const model::Joint& seen = system.joints[joint];
     const bool alone = question.is_plain();

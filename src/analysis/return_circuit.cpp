@@ -76,7 +76,7 @@ public:
         // What holds when it comes back, holds from the beginning.
         Moment begin = moment(x, p);
         if (!stands_ && lap.mode) begin.mode = *lap.mode;
-        const model::Assembly& system = here.runs.system();
+        const model::System& system = here.runs.system();
         SteadyMotion motion;
         motion.multipliers = multipliers_of(derivative);
         motion.differentiable = true;

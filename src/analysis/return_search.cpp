@@ -10,7 +10,6 @@
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
-#include "motion/engine/one_body.hpp"
 
 namespace dinal::analysis {
 
@@ -26,7 +25,7 @@ bool has_acts(const model::Drive& drive) {
 }
 
 /// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
-bool is_linear(const model::Assembly& system, const model::Drive& drive) {
+bool is_linear(const model::System& system, const model::Drive& drive) {
     const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
     const auto bends = [](const model::Joint& joint) {
         return !joint.spring.none() || joint.walls || !joint.is_plain() || joint.friction.law.depends_on_speed();

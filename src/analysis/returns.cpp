@@ -60,7 +60,7 @@ bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
 Chart chart_of(Runs& runs) {
     const double period = runs.question().repeats.period, natural = runs.natural_period();
     const double length = period > 0 ? period : natural > 0 ? natural : 1;
-    const model::Assembly& system = runs.system();
+    const model::System& system = runs.system();
     const Index n = runs.bodies();
     std::vector<Index> part(static_cast<std::size_t>(n));
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = static_cast<Index>(i);

@@ -32,11 +32,11 @@ struct Moment {
 /// Runs of the question that begin at any moment.
 class Runs {
 public:
-    using Run = motion::engine::AssemblyRun;
+    using Run = motion::engine::Run;
     Runs(const SteadyQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
 
     [[nodiscard]] const SteadyQuestion& question() const { return question_; }
-    [[nodiscard]] const model::Assembly& system() const { return *question_.system; }
+    [[nodiscard]] const model::System& system() const { return *question_.system; }
     [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
     [[nodiscard]] Moment first() const;

@@ -10,7 +10,6 @@
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 
 namespace dinal::analysis {
@@ -298,19 +297,19 @@ private:
 
 }  // namespace
 
-text::Expected<SteadyQuestion> SteadyQuestion::of(model::AssemblyHandle system, model::Drive drive,
+text::Expected<SteadyQuestion> SteadyQuestion::of(model::SystemHandle system, model::Drive drive,
                                                   std::optional<std::size_t> joint) {
     if (system->has_moved()) {
         return text::Error{"a body is moved by its theta or velocity: simulate does that, steady motions do not yet"};
     }
-    auto body = motion::engine::seen_alone(*system, joint.value_or(0));
+    auto body = model::oscillator_at(*system, joint.value_or(0));
     if (!body) return body.error();
     return SteadyQuestion{
         .system = std::move(system), .drive = std::move(drive), .body = std::move(body).value(), .joint = joint};
 }
 
 SteadyQuestion SteadyQuestion::of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats) {
-    return {.system = std::make_shared<const model::Assembly>(motion::engine::assembly_of(body)),
+    return {.system = std::make_shared<const model::System>(model::as_system(body)),
             .drive = std::move(drive),
             .body = body,
             .repeats = repeats};
@@ -319,7 +318,7 @@ SteadyQuestion SteadyQuestion::of(const model::Oscillator& body, model::Drive dr
 SteadyQuestion SteadyQuestion::seen_at(std::size_t which) const {
     SteadyQuestion own = *this;
     own.joint = which;
-    own.body = motion::engine::seen_alone(*system, which).value();
+    own.body = model::oscillator_at(*system, which).value();
     return own;
 }
 

@@ -12,9 +12,9 @@
 
 #include "analysis/period_map.hpp"
 #include "analysis/repetition.hpp"
-#include "model/assembly.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 #include "motion/engine/run.hpp"
 #include "text/expected.hpp"
 
@@ -27,7 +27,7 @@ constexpr std::string_view name(SteadyStatus status) {
 }
 
 struct SteadyQuestion {
-    model::AssemblyHandle system;
+    model::SystemHandle system;
     model::Drive drive;
     /// The body, or of several the one that is looked at, as an oscillator with its formulas.
     model::Oscillator body;
@@ -41,7 +41,7 @@ struct SteadyQuestion {
 
     /// About one body without a name and with constant friction, or all or one of others.
     /// Fails where a body is moved by its theta or velocity.
-    static text::Expected<SteadyQuestion> of(model::AssemblyHandle system, model::Drive drive,
+    static text::Expected<SteadyQuestion> of(model::SystemHandle system, model::Drive drive,
                                              std::optional<std::size_t> joint = {});
 
     /// About one body without a name.
@@ -65,7 +65,7 @@ struct BodyMotion {
 /// One period of several bodies.
 struct PeriodOfBodies {
     model::Drive drive;
-    motion::engine::AssemblyRun run;
+    motion::engine::Run run;
 };
 
 struct SteadyMotion {

@@ -121,7 +121,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
                               const animation::Take& take, const model::Units& units) {
     std::vector<animation::Scene> bodies;
     std::vector<animation::RigScene::Link> links;
-    const model::Assembly& system = run->system();
+    const model::System& system = run->system();
     for (const RunHandle& part : parts_of(run)) {
         const model::Joint& joint = system.joints[*part->joint];
         animation::Scene scene = asked_scene(L, options, part, take, units);

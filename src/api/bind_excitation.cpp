@@ -169,7 +169,7 @@ lua::LuaFunction* read_function(const model::Component& component) {
 
 }  // namespace
 
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::Assembly& system, const model::Drive& drive,
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to) {
     if (!system.is_plain()) return {};
     const model::Excitation& M = drive.M();

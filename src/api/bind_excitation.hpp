@@ -15,7 +15,7 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
 
 /// The functions in M as native terms, to rounding, from one time to another. None where one is no such sum on each of
 /// its pieces, or where something else runs in Lua meanwhile, which may change what M depends on.
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::Assembly& system, const model::Drive& drive,
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to);
 /// The same M, whose functions have the periods that they are proven to have.
 model::Excitation with_periods(lua_State* L, const model::Excitation& M);

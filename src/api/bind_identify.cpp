@@ -28,13 +28,12 @@
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
-#include "model/assembly.hpp"
 #include "model/controller.hpp"
 #include "model/laws/asymmetric.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
-#include "motion/engine/one_body.hpp"
+#include "model/system.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
 #include "text/suggest.hpp"
@@ -115,7 +114,7 @@ struct FitAnswer {
     analysis::Identified found;
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
-    std::optional<model::Assembly> system;
+    std::optional<model::System> system;
     bool from_guess = false;  ///< a system was given
     model::Units units;       ///< of the record; without one for M where only ratios to I are found
 };
@@ -299,12 +298,12 @@ model::Friction changed_law(const model::Friction& friction, const Change& chang
 }
 
 /// What stands before the names of this body or link: "load."
-std::string before_names(const model::Assembly& system, std::size_t joint) {
+std::string before_names(const model::System& system, std::size_t joint) {
     return system.named ? system.joints[joint].name + "." : "";
 }
 
 /// Of each number of the body or link that can be fitted, by its name in identify: "load.Rd", or "Rd" of one body.
-void change_numbers(model::Assembly& system, std::size_t j, const Change& change_named) {
+void change_numbers(model::System& system, std::size_t j, const Change& change_named) {
     const std::string before = before_names(system, j);
     const Change change = [&](const std::string& own, double& number, Sign sign) {
         return change_named(before + own, number, sign);
@@ -338,16 +337,16 @@ void change_numbers(model::Assembly& system, std::size_t j, const Change& change
 }
 
 /// Pushes the system, or raises what is wrong with its numbers.
-int push_with_numbers(lua_State* L, const model::Assembly& system) {
+int push_with_numbers(lua_State* L, const model::System& system) {
     if (!system.named) return push_alone(L, "identify", system, 0);
     for (std::size_t j = 0; j < system.joints.size(); ++j) push_alone(L, "identify", system, j), lua_pop(L, 1);
-    lua::push<model::AssemblyHandle>(L, std::make_shared<const model::Assembly>(system));
+    lua::push<model::SystemHandle>(L, std::make_shared<const model::System>(system));
     return 1;
 }
 
 /// Called with a system and the options of its run.
 int run_with_numbers(lua_State* L) {
-    push_with_numbers(L, *static_cast<const model::Assembly*>(lua_touserdata(L, 1)));
+    push_with_numbers(L, *static_cast<const model::System*>(lua_touserdata(L, 1)));
     lua_getfield(L, -1, "simulate");
     lua_insert(L, -2);
     lua_pushvalue(L, 2);
@@ -432,7 +431,7 @@ public:
 private:
     void take_system() {
         options_.push("system");
-        const auto* system = lua::test<model::AssemblyHandle>(L_, -1);
+        const auto* system = lua::test<model::SystemHandle>(L_, -1);
         if (system == nullptr) options_.wrong("system");
         system_ = **system;
         lua_pop(L_, 1);
@@ -733,8 +732,8 @@ private:
     }
 
     /// Sets the tables, and gives the system.
-    model::Assembly with(const Eigen::VectorXd& p) {
-        model::Assembly system = system_;
+    model::System with(const Eigen::VectorXd& p) {
+        model::System system = system_;
         for (std::size_t j = 0; j < system.joints.size(); ++j) {
             change_numbers(system, j, [&](const std::string& name, double& number, Sign /*sign*/) {
                 const auto value = fitted(p, name);
@@ -750,7 +749,7 @@ private:
 
     std::optional<Eigen::VectorXd> predicted(const Eigen::VectorXd& p, Eigen::Index count) {
         const int top = lua_gettop(L_);
-        model::Assembly system = with(p);
+        model::System system = with(p);
         const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
                                                    known_until_.begin() + 1);
         lua_pushcfunction(L_, lua::guarded<run_with_numbers>);
@@ -827,7 +826,7 @@ private:
     }
 
     void answer(const analysis::GeneralFit& found, FitAnswer& fit) {
-        model::Assembly system = with(found.value);
+        model::System system = with(found.value);
         restore();
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
@@ -862,7 +861,7 @@ private:
     const lua::Options& options_;
     const IdentifyOptions& asked_;
     const Data& record_;
-    model::Assembly system_;
+    model::System system_;
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
     std::vector<double> t_;
@@ -908,7 +907,7 @@ void name_values(FitAnswer& fit) {
                                            .kinetic_friction = value(Unknown::Rd),
                                            .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd)),
                                            .units = fit.units});
-    if (system) fit.system = motion::engine::assembly_of(system.value());
+    if (system) fit.system = model::as_system(system.value());
 }
 
 int identify_record(lua_State* L) {

@@ -13,7 +13,7 @@ namespace dinal::api {
 
 namespace {
 
-void push_shape(lua_State* L, const model::Assembly& system, const motion::engine::EigenMode& mode, bool quadrature) {
+void push_shape(lua_State* L, const model::System& system, const motion::engine::EigenMode& mode, bool quadrature) {
     lua_newtable(L);
     for (std::size_t i = 0; i < mode.shape.size(); ++i) {
         const double part = quadrature ? mode.shape[i].imag() : mode.shape[i].real();
@@ -24,8 +24,8 @@ void push_shape(lua_State* L, const model::Assembly& system, const motion::engin
 }  // namespace
 
 int modes_of_system(lua_State* L) {
-    const AssemblyHandle handle = lua::self<AssemblyHandle>(L, 1, modes_call.example);
-    const model::Assembly& system = *handle;
+    const SystemHandle handle = lua::self<SystemHandle>(L, 1, modes_call.example);
+    const model::System& system = *handle;
     const lua::Options options(L, 2, modes_call);
     const model::Drive drive = asked_drive(L, options, system);
     const auto check = [&](const model::Excitation& of, const char* name) {

@@ -469,7 +469,7 @@ std::vector<RunHandle> parts_of(const RunHandle& run) {
 
 std::optional<model::Oscillator> alone(const Run& run) {
     if (run.origin == nullptr || run.of_all()) return {};
-    const auto made = motion::engine::seen_alone(run.system(), run.place());
+    const auto made = model::oscillator_at(run.system(), run.place());
     return made ? std::optional(made.value()) : std::nullopt;
 }
 

@@ -57,7 +57,7 @@ model::Drive played_drive(lua_State* L, const source::Task& task) {
 }
 
 source::Task asked_task(lua_State* L, const lua::Options& options, const RunOptions& asked,
-                        const AssemblyHandle& system) {
+                        const SystemHandle& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
     source::Task task{.system = system,
                       .drive = asked_drive(L, options, *system),
@@ -144,7 +144,7 @@ private:
 
 }  // namespace
 
-std::string readings_of(const model::Assembly& system, const model::Drive& drive, bool located, bool native) {
+std::string readings_of(const model::System& system, const model::Drive& drive, bool located, bool native) {
     std::string all;
     const auto tell = [&](const std::string& name, const model::Excitation& excitation) {
         for (const model::Component& component : excitation.components()) {
@@ -182,7 +182,7 @@ std::string readings_of(const model::Assembly& system, const model::Drive& drive
     return all;
 }
 
-bool sees_all(const model::Assembly& system, const model::Drive& drive, bool located) {
+bool sees_all(const model::System& system, const model::Drive& drive, bool located) {
     bool all = true;
     const auto see = [&](const model::UserFunction& function) {
         const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
@@ -229,7 +229,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     run->origin = std::make_shared<const source::Origin>(std::move(origin));
     const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
-    const model::Assembly& system = *asked.system;
+    const model::System& system = *asked.system;
     if (system.is_plain() && std::holds_alternative<motion::Exact>(asked.integrator)) {
         run->terms = terms_alone(L, system, asked.drive, asked.window.start, to);
     }
@@ -269,12 +269,12 @@ double usual_dt(const motion::Window& window, double natural_period) {
 }
 
 int simulate_system(lua_State* L) {
-    AssemblyHandle handle = lua::self<AssemblyHandle>(L, 1, simulate_call.example);
+    SystemHandle handle = lua::self<SystemHandle>(L, 1, simulate_call.example);
     const lua::Options options(L, 2, simulate_call);
     if (const auto units = asked_units(L, options)) {
-        model::Assembly renamed = *handle;
+        model::System renamed = *handle;
         renamed.units = *units;
-        handle = std::make_shared<const model::Assembly>(std::move(renamed));
+        handle = std::make_shared<const model::System>(std::move(renamed));
     }
     RunOptions asked;
     options.fill(asked);

@@ -483,7 +483,7 @@ void find_period(lua_State* L, analysis::SteadyQuestion& question) {
 }  // namespace
 
 int steady_of_system(lua_State* L) {
-    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, steady_call.example);
+    const SystemHandle system = lua::self<SystemHandle>(L, 1, steady_call.example);
     const lua::Options options(L, 2, steady_call);
     SteadyOptions asked;
     options.fill(asked);

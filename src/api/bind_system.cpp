@@ -19,7 +19,6 @@
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/jenkins.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "source/describe.hpp"
 
@@ -79,29 +78,29 @@ int nondimensional(lua_State* L) {
     parameters.friction = asked_law(L, options, {"friction_ratio", "breakaway_ratio"});
     parameters.units = asked_units(L, options).value_or(model::Units{.theta = "Mc/k", .t = "T0", .M = "Mc"});
     const model::Oscillator made = options.value_or_fail(model::Oscillator::make(parameters));
-    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(motion::engine::assembly_of(made)));
+    lua::push<SystemHandle>(L, std::make_shared<const model::System>(model::as_system(made)));
     return 1;
 }
 
 /// The body without a name that a field is read of. Fields of named systems end in field_of_names().
-model::Oscillator body_of(const AssemblyHandle& system) {
-    return motion::engine::seen_alone(*system, 0).value();
+model::Oscillator body_of(const SystemHandle& system) {
+    return model::oscillator_at(*system, 0).value();
 }
 
 /// A fact about that body.
 template <auto fact>
-auto of_body(const AssemblyHandle& system) {
+auto of_body(const SystemHandle& system) {
     return std::invoke(fact, body_of(system));
 }
 
 /// The same, which only k gives: nil without it.
 template <auto fact>
-auto of_spring(const AssemblyHandle& system) {
+auto of_spring(const SystemHandle& system) {
     const model::Oscillator body = body_of(system);
     return body.has_spring() ? std::optional(std::invoke(fact, body)) : std::nullopt;
 }
 
-text::Expected<double> friction_ratio(const AssemblyHandle& sys, double Mc) {
+text::Expected<double> friction_ratio(const SystemHandle& sys, double Mc) {
     const auto body = oscillator_of(*sys);
     if (!body) return body.error();
     if (Mc != 0) return body->friction_ratio(Mc);
@@ -111,15 +110,14 @@ text::Expected<double> friction_ratio(const AssemblyHandle& sys, double Mc) {
                        .culprit = "0"};
 }
 
-text::Expected<double> characteristic_torque(const AssemblyHandle& sys, double theta0,
-                                             std::optional<double> velocity0) {
+text::Expected<double> characteristic_torque(const SystemHandle& sys, double theta0, std::optional<double> velocity0) {
     const auto body = oscillator_of(*sys);
     if (!body) return body.error();
     return body->characteristic_torque({theta0, velocity0.value_or(0)});
 }
 
 template <bool links>
-std::vector<std::string> joint_names(const AssemblyHandle& system) {
+std::vector<std::string> joint_names(const SystemHandle& system) {
     std::vector<std::string> names;
     for (std::size_t j = 0; j < system->joints.size(); ++j) {
         if (system->named && system->is_link(j) == links) names.push_back(system->joints[j].name);
@@ -178,78 +176,76 @@ constexpr lua::Member system_members[] = {
       "The characteristic torque Mc = k sqrt(theta0^2 + (velocity0/omega0)^2) of the free motion that starts at theta0 "
       "(rad) with velocity0 (rad per time unit).",
       "print(system{ I = 1, k = 4 }:characteristic_torque(3, 8))  --> 20.0"}},
-    {lua::a_value<AssemblyHandle, of_body<&model::Oscillator::inertia>>,
+    {lua::a_value<SystemHandle, of_body<&model::Oscillator::inertia>>,
      {"sys.I -> number", "The moment of inertia.", "print(system{ I = 2, k = 4 }.I)  --> 2.0"}},
-    {lua::a_value<AssemblyHandle, of_body<&model::Oscillator::stiffness>>,
+    {lua::a_value<SystemHandle, of_body<&model::Oscillator::stiffness>>,
      {"sys.k -> number", "The stiffness, torque per rad.", "print(system{ I = 2, k = 4 }.k)  --> 4.0"}},
-    {lua::a_value<AssemblyHandle, of_body<&model::Oscillator::damping>>,
+    {lua::a_value<SystemHandle, of_body<&model::Oscillator::damping>>,
      {"sys.C -> number", "The viscous damping constant, torque per rad per time unit.",
       "print(system{ I = 2, k = 4 }.C)  --> 0.0"}},
-    {lua::a_value<AssemblyHandle,
+    {lua::a_value<SystemHandle,
                   of_body<[](const model::Oscillator& system) { return system.friction().under(1).kinetic(); }>>,
      {"sys.Rd -> number", "The torque of dry friction while the mass moves, under a normal load of 1.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Rd)  --> 0.5"}},
-    {lua::a_value<AssemblyHandle, of_body<[](const model::Oscillator& system) {
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) {
                       return system.friction().under(1).greatest_holding();
                   }>>,
      {"sys.Re -> number", "The breakaway torque under a normal load of 1. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
-    {lua::a_value<AssemblyHandle, of_body<[](const model::Oscillator& system) { return system.friction().under(1); }>>,
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) { return system.friction().under(1); }>>,
      {"sys.friction -> law", "The law of friction, under a normal load of 1.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.friction)  --> friction.coulomb{ Rd = 0.5, Re = 0.5 }"}},
-    {lua::a_value<AssemblyHandle, of_body<[](const model::Oscillator& system) { return system.friction().normal(); }>>,
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) { return system.friction().normal(); }>>,
      {"sys.normal -> number", "The constant normal load that multiplies the torques of friction.",
       "sys = system{ I = 1, k = 4, Rd = 1, normal = 2 }\nprint(sys.normal, sys.dead_zone)  --> 2.0\t0.5"}},
-    {lua::a_value<AssemblyHandle, of_body<[](const model::Oscillator& system) {
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) {
                       const model::Spring& spring = system.spring();
                       return spring.none() ? std::nullopt : std::optional(spring);
                   }>>,
      {"sys.spring -> spring or nil", "The spring in addition to k theta; nil if there is none.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
-    {lua::a_value<AssemblyHandle,
-                  of_body<[](const model::Oscillator& system) { return walls_by_name(system.walls()); }>>,
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) { return walls_by_name(system.walls()); }>>,
      {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad; nil if there are none.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
-    {lua::a_value<AssemblyHandle, [](const AssemblyHandle& system) { return units_by_name(system->units); }>,
+    {lua::a_value<SystemHandle, [](const SystemHandle& system) { return units_by_name(system->units); }>,
      {"sys.units -> table",
       "The names of the units of theta, t and M; nil without one. Cards, columns and axes show them; no number "
       "depends on them.",
       "print(system{ I = 1, k = 4, units = { theta = \"m\", t = \"s\" } }.units.theta)  --> m"}},
-    {lua::a_value<AssemblyHandle, joint_names<false>>,
+    {lua::a_value<SystemHandle, joint_names<false>>,
      {"sys.bodies -> table", "The names of the bodies, in alphabetical order; empty for one body without a name.",
       "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } } }\n"
       "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
-    {lua::a_value<AssemblyHandle, joint_names<true>>,
+    {lua::a_value<SystemHandle, joint_names<true>>,
      {"sys.links -> table", "The names of the links, in alphabetical order.",
       "rig = system{ bodies = { a = { I = 1 }, b = { I = 3 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
       "print(rig.links[1])  --> rod"}},
-    {lua::a_value<AssemblyHandle, of_spring<&model::Oscillator::natural_frequency>>,
+    {lua::a_value<SystemHandle, of_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},
-    {lua::a_value<AssemblyHandle, of_spring<&model::Oscillator::natural_period>>,
+    {lua::a_value<SystemHandle, of_spring<&model::Oscillator::natural_period>>,
      {"sys.T0 -> number", "The natural period 2 pi/omega0, time units; nil where k = 0.",
       "print(system{ I = 1, k = 4*math.pi^2 }.T0)  --> 1.0"}},
-    {lua::a_value<AssemblyHandle, of_body<&model::Oscillator::damped_frequency>>,
+    {lua::a_value<SystemHandle, of_body<&model::Oscillator::damped_frequency>>,
      {"sys.omega1 -> number or nil",
       "The frequency of the damped swing, omega0 sqrt(1 - zeta^2), rad per time unit; nil unless zeta < 1.",
       "print(system{ I = 1, k = 4 }.omega1, system{ I = 1, k = 4, C = 10 }.omega1)  --> 2.0\tnil"}},
-    {lua::a_value<AssemblyHandle, of_spring<&model::Oscillator::damping_ratio>>,
+    {lua::a_value<SystemHandle, of_spring<&model::Oscillator::damping_ratio>>,
      {"sys.zeta -> number", "The viscous damping ratio C/(2 I omega0); nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 1 }.zeta)  --> 0.25"}},
-    {lua::a_value<AssemblyHandle, of_spring<[](const model::Oscillator& body) { return model::name(body.regime()); }>>,
+    {lua::a_value<SystemHandle, of_spring<[](const model::Oscillator& body) { return model::name(body.regime()); }>>,
      {"sys.regime -> string",
       "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\"; "
       "nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 4 }.regime)  --> critical"}},
-    {lua::a_value<AssemblyHandle, of_body<[](const model::Oscillator& system) {
+    {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) {
                       return system.has_linear_spring() ? std::optional(system.dead_zone()) : std::nullopt;
                   }>>,
      {"sys.dead_zone -> number",
       "Re/k, rad: without excitation the mass can rest wherever |theta| is at most this; nil if "
       "k = 0 or with another spring. A normal load multiplies it.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
-    {lua::a_text<AssemblyHandle,
-                 [](lua_State* L, const AssemblyHandle& system) { return source::lua_text(L, *system); }>,
+    {lua::a_text<SystemHandle, [](lua_State* L, const SystemHandle& system) { return source::lua_text(L, *system); }>,
      {"tostring(sys) -> string", "The Lua text that recreates it.",
       "print(system{ I = 1, k = 4, Rd = 0.5 })  --> system{ I = 1, k = 4, Rd = 0.5, Re = 0.5 }"}},
 };
@@ -280,7 +276,7 @@ const char* varying_option(lua_State* L) {
 }
 
 /// The fields of a system with names are its bodies and links; what each of these has is asked of it.
-int field_of_names(lua_State* L, const model::Assembly& system, std::string_view name) {
+int field_of_names(lua_State* L, const model::System& system, std::string_view name) {
     const auto own =
         std::find_if(system.joints.begin(), system.joints.end(), [&](const auto& j) { return j.name == name; });
     if (own != system.joints.end()) {
@@ -298,7 +294,7 @@ int field_of_names(lua_State* L, const model::Assembly& system, std::string_view
 }
 
 /// What a friction that varies says under these names: what the user wrote.
-int field_of_varying(lua_State* L, const model::Assembly& system, std::string_view name) {
+int field_of_varying(lua_State* L, const model::System& system, std::string_view name) {
     if (name != "Rd" && name != "Re" && name != "normal" && name != "friction" && name != "dead_zone") return 0;
     push_joint(L, system, 0);
     const char* varying = varying_option(L);
@@ -318,15 +314,15 @@ int field_of_varying(lua_State* L, const model::Assembly& system, std::string_vi
 }
 
 int field_of_system(lua_State* L) {
-    const auto* system = lua::test<AssemblyHandle>(L, 1);
+    const auto* system = lua::test<SystemHandle>(L, 1);
     if (system == nullptr || (*system)->is_plain()) return 0;
-    const AssemblyHandle kept = *system;
+    const SystemHandle kept = *system;
     const std::string_view name = lua_tostring(L, 2);
     return kept->named ? field_of_names(L, *kept, name) : field_of_varying(L, *kept, name);
 }
 
 int unknown_field(lua_State* L) {
-    const auto* system = lua::test<AssemblyHandle>(L, 1);
+    const auto* system = lua::test<SystemHandle>(L, 1);
     if (system != nullptr && (*system)->named && lua_type(L, 2) == LUA_TSTRING) {
         joint_named(L, lua_tostring(L, 2), **system, "this system", system_class);
     }
@@ -350,7 +346,7 @@ const lua::Class system_class = {
     field_of_system};
 
 void register_system(lua_State* L) {
-    lua::add_class<AssemblyHandle>(L, system_class);
+    lua::add_class<SystemHandle>(L, system_class);
     lua::add_functions(L, system_functions);
 }
 

@@ -204,7 +204,7 @@ private:
 
 /// The option `system`; none when it is absent.
 std::optional<model::Oscillator> asked_system(const lua::Options& options) {
-    const auto* system = options.object<AssemblyHandle>("system");
+    const auto* system = options.object<SystemHandle>("system");
     if (system == nullptr) return {};
     return options.value_or_fail(oscillator_of(**system));
 }

@@ -32,7 +32,7 @@ std::string row(std::string_view name, double value, std::string_view remark, co
 }  // namespace
 
 std::string system_card(lua_State* L, int index, const terminal::Display& screen) {
-    const AssemblyHandle& handle = *lua::test<AssemblyHandle>(L, index);
+    const SystemHandle& handle = *lua::test<SystemHandle>(L, index);
     const auto one = oscillator_of(*handle);
     if (!one) return source::lua_text(L, *handle);
     const model::Oscillator& system = one.value();

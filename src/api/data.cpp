@@ -174,7 +174,7 @@ int push_data(lua_State* L, Data data) {
 }
 
 void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
-                 const model::Units& units, const model::Assembly* several) {
+                 const model::Units& units, const model::System* several) {
     const ColumnUnits in(units);
     using model::Event;
     Data data = table_of(events, ListColumn{"t", &Event::t, in.t},

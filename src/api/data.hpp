@@ -15,8 +15,8 @@
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
-#include "model/assembly.hpp"
 #include "model/event.hpp"
+#include "model/system.hpp"
 #include "model/units.hpp"
 
 namespace dinal::api {
@@ -168,7 +168,7 @@ void push_row(lua_State* L, int index, const Data& data, std::size_t row);
 
 /// What happened: t, kind, where (of several bodies and links), theta, M, velocity and, where a user gave some, names.
 void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
-                 const model::Units& units, const model::Assembly* several);
+                 const model::Units& units, const model::System* several);
 
 /// Its first line, and a table of its first rows; a column that does not fit into the width is left out.
 std::string text_of(const Data& data, std::size_t width);

@@ -17,12 +17,12 @@ namespace engine = motion::engine;
 namespace {
 
 /// The option, or the part of it that is for this body or link.
-std::string part_of_option(const model::Assembly& system, const char* option, std::size_t joint) {
+std::string part_of_option(const model::System& system, const char* option, std::size_t joint) {
     return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
 }
 
 /// What relays can look at: theta.load, velocity.load and the states.
-std::vector<std::string> names_for_relays(const model::Assembly& system, const model::Drive& drive) {
+std::vector<std::string> names_for_relays(const model::System& system, const model::Drive& drive) {
     std::vector<std::string> known;
     if (!system.named) known = {"theta", "velocity"};
     for (const char* kind : {"theta.", "velocity."}) {
@@ -34,7 +34,7 @@ std::vector<std::string> names_for_relays(const model::Assembly& system, const m
     return known;
 }
 
-void check_rigid_start(const lua::Options& options, const model::Assembly& system, const model::Joint& joint,
+void check_rigid_start(const lua::Options& options, const model::System& system, const model::Joint& joint,
                        const std::vector<double>& velocities) {
     double size = 0;
     std::string given;
@@ -50,8 +50,7 @@ void check_rigid_start(const lua::Options& options, const model::Assembly& syste
                                           joint.name, system.angle_in_words(joint), given, speed));
 }
 
-void check_one_way(const lua::Options& options, const model::Assembly& system, std::size_t j,
-                   const model::Drive& drive) {
+void check_one_way(const lua::Options& options, const model::System& system, std::size_t j, const model::Drive& drive) {
     const model::Joint& joint = system.joints[j];
     const double belt = drive.belts[j].components().empty() ? 0 : drive.belts[j].value_after(0);
     double size = std::fabs(belt);
@@ -65,7 +64,7 @@ void check_one_way(const lua::Options& options, const model::Assembly& system, s
 
 }  // namespace
 
-model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::System& system) {
     model::Drive drive = model::Drive::at_rest(system.bodies.size(), system.joints.size());
     const auto named = [&](const char* option, std::size_t joint) {
         return fmt::format("{}: {}", options.call(), part_of_option(system, option, joint));
@@ -86,7 +85,7 @@ model::Drive asked_acting(lua_State* L, const lua::Options& options, const model
     return drive;
 }
 
-model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system) {
     model::Drive drive = asked_acting(L, options, system);
     for (const auto& [option, values] :
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
@@ -133,7 +132,7 @@ std::vector<std::string> names_of_states(const model::Drive& drive) {
     return names;
 }
 
-void name_functions(lua::CallState& call, const model::Assembly& system, const model::Drive& drive) {
+void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive) {
     if (system.named) call.name_bodies(body_names(system));
     if (!drive.states.empty()) call.name_states(names_of_states(drive));
 }

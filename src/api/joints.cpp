@@ -21,7 +21,6 @@
 #include "model/laws/coulomb.hpp"
 #include "model/laws/freewheel.hpp"
 #include "model/laws/sum.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
 #include "source/describe.hpp"
 #include "text/characters.hpp"
@@ -75,13 +74,13 @@ constexpr auto link_options = text::joined(link_numbers, joint_options, friction
 
 }  // namespace
 
-std::vector<std::string> body_names(const model::Assembly& system) {
+std::vector<std::string> body_names(const model::System& system) {
     std::vector<std::string> names;
     for (const model::Body& body : system.bodies) names.push_back(body.name);
     return names;
 }
 
-std::size_t joint_named(lua_State* L, std::string_view name, const model::Assembly& system, const char* what,
+std::size_t joint_named(lua_State* L, std::string_view name, const model::System& system, const char* what,
                         const lua::Class& of) {
     std::vector<std::string> own;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -92,7 +91,7 @@ std::size_t joint_named(lua_State* L, std::string_view name, const model::Assemb
                        name, own, of);
 }
 
-void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
+void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::System& system,
                     Names which, const std::function<void(std::size_t)>& f) {
     if (!options.has(option)) return;
     options.push(option);
@@ -186,7 +185,7 @@ model::Joint read_body(lua_State* L, const std::string& call, model::Body& body)
 
 }  // namespace
 
-text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system) {
+text::Expected<model::Oscillator> oscillator_of(const model::System& system) {
     if (system.named) {
         return text::Error{fmt::format("needs one body, and this system has names: take one of them, such as sys.{}",
                                        system.joints.front().name)};
@@ -196,21 +195,21 @@ text::Expected<model::Oscillator> oscillator_of(const model::Assembly& system) {
                                ? "needs rigid walls, and those of this system are elastic"
                                : "needs constant friction, and that of this system varies"};
     }
-    return engine::seen_alone(system, 0);
+    return model::oscillator_at(system, 0);
 }
 
-int push_alone(lua_State* L, std::string_view call, const model::Assembly& system, std::size_t j) {
-    const auto oscillator = lua::value_or_raise(L, call, engine::seen_alone(system, j));
-    model::Assembly one{
+int push_alone(lua_State* L, std::string_view call, const model::System& system, std::size_t j) {
+    const auto oscillator = lua::value_or_raise(L, call, model::oscillator_at(system, j));
+    model::System one{
         .bodies = {{"", oscillator.inertia()}}, .joints = {system.joints[j]}, .named = false, .units = system.units};
     one.joints[0].name.clear(), one.joints[0].of = {model::Weight{}};
-    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(one)));
+    lua::push<SystemHandle>(L, std::make_shared<const model::System>(std::move(one)));
     return 1;
 }
 
 namespace {
 
-std::size_t body_index(const lua::Options& options, const model::Assembly& system, const std::string& link,
+std::size_t body_index(const lua::Options& options, const model::System& system, const std::string& link,
                        lua_State* L) {
     const std::string name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
@@ -228,7 +227,7 @@ std::size_t body_index(const lua::Options& options, const model::Assembly& syste
 }
 
 /// The bodies and weights of the link in the table on the top, which are removed from it.
-std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& options, const model::Assembly& system,
+std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& options, const model::System& system,
                                         const std::string& link) {
     std::vector<model::Weight> weights;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
@@ -249,7 +248,7 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
 }
 
 /// A link from the table on the top: between two bodies that it begins with, or of any by their weights.
-model::Joint read_link(lua_State* L, const lua::Options& options, const model::Assembly& system,
+model::Joint read_link(lua_State* L, const lua::Options& options, const model::System& system,
                        const std::string& name) {
     const int given = lua_gettop(L);
     const lua_Unsigned listed = lua_rawlen(L, given);
@@ -314,7 +313,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     const std::vector<std::string> names = tables_by_name(L, options, "bodies");
     if (names.empty()) options.wrong("bodies");
     refuse_of_one(options);
-    model::Assembly system;
+    model::System system;
     system.units = asked_units(L, options).value_or(model::Units());
     for (std::size_t i = 0; i < names.size(); ++i) {
         lua_getfield(L, -1, names[i].c_str());
@@ -339,13 +338,13 @@ int push_bodies(lua_State* L, const lua::Options& options) {
         }
         lua_pop(L, 1);
     }
-    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(system)));
+    lua::push<SystemHandle>(L, std::make_shared<const model::System>(std::move(system)));
     return 1;
 }
 
 int push_body(lua_State* L, const lua::Options& options) {
     double inertia = 0;
-    model::Assembly system{.bodies = {}, .joints = {asked_joint(L, options, inertia)}, .named = false};
+    model::System system{.bodies = {}, .joints = {asked_joint(L, options, inertia)}, .named = false};
     system.bodies.push_back({"", inertia});
     system.units = asked_units(L, options).value_or(model::Units());
     return push_alone(L, options.call(), system, 0);
@@ -495,7 +494,7 @@ void push_acting(lua_State* L, const model::Excitation& value) {
 
 }  // namespace
 
-void push_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
+void push_joint(lua_State* L, const model::System& system, std::size_t j) {
     const model::Joint& joint = system.joints[j];
     const model::ContactFriction& friction = joint.friction;
     lua_newtable(L);
@@ -604,7 +603,7 @@ void overwrite(lua_State* L, const lua::Options& options) {
 }  // namespace
 
 int system_with(lua_State* L) {
-    const model::Assembly& old = *lua::self<AssemblyHandle>(L, 1, with_call.example);
+    const model::System& old = *lua::self<SystemHandle>(L, 1, with_call.example);
     const lua::Options options(L, 2, with_call);
     const int top = lua_gettop(L);
     for (const char* option : {"bodies", "links"}) {

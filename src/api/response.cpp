@@ -225,7 +225,7 @@ inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return
 /// What a call of sys:response asks.
 class ResponseCall {
 public:
-    ResponseCall(lua_State* L, AssemblyHandle system, const lua::Options& options)
+    ResponseCall(lua_State* L, SystemHandle system, const lua::Options& options)
         : L_(L), system_(std::move(system)), options_(options) {
         options.fill(asked_);
         if (!asked_.of.empty()) {
@@ -254,7 +254,7 @@ public:
     void set_beside(double value) { beside_ = value; }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    [[nodiscard]] const model::Assembly& system() const { return *system_; }
+    [[nodiscard]] const model::System& system() const { return *system_; }
     /// Rows for the values only.
     [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] bool doubled() const { return asked_.doubled; }
@@ -321,8 +321,8 @@ private:
     [[nodiscard]] analysis::SteadyQuestion question_by_user(double x) const {
         push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
-        const auto* changed = own.object<AssemblyHandle>("system");
-        const AssemblyHandle system = changed != nullptr ? *changed : system_;
+        const auto* changed = own.object<SystemHandle>("system");
+        const SystemHandle system = changed != nullptr ? *changed : system_;
         const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
         if (!std::equal(system_->joints.begin(), system_->joints.end(), system->joints.begin(), system->joints.end(),
                         names_alike)) {
@@ -334,8 +334,8 @@ private:
         model::Drive drive = asked_drive(L_, own, *system);
         if (!system->named && !own.has("theta0")) drive.theta0 = {asked_.theta0};
         if (!system->named && !own.has("velocity0")) drive.velocity0 = {asked_.velocity0};
-        auto question = analysis::SteadyQuestion::of(system, std::move(drive),
-                                                     system->is_plain() ? std::nullopt : std::optional(joint_));
+        auto question = own.value_or_fail(analysis::SteadyQuestion::of(
+            system, std::move(drive), system->is_plain() ? std::nullopt : std::optional(joint_)));
         question.periods = asked.periods.value_or(0);
         question.repeats = repetition_at(x, own, question, period);
         if (!system->is_plain()) question.settles = settles_or_fail(own, question);
@@ -421,7 +421,7 @@ private:
     }
 
     lua_State* L_;
-    AssemblyHandle system_;
+    SystemHandle system_;
     std::size_t joint_ = 0;
     const lua::Options& options_;
     ResponseOptions asked_;
@@ -469,7 +469,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
 }
 
 Data response_data(const std::vector<ResponseRow>& rows, const std::vector<VariedColumn>& over,
-                   const model::Assembly& system) {
+                   const model::System& system) {
     using analysis::SteadyStatus;
     const VariedColumn& of = over.back();
     const auto found = [&](const analysis::SteadyMotion& motion, double value, bool may_grow = false) {
@@ -574,7 +574,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
 }  // namespace
 
 int response_of_system(lua_State* L) {
-    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, response_call.example);
+    const SystemHandle system = lua::self<SystemHandle>(L, 1, response_call.example);
     const lua::Options options(L, 2, response_call);
     return response_of(L, options, ResponseCall(L, system, options));
 }

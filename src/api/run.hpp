@@ -32,7 +32,7 @@ struct Run {
     // As seen from each joint, made when it is asked for. Not kept: they keep the run of all bodies.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
 
-    [[nodiscard]] const model::Assembly& system() const { return *origin->system; }
+    [[nodiscard]] const model::System& system() const { return *origin->system; }
     /// Its system has names, and it is seen from none of its bodies and links.
     [[nodiscard]] bool of_all() const { return origin != nullptr && system().named && !joint; }
     /// The place of the joint among those of the system.

@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include "model/assembly.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/oscillator.hpp"
 #include "model/springs/user_spring.hpp"
+#include "model/system.hpp"
 
 namespace dinal::model {
 
@@ -37,8 +37,8 @@ Oscillator with_functions(const Oscillator& system, auto&& other) {
     return Oscillator::make(parameters).value();  // as it was made once, so it is right
 }
 
-AssemblyHandle with_functions(const AssemblyHandle& rig, auto&& other) {
-    Assembly changed = *rig;
+SystemHandle with_functions(const SystemHandle& rig, auto&& other) {
+    System changed = *rig;
     for (Body& body : changed.bodies) {
         if (body.moved) body.moved->motion = other(body.moved->motion);
     }
@@ -53,7 +53,7 @@ AssemblyHandle with_functions(const AssemblyHandle& rig, auto&& other) {
             if (*value) *value = other(**value);
         }
     }
-    return std::make_shared<const Assembly>(std::move(changed));
+    return std::make_shared<const System>(std::move(changed));
 }
 
 }  // namespace dinal::model

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "model/assembly.hpp"
 #include "model/drive.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 #include "motion/growing.hpp"
 #include "motion/method.hpp"
 #include "motion/trajectory.hpp"
@@ -103,7 +103,7 @@ text::Expected<Trajectory> simulate(const model::Oscillator& system, const model
                                     const Limits& limits = {});
 
 /// The same of any system: of one with names all columns, and no course, which is that of its parts.
-text::Expected<Trajectory> simulate(const model::Assembly& system, const model::Drive& drive, const Window& window,
+text::Expected<Trajectory> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                                     const Grid& rows, MethodView method, const Monitor& monitor = {},
                                     const Limits& limits = {});
 
@@ -114,18 +114,18 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
                                   const Limits& limits = {});
 
-text::Expected<Trajectory> resume(const model::Assembly& system, const model::Drive& drive, const Trajectory& so_far,
+text::Expected<Trajectory> resume(const model::System& system, const model::Drive& drive, const Trajectory& so_far,
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
                                   const Limits& limits = {});
 
 /// The run of all bodies as a trajectory: of one with names all columns.
-Trajectory trajectory_of(const model::Assembly& system, const model::Drive& drive,
-                         std::shared_ptr<const engine::AssemblyRun> run);
+Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
+                         std::shared_ptr<const engine::Run> run);
 /// As seen from this body or link.
-Trajectory seen_from(const model::Assembly& system, const model::Drive& drive,
-                     std::shared_ptr<const engine::AssemblyRun> run, std::size_t joint);
+Trajectory seen_from(const model::System& system, const model::Drive& drive, std::shared_ptr<const engine::Run> run,
+                     std::size_t joint);
 /// How many columns its rows have.
-std::size_t columns_of(const model::Assembly& system, const model::Drive& drive);
+std::size_t columns_of(const model::System& system, const model::Drive& drive);
 /// Whether the motion between the rows was kept.
 bool is_dense(const Trajectory& trajectory);
 

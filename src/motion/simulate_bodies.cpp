@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "motion/engine/modes.hpp"
-#include "motion/engine/one_body.hpp"
 #include "motion/engine/part.hpp"
+#include "motion/engine/plain.hpp"
 #include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 
@@ -15,12 +15,12 @@ namespace dinal::motion {
 namespace {
 
 /// A run that ended where it began has no stretch that takes memory.
-bool keeps_motion(const engine::AssemblyRun& run) {
+bool keeps_motion(const engine::Run& run) {
     return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
 }
 
 /// The method must take any system, and suit each mode of the bodies. Contacts that hold make none of them faster.
-std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Assembly& system, const model::Drive& drive,
+std::optional<text::Error> wrong_for_bodies(MethodView method, const model::System& system, const model::Drive& drive,
                                             const Window& window) {
     if (!method.cut()) {
         return text::Error{.sentence = fmt::format("{} is for one body without a name and with constant friction: use "
@@ -36,10 +36,9 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Asse
     return {};
 }
 
-text::Expected<engine::AssemblyRun> run_of(const model::Assembly& system, const model::Drive& drive,
-                                           const Window& window, const Grid& rows, MethodView method,
-                                           const Monitor& monitor, const Limits& limits,
-                                           std::shared_ptr<const engine::Carry> before = {}) {
+text::Expected<engine::Run> run_of(const model::System& system, const model::Drive& drive, const Window& window,
+                                   const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits,
+                                   std::shared_ptr<const engine::Carry> before = {}) {
     if (auto wrong = window.complaint()) return *wrong;
     const auto grid = rows.within(window);
     if (!grid) return grid.error();
@@ -61,7 +60,7 @@ text::Expected<engine::AssemblyRun> run_of(const model::Assembly& system, const 
 
 }  // namespace
 
-std::size_t columns_of(const model::Assembly& system, const model::Drive& drive) {
+std::size_t columns_of(const model::System& system, const model::Drive& drive) {
     return system.is_plain() ? static_cast<std::size_t>(column_count) : engine::column_names_of(system, drive).size();
 }
 
@@ -69,19 +68,19 @@ bool is_dense(const Trajectory& trajectory) {
     return trajectory.course != nullptr || (trajectory.bodies != nullptr && keeps_motion(*trajectory.bodies));
 }
 
-Trajectory seen_from(const model::Assembly& system, const model::Drive& drive,
-                     std::shared_ptr<const engine::AssemblyRun> run, std::size_t joint) {
+Trajectory seen_from(const model::System& system, const model::Drive& drive, std::shared_ptr<const engine::Run> run,
+                     std::size_t joint) {
     std::optional<model::Oscillator> seen;
     if (keeps_motion(*run)) {
-        if (auto made = engine::seen_alone(system, joint)) seen = std::move(made).value();
+        if (auto made = model::oscillator_at(system, joint)) seen = std::move(made).value();
     }
     Trajectory part = engine::part_with_rows(system, drive, *run, joint, seen);
     part.bodies = std::move(run);
     return part;
 }
 
-Trajectory trajectory_of(const model::Assembly& system, const model::Drive& drive,
-                         std::shared_ptr<const engine::AssemblyRun> run) {
+Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
+                         std::shared_ptr<const engine::Run> run) {
     if (!system.named) return seen_from(system, drive, std::move(run), 0);
     Trajectory all = engine::part_of(system, drive, *run, 0, {});
     if (all.rough) all.rough->other_integrators = false;
@@ -95,25 +94,25 @@ Trajectory trajectory_of(const model::Assembly& system, const model::Drive& driv
     return all;
 }
 
-text::Expected<Trajectory> simulate(const model::Assembly& system, const model::Drive& drive, const Window& window,
+text::Expected<Trajectory> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                                     const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
     if (system.is_plain()) {
-        const auto alone = engine::seen_alone(system, 0);
+        const auto alone = model::oscillator_at(system, 0);
         return alone ? simulate(*alone, drive, window, rows, method, monitor, limits) : alone.error();
     }
     auto run = run_of(system, drive, window, rows, method, monitor, limits);
     if (!run) return run.error();
-    return trajectory_of(system, drive, std::make_shared<const engine::AssemblyRun>(std::move(run).value()));
+    return trajectory_of(system, drive, std::make_shared<const engine::Run>(std::move(run).value()));
 }
 
-text::Expected<Trajectory> resume(const model::Assembly& system, const model::Drive& drive, const Trajectory& so_far,
+text::Expected<Trajectory> resume(const model::System& system, const model::Drive& drive, const Trajectory& so_far,
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor,
                                   const Limits& limits) {
     if (system.is_plain()) {
-        const auto alone = engine::seen_alone(system, 0);
+        const auto alone = model::oscillator_at(system, 0);
         return alone ? resume(*alone, drive, so_far, t_end, rows, method, monitor, limits) : alone.error();
     }
-    const engine::AssemblyRun& first = *so_far.bodies;
+    const engine::Run& first = *so_far.bodies;
     const std::size_t columns = columns_of(system, drive);
     const auto grid = grid_of_both(so_far, t_end, rows, columns, limits);
     if (!grid) return grid.error();
@@ -121,7 +120,7 @@ text::Expected<Trajectory> resume(const model::Assembly& system, const model::Dr
     auto second =
         run_of(system, drive, {so_far.t_stop, t_end}, Grid::at(std::move(times)), method, monitor, limits, first.carry);
     if (!second) return second.error();
-    engine::AssemblyRun whole = std::move(second).value();
+    engine::Run whole = std::move(second).value();
     whole.table = first.table.followed_by(kept, whole.table, limits.memory / (columns * sizeof(double)));
     whole.events.insert(whole.events.begin(), first.events.begin(), first.events.end());
     whole.t_start = first.t_start, whole.begun = first.begun;
@@ -129,7 +128,7 @@ text::Expected<Trajectory> resume(const model::Assembly& system, const model::Dr
     whole.unproven = std::max(first.unproven, whole.unproven);
     whole.noise = std::max(first.noise, whole.noise);
     whole.jumps += first.jumps;
-    return trajectory_of(system, drive, std::make_shared<const engine::AssemblyRun>(std::move(whole)));
+    return trajectory_of(system, drive, std::make_shared<const engine::Run>(std::move(whole)));
 }
 
 }  // namespace dinal::motion

@@ -70,7 +70,7 @@ struct Rough {
 };
 
 namespace engine {
-struct AssemblyRun;
+struct Run;
 }
 
 struct Trajectory {
@@ -99,7 +99,7 @@ struct Trajectory {
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
     /// The run of all bodies that this one is, or is seen from one of them; none of a plain system.
-    std::shared_ptr<const engine::AssemblyRun> bodies = {};
+    std::shared_ptr<const engine::Run> bodies = {};
 
     /// Jumps so many that they are what the run takes long for.
     [[nodiscard]] bool jumps_often() const {

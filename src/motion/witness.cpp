@@ -207,7 +207,7 @@ bool has_functions(const model::Oscillator& system, const model::Drive& drive) {
     return has_functions(system) || has_functions(drive);
 }
 
-bool has_functions(const model::Assembly& system, const model::Drive& drive) {
+bool has_functions(const model::System& system, const model::Drive& drive) {
     const auto has = [](const model::Joint& joint) {
         return !joint.friction.is_constant() || joint.friction.law.as<model::laws::UserLaw>() != nullptr ||
                joint.spring.as<model::springs::UserSpring>() != nullptr;

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "model/assembly.hpp"
 #include "model/contradiction.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 
 namespace dinal::motion {
 
@@ -128,6 +128,6 @@ private:
 
 /// Something in the run is a function that a user has written.
 [[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Drive& drive);
-[[nodiscard]] bool has_functions(const model::Assembly& system, const model::Drive& drive);
+[[nodiscard]] bool has_functions(const model::System& system, const model::Drive& drive);
 
 }  // namespace dinal::motion

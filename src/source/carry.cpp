@@ -348,7 +348,7 @@ bool Carrier::object(int index) {
     const bool known =
         shared(lua::test<lua::Vector>(from_, index)) || shared(lua::test<motion::Integrator>(from_, index)) ||
         copied(lua::test<model::Friction>(from_, index)) || copied(lua::test<model::Spring>(from_, index)) ||
-        copied(lua::test<model::AssemblyHandle>(from_, index)) || copied(lua::test<model::Excitation>(from_, index));
+        copied(lua::test<model::SystemHandle>(from_, index)) || copied(lua::test<model::Excitation>(from_, index));
     if (error_) return false;
     if (!known && !other_objects_(from_, index, to_)) {
         const lua::Documented found = lua::documented(from_, index);

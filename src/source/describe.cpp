@@ -10,7 +10,6 @@
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
-#include "motion/engine/one_body.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
@@ -41,7 +40,7 @@ std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole
 namespace {
 
 /// "{ I = 1, k = 4, Rd = 0.3 }", or of a link "{ \"motor\", \"load\", k = 90 }".
-std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t j, ValueText* whole) {
+std::string joint_text(lua_State* L, const model::System& system, std::size_t j, ValueText* whole) {
     const model::Joint& joint = system.joints[j];
     std::vector<std::string> parts;
     const auto number = [&](const char* name, double value) {
@@ -100,10 +99,10 @@ std::string joint_text(lua_State* L, const model::Assembly& system, std::size_t 
 }  // namespace
 
 std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
-    return lua_text(L, motion::engine::assembly_of(system), whole);
+    return lua_text(L, model::as_system(system), whole);
 }
 
-std::string lua_text(lua_State* L, const model::Assembly& system, ValueText* whole) {
+std::string lua_text(lua_State* L, const model::System& system, ValueText* whole) {
     if (!system.named) return "system" + joint_text(L, system, 0, whole);
     std::vector<std::string> bodies, links;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {

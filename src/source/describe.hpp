@@ -4,9 +4,9 @@
 #include <string>
 
 #include "lua/lua_headers.hpp"
-#include "model/assembly.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 #include "motion/method.hpp"
 
 namespace dinal::lua {
@@ -30,7 +30,7 @@ std::string describe(lua_State* L, const model::Excitation& excitation, ValueTex
 std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole = nullptr);
 
 /// "system{ bodies = { a = { I = 1, k = 4 } } }": the same of several bodies.
-std::string lua_text(lua_State* L, const model::Assembly& system, ValueText* whole = nullptr);
+std::string lua_text(lua_State* L, const model::System& system, ValueText* whole = nullptr);
 
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
 std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);

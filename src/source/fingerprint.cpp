@@ -317,7 +317,7 @@ void Fingerprint::object(int index) {
     };
     if (const auto* own = lua::test<model::Excitation>(L_, index)) {
         written(describe(L_, *own, &no_functions), *own);
-    } else if (const auto* system = lua::test<model::AssemblyHandle>(L_, index)) {
+    } else if (const auto* system = lua::test<model::SystemHandle>(L_, index)) {
         written(lua_text(L_, **system, &no_functions), *system);
     } else if (const auto* law = lua::test<model::Friction>(L_, index)) {
         written(lua_text(L_, *law, &no_functions), *law);

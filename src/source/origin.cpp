@@ -81,7 +81,7 @@ void append_states_and_events(std::vector<std::string>& lines, lua_State* L, con
 }
 
 /// "{ a = 1, b = 2 }", or of one body without a name its number.
-std::string by_body(const model::Assembly& system, const std::vector<double>& numbers) {
+std::string by_body(const model::System& system, const std::vector<double>& numbers) {
     if (!system.named) return fmt::format("{}", numbers.front());
     std::string text;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -91,7 +91,7 @@ std::string by_body(const model::Assembly& system, const std::vector<double>& nu
 }
 
 /// The line "local M = ..." by body or joint; none where nothing acts.
-void append_acting(std::vector<std::string>& lines, lua_State* L, const char* name, const model::Assembly& system,
+void append_acting(std::vector<std::string>& lines, lua_State* L, const char* name, const model::System& system,
                    const std::vector<model::Excitation>& acting, ValueText& writer) {
     std::string text;
     for (std::size_t j = 0; j < acting.size(); ++j) {
@@ -108,7 +108,7 @@ bool acts(const std::vector<model::Excitation>& acting) {
 }
 
 /// The lines that make a system and all that drives it. Without functions of a user Lua is not asked, and may be null.
-std::vector<std::string> set_up_lines(lua_State* L, const model::Assembly& system, const model::Drive& drive) {
+std::vector<std::string> set_up_lines(lua_State* L, const model::System& system, const model::Drive& drive) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
     if (!system.units.usual()) lines.push_back(system.units.in_file());
@@ -138,7 +138,7 @@ Origin origin_of(lua_State* L, Task task) {
 }
 
 std::vector<std::string> repeat_lines(const Origin& origin) {
-    const model::Assembly& system = *origin.system;
+    const model::System& system = *origin.system;
     const model::Drive& drive = origin.drive;
     std::vector<std::string> lines = origin.set_up.empty() ? set_up_lines(nullptr, system, drive) : origin.set_up;
     std::string options;

@@ -13,7 +13,7 @@ namespace dinal::source {
 
 /// All that sys:simulate{...} was told, checked for kind but not yet for sense.
 struct Task {
-    model::AssemblyHandle system;
+    model::SystemHandle system;
     model::Drive drive;
     motion::Window window;
     motion::Grid rows;

@@ -20,8 +20,8 @@
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
-#include "model/assembly.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 #include "sweep/sweep_options.hpp"
 #include "sweep/sweep_run.hpp"
 #include "text/option.hpp"
@@ -147,7 +147,7 @@ int looks_of_point(lua_State* L) {
     }
     lua::push_copy(L, 1);  // at 2 the options of simulate
     take_field(L, 2, "system");
-    const auto* system = lua::test<model::AssemblyHandle>(L, 3);
+    const auto* system = lua::test<model::SystemHandle>(L, 3);
     if (system == nullptr) {
         lua::raise(L, fmt::format("at must return a table with system = ..., got {} there", lua::describe(L, 3)));
     }

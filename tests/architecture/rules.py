@@ -222,6 +222,18 @@ def documents_name_what_is_there():
                 complain(path, number, f"there is no {name}")
 
 
+def retired_words_are_gone():
+    """What the page of the house calls retired is in no source."""
+    text = " ".join(line for _, line in lines("docs/architecture.md"))
+    retired = re.findall(r"`(\w+)`", re.search(r"Retired, and nowhere in `src`:([^.]*)\.", text)[1])
+    assert len(retired) > 3
+    for path in files(CODE):
+        for number, line in lines(path):
+            for word in re.findall(r"\w+", line) if path.startswith("src/") else ():
+                if word in retired:
+                    complain(path, number, f"{word} is retired: docs/architecture.md has the words")
+
+
 def anchors(goal):
     with open(goal, encoding="utf-8") as file:
         text = re.sub(r"```.*?```", "", file.read(), flags=re.S)
@@ -233,7 +245,7 @@ def anchors(goal):
 for rule in (includes_point_down, rooms_are_namespaces, forbidden_things_are_absent, decompositions_are_compiled_once,
              headers_say_what_they_hold, headers_have_two_users, lua_tests_can_fail, tests_are_namespaces,
              catch_is_included_once, nothing_is_left_for_later, links_lead_somewhere, documents_make_a_path,
-             documents_name_what_is_there):
+             documents_name_what_is_there, retired_words_are_gone):
     rule()
 if not any(True for _ in files((".hpp",))):
     complaints.append("no headers found: is the folder right?")

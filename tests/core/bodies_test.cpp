@@ -19,7 +19,7 @@ using namespace dinal::motion;
 namespace {
 
 struct Rig {
-    Assembly system;
+    System system;
     model::Drive drive;
 };
 
@@ -73,7 +73,7 @@ Rig random_chain(unsigned seed, bool sticky) {
     return rig;
 }
 
-engine::AssemblyRun run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
+engine::Run run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
     const Window window{0, 10};
     const Grid grid = Grid::every(0.25).within(window).value();
     return engine::run({rig.system, rig.drive, window, grid, {}, {}, {}, tolerance, longest});
@@ -129,7 +129,7 @@ Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
 }
 
 /// The same events; those of one moment in any order.
-bool alike(const engine::AssemblyRun& a, const engine::AssemblyRun& b) {
+bool alike(const engine::Run& a, const engine::Run& b) {
     const auto same = [](const model::Event& x, const model::Event& y) {
         return x.kind == y.kind && x.where == y.where && std::fabs(x.t - y.t) <= 1e-9;
     };
@@ -158,7 +158,7 @@ TEST_CASE("chains that rub move the same at other resolutions, and as a time ste
         for (std::size_t number = 0; number < group.seeds.size(); ++number) {
             CAPTURE(group.seeds[number], group.sticky);
             const Rig rig = random_chain(group.seeds[number], group.sticky);
-            const engine::AssemblyRun found = run(rig), finer = run(rig, 1e-10, 0.05);
+            const engine::Run found = run(rig), finer = run(rig, 1e-10, 0.05);
             REQUIRE(is_whole(found.outcome));
             REQUIRE(found.table.size() == finer.table.size());
             CHECK(alike(found, finer));

@@ -1,4 +1,4 @@
-// A stretch of the motion of an assembly in one mode, by collocation at Chebyshev points.
+// A stretch of the motion of a system in one mode, by collocation at Chebyshev points.
 #pragma once
 
 #include <Eigen/Core>

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "model/assembly.hpp"
+#include "model/system.hpp"
 #include "motion/clock.hpp"
 #include "motion/course.hpp"
 #include "motion/engine/nodes.hpp"

@@ -62,7 +62,7 @@ Frame::Shape turned_by(const Joint& joint, const std::vector<Frame::Shape>& bodi
 
 }  // namespace
 
-Frame::Frame(const model::Assembly& system, const Mode& mode)
+Frame::Frame(const model::System& system, const Mode& mode)
     : bodies(system.bodies.size()), joints(system.joints.size()), system_(&system) {
     const std::size_t n = system.bodies.size();
     std::vector<std::size_t> held;
@@ -174,7 +174,7 @@ void Frame::close_loops(Eigen::MatrixXd rows) {
 }
 
 /// Makes groups that share bodies orthogonal, and finds the inertia of each.
-void Frame::separate(const model::Assembly& system) {
+void Frame::separate(const model::System& system) {
     std::size_t count = 0;
     bool coupled = false;
     for (const Shape& shape : bodies) {
@@ -260,7 +260,7 @@ void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>&
     }
 }
 
-std::vector<std::size_t> redundant_rigid(const model::Assembly& system) {
+std::vector<std::size_t> redundant_rigid(const model::System& system) {
     Mode mode;
     const std::size_t joints = system.joints.size();
     mode.friction.resize(joints), mode.leans.resize(joints), mode.rubs.resize(joints);
@@ -311,7 +311,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
     return x.cwiseMax(low).cwiseMin(high);
 }
 
-Mechanics::Mechanics(const model::Assembly& system, const model::Drive& drive, const Asking& asking)
+Mechanics::Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking)
     : system_(system), drive_(drive), base_(drive.base, &asking) {
     for (std::size_t j = 0; j < joints(); ++j) {
         loads_.emplace_back(j < drive.loads.size() ? drive.loads[j] : model::Excitation(), &asking);

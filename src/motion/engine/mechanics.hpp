@@ -1,4 +1,4 @@
-// The torques on each body of an assembly, the modes of its contacts, and what these decide where nothing slips.
+// The torques on each body of a system, the modes of its contacts, and what these decide where nothing slips.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "model/assembly.hpp"
+#include "model/system.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/signal.hpp"
 #include "motion/simulate.hpp"
@@ -67,7 +67,7 @@ struct Frame {
         std::size_t joint, child;  ///< the body whose motion the joint ties to that of its others
         double by;                 ///< the weight of the child
     };
-    Frame(const model::Assembly& system, const Mode& mode);
+    Frame(const model::System& system, const Mode& mode);
 
     std::vector<Shape> bodies, joints;
     std::vector<double> inertia;          ///< of each group
@@ -88,15 +88,15 @@ struct Frame {
 private:
     void go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
     void close_loops(Eigen::MatrixXd rows);
-    void separate(const model::Assembly& system);
+    void separate(const model::System& system);
 
-    const model::Assembly* system_;
+    const model::System* system_;
     Eigen::MatrixXd anchor_;          ///< what leads have more, by what loops lack that stop one way to move
     std::vector<std::size_t> leads_;  ///< the first body of each way to move, before loops were closed
 };
 
 /// Returns the rigid links that other rigid links make redundant.
-std::vector<std::size_t> redundant_rigid(const model::Assembly& system);
+std::vector<std::size_t> redundant_rigid(const model::System& system);
 
 /// The least of x G x / 2 + g x within a box; G is symmetric, and not singular.
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
@@ -104,12 +104,12 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 
 class Mechanics {
 public:
-    Mechanics(const model::Assembly& system, const model::Drive& drive, const Asking& asking);
+    Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);
     Mechanics(const Mechanics&) = delete;
     Mechanics& operator=(const Mechanics&) = delete;
     ~Mechanics() = default;
 
-    [[nodiscard]] const model::Assembly& system() const { return system_; }
+    [[nodiscard]] const model::System& system() const { return system_; }
     [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
     [[nodiscard]] std::size_t joints() const { return system_.joints.size(); }
     /// Those of the user's, and behind them the bend of each joint's bristles, and of the spring of each slider.
@@ -334,7 +334,7 @@ private:
     /// Calls it with each function of the user's.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
-    const model::Assembly& system_;
+    const model::System& system_;
     const model::Drive& drive_;
     std::vector<Signal> loads_, belts_;
     Signal base_;

@@ -4,15 +4,15 @@
 #include <complex>
 #include <vector>
 
-#include "model/assembly.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
+#include "model/system.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::motion::engine {
 
 /// The linear motions that bodies and links have together without friction, as systems of one body.
-std::vector<model::Oscillator> modes_of(const model::Assembly& system);
+std::vector<model::Oscillator> modes_of(const model::System& system);
 
 struct EigenMode {
     std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
@@ -21,6 +21,6 @@ struct EigenMode {
 
 /// Returns the modes of small motions beside a rest, searched from theta0, or beside an even sliding: contacts on belts
 /// slide, all others hold. Sorted by frequency.
-text::Expected<std::vector<EigenMode>> modes_beside(const model::Assembly& system, const model::Drive& drive);
+text::Expected<std::vector<EigenMode>> modes_beside(const model::System& system, const model::Drive& drive);
 
 }  // namespace dinal::motion::engine

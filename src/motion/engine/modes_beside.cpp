@@ -221,7 +221,7 @@ private:
 
 }  // namespace
 
-text::Expected<std::vector<EigenMode>> modes_beside(const model::Assembly& system, const model::Drive& drive) {
+text::Expected<std::vector<EigenMode>> modes_beside(const model::System& system, const model::Drive& drive) {
     const Moving given(system, drive, 0, 1);
     Beside beside(given);
     if (auto wrong = beside.settle()) return *wrong;

@@ -85,7 +85,7 @@ model::Excitation velocity_of(const model::Moved& moved, double pace) {
 
 }  // namespace
 
-Moving::Moving(const model::Assembly& given, const model::Drive& asked, double start, double pace)
+Moving::Moving(const model::System& given, const model::Drive& asked, double start, double pace)
     : system(given), drive(asked) {
     drive.loads.resize(system.joints.size());
     for (std::size_t i = 0; i < given.bodies.size(); ++i) {

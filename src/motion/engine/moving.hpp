@@ -1,18 +1,18 @@
 // Bodies that are moved: the velocity of a given angle, and the rigid joints that move them.
 #pragma once
 
-#include "model/assembly.hpp"
 #include "model/drive.hpp"
+#include "model/system.hpp"
 
 namespace dinal::motion::engine {
 
 /// A system in which each body that is moved is held by a rigid joint behind all others, as on a belt of its velocity.
 struct Moving {
-    model::Assembly system;
+    model::System system;
     model::Drive drive;
 
     /// `pace` is how long one may look at given angles at first, time units.
-    Moving(const model::Assembly& given, const model::Drive& asked, double start, double pace);
+    Moving(const model::System& given, const model::Drive& asked, double start, double pace);
 };
 
 }  // namespace dinal::motion::engine

@@ -27,7 +27,7 @@ struct Place {
     std::size_t bodies, joint;
     model::Joint weights;
 
-    Place(const model::Assembly& system, std::size_t which) : bodies(system.bodies.size()), joint(which) {
+    Place(const model::System& system, std::size_t which) : bodies(system.bodies.size()), joint(which) {
         weights.of = system.joints[which].of;
     }
     [[nodiscard]] model::State state(const std::vector<double>& y) const {
@@ -37,7 +37,7 @@ struct Place {
 
 class PartCourse final : public Course {
 public:
-    PartCourse(const model::Oscillator& seen, const Place& place, std::size_t states, const AssemblyRun& run)
+    PartCourse(const model::Oscillator& seen, const Place& place, std::size_t states, const Run& run)
         : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.history) {}
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
@@ -80,7 +80,7 @@ bool rubs(const model::Joint& joint) {
 
 /// Whether every turn of the joint's angle is an event. None of a belt is, nor of a joint without dry friction whose
 /// bodies rub elsewhere; an impact at another joint may turn this one round.
-bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::size_t joint) {
+bool tells_turns(const model::System& system, const model::Drive& drive, std::size_t joint) {
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
     return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
@@ -92,20 +92,7 @@ bool tells_turns(const model::Assembly& system, const model::Drive& drive, std::
 
 }  // namespace
 
-text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint) {
-    const model::Joint& own = system.joints[joint];
-    model::OscillatorParameters parameters;
-    constexpr double none = 1e-100;  // of a body that is moved
-    parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
-    parameters.inertia = std::max(parameters.inertia, none);
-    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
-    parameters.spring = own.spring, parameters.walls = own.walls;
-    if (!own.friction.law.under(1).none() && !own.friction.law.is_one_way()) parameters.friction = own.friction.law;
-    parameters.normal = own.friction.law.normal();
-    return model::Oscillator::make(parameters);
-}
-
-Trajectory part_of(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run, std::size_t joint,
+Trajectory part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen) {
     const Place place(system, joint);
     Trajectory part;
@@ -148,8 +135,8 @@ Trajectory part_of(const model::Assembly& system, const model::Drive& drive, con
     return part;
 }
 
-Trajectory part_with_rows(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run,
-                          std::size_t joint, const std::optional<model::Oscillator>& seen) {
+Trajectory part_with_rows(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
+                          const std::optional<model::Oscillator>& seen) {
     Trajectory part = part_of(system, drive, run, joint, seen);
     if (part.rough) part.rough->other_integrators = false;
     part.computed = !system.is_link(joint);

@@ -15,18 +15,14 @@ struct Left final : Carried {
     std::shared_ptr<const Carry> carry;
 };
 
-/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
-/// Fails where its numbers are beyond what a system may have.
-text::Expected<model::Oscillator> seen_alone(const model::Assembly& system, std::size_t joint);
-
 /// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
 /// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
 /// each joint.
-Trajectory part_of(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run, std::size_t joint,
+Trajectory part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen);
 
 /// The same with its columns of a run that is not joined elsewhere.
-Trajectory part_with_rows(const model::Assembly& system, const model::Drive& drive, const AssemblyRun& run,
-                          std::size_t joint, const std::optional<model::Oscillator>& seen);
+Trajectory part_with_rows(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
+                          const std::optional<model::Oscillator>& seen);
 
 }  // namespace dinal::motion::engine

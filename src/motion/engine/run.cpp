@@ -80,7 +80,7 @@ double longest_step(const model::Friction& law, const model::SpeedRange& range, 
 
 class Engine {
 public:
-    Engine(const AssemblyProblem& problem, AssemblyRun& result);
+    Engine(const Request& problem, Run& result);
     void run();
 
 private:
@@ -236,8 +236,8 @@ private:
     [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
     [[nodiscard]] double torque_size(std::size_t joint) const;
 
-    const AssemblyProblem& problem_;
-    AssemblyRun& result_;
+    const Request& problem_;
+    Run& result_;
     Asking asking_;
     Mechanics mechanics_;
     std::shared_ptr<History> history_;
@@ -323,7 +323,7 @@ private:
     mutable double sizes_at_ = -model::never;
 };
 
-Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
+Engine::Engine(const Request& problem, Run& result)
     : problem_(problem),
       result_(result),
       asking_{.named = problem.system.named, .told = 2 * problem.system.bodies.size() + problem.drive.states.size()},
@@ -2914,7 +2914,7 @@ double Engine::friction(std::size_t joint, const Moment& at, const Look& look) c
 
 }  // namespace
 
-std::vector<std::string> column_names_of(const model::Assembly& system, const model::Drive& drive) {
+std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive) {
     std::vector<std::string> names{"t"};
     const auto add = [&](const std::string& joint, std::initializer_list<const char*> columns) {
         for (const char* column : columns) names.push_back(joint.empty() ? column : joint + "." + column);
@@ -2931,8 +2931,8 @@ std::vector<std::string> column_names_of(const model::Assembly& system, const mo
     return names;
 }
 
-AssemblyRun run_plain(const AssemblyProblem& problem) {
-    AssemblyRun result;
+Run run_plain(const Request& problem) {
+    Run result;
     if (!problem.system.has_moved()) {
         Engine engine(problem, result);
         engine.run();
@@ -2940,29 +2940,29 @@ AssemblyRun run_plain(const AssemblyProblem& problem) {
     }
     const Moving moving(problem.system, problem.drive, problem.window.start,
                         (problem.window.end - problem.window.start) / 64);
-    const AssemblyProblem held{.system = moving.system,
-                               .drive = moving.drive,
-                               .window = problem.window,
-                               .rows = problem.rows,
-                               .monitor = problem.monitor,
-                               .limits = problem.limits,
-                               .before = problem.before,
-                               .tolerance = problem.tolerance,
-                               .longest = problem.longest,
-                               .step = problem.step,
-                               .keeps_torques = problem.keeps_torques,
-                               .history_bytes = problem.history_bytes,
-                               .hidden = moving.system.joints.size() - problem.system.joints.size(),
-                               .joined_elsewhere = problem.joined_elsewhere};
+    const Request held{.system = moving.system,
+                       .drive = moving.drive,
+                       .window = problem.window,
+                       .rows = problem.rows,
+                       .monitor = problem.monitor,
+                       .limits = problem.limits,
+                       .before = problem.before,
+                       .tolerance = problem.tolerance,
+                       .longest = problem.longest,
+                       .step = problem.step,
+                       .keeps_torques = problem.keeps_torques,
+                       .history_bytes = problem.history_bytes,
+                       .hidden = moving.system.joints.size() - problem.system.joints.size(),
+                       .joined_elsewhere = problem.joined_elsewhere};
     Engine engine(held, result);
     engine.run();
     return result;
 }
 
-AssemblyRun run(const AssemblyProblem& problem) {
+Run run(const Request& problem) {
     const std::size_t own = problem.drive.states.size();
     Witnesses witnesses(problem.system.named ? 2 * problem.system.bodies.size() + own : own);
-    model::Assembly system = problem.system;
+    model::System system = problem.system;
     const auto of = [&](const char* what, std::size_t joint) {
         return system.named ? fmt::format("{}.{}", what, system.joints[joint].name) : std::string(what);
     };
@@ -2988,18 +2988,18 @@ AssemblyRun run(const AssemblyProblem& problem) {
             joint.spring = model::springs::UserSpring{witnesses.heard(spring->function, of("spring", j), "theta")};
         }
     }
-    const AssemblyProblem heard{.system = system,
-                                .drive = drive,
-                                .window = problem.window,
-                                .rows = problem.rows,
-                                .monitor = problem.monitor,
-                                .limits = problem.limits,
-                                .before = problem.before,
-                                .tolerance = problem.tolerance,
-                                .longest = problem.longest,
-                                .step = problem.step,
-                                .keeps_torques = problem.keeps_torques};
-    AssemblyRun result = run_plain(heard);
+    const Request heard{.system = system,
+                        .drive = drive,
+                        .window = problem.window,
+                        .rows = problem.rows,
+                        .monitor = problem.monitor,
+                        .limits = problem.limits,
+                        .before = problem.before,
+                        .tolerance = problem.tolerance,
+                        .longest = problem.longest,
+                        .step = problem.step,
+                        .keeps_torques = problem.keeps_torques};
+    Run result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
     result.contradiction = witnesses.verdict(whole);
     if (result.contradiction) result.outcome = Outcome::not_a_function;

@@ -1,4 +1,4 @@
-// Runs an assembly: stretch after stretch of its motion, each up to the first event in it.
+// Runs a system: stretch after stretch of its motion, each up to the first event in it.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ struct Carry {
     Floor floor = {};  ///< may be left out
 };
 
-struct AssemblyRun {
+struct Run {
     /// The columns that column_names_of(system, drive) names; of a run that is joined elsewhere without accelerations.
     Growing<double> table;
     std::vector<model::Event> events;
@@ -53,10 +53,10 @@ struct AssemblyRun {
 inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
 /// t; theta, velocity, M, friction, damping and acceleration of each body, theta, velocity, torque and friction of each
 /// link, as in "load.theta"; torque of each body that is moved; states.
-std::vector<std::string> column_names_of(const model::Assembly& system, const model::Drive& drive);
+std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive);
 
-struct AssemblyProblem {
-    const model::Assembly& system;
+struct Request {
+    const model::System& system;
     const model::Drive& drive;
     Window window;
     const Grid& rows;
@@ -73,9 +73,9 @@ struct AssemblyProblem {
 };
 
 /// The run, whose functions somebody has heard already.
-AssemblyRun run_plain(const AssemblyProblem& problem);
+Run run_plain(const Request& problem);
 
 /// The run, all functions of which are asked again now and then what they were asked before.
-AssemblyRun run(const AssemblyProblem& problem);
+Run run(const Request& problem);
 
 }  // namespace dinal::motion::engine

@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "model/assembly.hpp"
 #include "model/controller.hpp"
 #include "model/formula.hpp"
+#include "model/system.hpp"
 #include "motion/engine/nodes.hpp"
 
 namespace dinal::motion::engine {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "motion/engine/one_body.hpp"
+#include "motion/engine/plain.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal::motion::rk4 {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motion/engine/one_body.hpp"
+#include "motion/engine/plain.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::spectral {

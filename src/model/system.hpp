@@ -22,6 +22,7 @@
 #include "model/friction.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/jenkins.hpp"
+#include "model/oscillator.hpp"
 #include "model/spring.hpp"
 #include "model/units.hpp"
 #include "model/walls.hpp"
@@ -110,7 +111,7 @@ struct Joint {
     }
 };
 
-struct Assembly {
+struct System {
     std::vector<Body> bodies;
     /// Each body's with the ground, in their order, and then the links.
     std::vector<Joint> joints;
@@ -149,7 +150,14 @@ struct Assembly {
     }
 };
 
+/// This body on the ground, without a name.
+System as_system(const Oscillator& body);
+
+/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
+/// Fails where its numbers are beyond what a system may have.
+text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint);
+
 // Shared, because its runs keep it.
-using AssemblyHandle = std::shared_ptr<const Assembly>;
+using SystemHandle = std::shared_ptr<const System>;
 
 }  // namespace dinal::model

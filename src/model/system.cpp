@@ -1,0 +1,37 @@
+#include "model/system.hpp"
+
+#include <fmt/format.h>
+
+namespace dinal::model {
+
+std::string System::angle_in_words(const Joint& joint) const {
+    std::string sum;
+    for (const auto& [body, by] : joint.of) {
+        sum += by < 0 ? (sum.empty() ? "-" : " - ") : (sum.empty() ? "" : " + ");
+        if (std::fabs(by) != 1) sum += fmt::format("{:.6g} ", std::fabs(by));
+        sum += bodies[body].name;
+    }
+    return sum;
+}
+
+System as_system(const Oscillator& system) {
+    Joint ground;
+    ground.stiffness = system.stiffness(), ground.damping = system.damping();
+    ground.spring = system.spring(), ground.friction.law = system.friction(), ground.walls = system.walls();
+    return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = system.units()};
+}
+
+text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint) {
+    const Joint& own = system.joints[joint];
+    OscillatorParameters parameters;
+    constexpr double none = 1e-100;  // of a body that is moved
+    parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
+    parameters.inertia = std::max(parameters.inertia, none);
+    parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
+    parameters.spring = own.spring, parameters.walls = own.walls;
+    if (!own.friction.law.under(1).none() && !own.friction.law.is_one_way()) parameters.friction = own.friction.law;
+    parameters.normal = own.friction.law.normal();
+    return Oscillator::make(parameters);
+}
+
+}  // namespace dinal::model
