@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <cstdio>
 #include <cstring>
 #include <deque>
 #include <filesystem>
@@ -723,8 +722,8 @@ std::string block_of(std::span<const DataColumn> columns) {
 std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
     const std::size_t line = text.find('\n') + 1;
     std::size_t bytes = 0;
-    const bool has_head =
-        line > 0 && std::sscanf(std::string(text.substr(0, line)).c_str(), "# %zu bytes", &bytes) == 1;
+    const bool has_head = line > 0 && text.starts_with("# ") &&
+                          std::from_chars(text.data() + 2, text.data() + line, bytes).ec == std::errc();
     if (!has_head || bytes > text.size() - line) return std::nullopt;
     const std::string_view content = text.substr(line, bytes);
     if (text.substr(0, line) != fmt::format("# {} bytes, {:016x}\n", bytes, source::digest_of(content)))

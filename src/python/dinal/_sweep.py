@@ -178,7 +178,10 @@ def main():
     else:
         make = functools.partial(concurrent.futures.ProcessPoolExecutor, asked.workers)
     shown = sys.stderr.isatty()
-    done = sweep(**{**run.options, "run": run, "workers": None, "executor": make,
-                    "progress": lambda *told: shown and print("\r%d of %d points" % told, end="", file=sys.stderr)})
-    shown and print(file=sys.stderr)
-    print(done)
+    try:
+        print(sweep(**{**run.options, "run": run, "workers": None, "executor": make, "progress":
+                       lambda *told: shown and print("\r%d of %d points" % told, end="\n" if told[0] == told[1] else "", file=sys.stderr)}))
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except Error as wrong:
+        sys.exit(f"dinal.sweep: {wrong}")
