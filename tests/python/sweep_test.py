@@ -315,7 +315,12 @@ class Deaths(InAFolder):
             import dinal, numpy as np, helper
             A = 2
             def inner(x): return A * x
-            def point(p, b=1): return {"y": (lambda x: inner(x))(p.r) + b + helper.B}
+            class Tool:
+                C = 5
+                def __init__(self): self.d = 6
+                def use(self, x): return self.C + self.d + 7 * x
+            tool = Tool()
+            def point(p, b=1): return {"y": (lambda x: inner(x))(p.r) + b + helper.B + tool.use(1)}
             dinal.sweep(over={"r": np.arange(3.)}, run=point, file="map.csv")
             """
         pathlib.Path("helper.py").write_text("B = 1")
@@ -323,7 +328,8 @@ class Deaths(InAFolder):
         for before in same:
             shown = self.python("-c", before + textwrap.dedent(code))
             self.assertEqual((shown.returncode, shown.stderr), (0, ""))
-        for old, new in (("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("p.r)", "p.r + 1)"), ("3.", "4.")):
+        for old, new in (("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("p.r)", "p.r + 1)"), ("3.", "4."), ("C = 5", "C = 4"),
+                         ("d = 6", "d = 5"), ("7 * x", "8 * x")):
             self.assertIn("is not the result of this sweep", self.python("-c", textwrap.dedent(code).replace(old, new, 1)).stderr, new)
         pathlib.Path("helper.py").write_text("B = 2")
         self.assertIn("is not the result of this sweep", self.python("-c", textwrap.dedent(code)).stderr)

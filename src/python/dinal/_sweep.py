@@ -65,6 +65,12 @@ def digest(value, seen):
         names = sorted(names_in(value.__code__) & set(value.__globals__))
         return [digest(part, seen) for part in (value.__code__, value.__defaults__, value.__kwdefaults__, [value.__globals__[name] for name in names],
                                                 [cell.cell_contents for cell in value.__closure__ or () if cell != types.CellType()])]
+    if isinstance(value, types.MethodType):
+        return [digest(part, seen) for part in (value.__func__, value.__self__)]
+    if isinstance(value, type) and is_own(value):
+        parts = {name: getattr(part, "__func__", getattr(part, "fget", part)) for name, part in vars(value).items()}
+        return [value.__qualname__, *(digest(base, seen) for base in value.__bases__),
+                digest({name: part for name, part in parts.items() if isinstance(part, (int, float, str, tuple, types.FunctionType))}, seen)]
     if isinstance(value, functools.partial):
         return [digest(part, seen) for part in (value.func, value.args, value.keywords)]
     if isinstance(value, dict):
@@ -75,6 +81,8 @@ def digest(value, seen):
         return sorted(map(repr, value))
     if hasattr(value, "__qualname__") and not is_own(value):
         return [value.__module__, value.__qualname__]
+    if is_own(type(value)) and hasattr(value, "__dict__"):
+        return [digest(part, seen) for part in (type(value), vars(value))]
     return hashlib.sha256(pickle.dumps(value)).hexdigest()
 
 
