@@ -186,7 +186,7 @@ py::object drawn(py::handle self) {
     });
 }
 
-/// For other programs that draw: of each figure of a picture its axes, curves and the intervals of sticking.
+/// Returns the figures of a picture for Matplotlib: title, axes, curves, intervals of sticking, whether it is a map.
 py::object figures(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);
@@ -214,7 +214,7 @@ py::object figures(py::handle self) {
     });
 }
 
-/// sweep of Lua, with a table of options; or a sweep in parts, with the mark of a function of Python.
+/// Calls sweep of Lua with a table of options, or begins a sweep in parts, with the mark of a Python function.
 template <lua_CFunction function>
 py::object call_sweep(const py::dict& options, const std::string& mark) {
     return in_lua([&](lua_State* L) {
@@ -240,13 +240,13 @@ py::object run_text(const std::string& text, const py::dict& variables) {
     });
 }
 
-/// For pickle: Lua text that makes the value again, the values that it names, and why there is none, if so.
+/// For pickle: returns Lua text that makes the value again, the variables in it, and the reason if there is no text.
 py::object written(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);
         py::dict variables;
         source::ValueText writer(L, [&](int index) -> std::string {
-            if (lua_rawequal(L, index, 1) != 0) return "";  // it has no text
+            if (lua_rawequal(L, index, 1) != 0) return "";  // the object itself has no text
             const std::string name = fmt::format("python{}", variables.size() + 1);
             variables[name.c_str()] = to_python(L, index);
             return name;
@@ -259,7 +259,7 @@ py::object written(py::handle self) {
     });
 }
 
-/// For pickle: the columns of data as (name, values, unit), and what else they say in words.
+/// For pickle: returns the columns of data as (name, values, unit), and their other fields.
 py::object parts(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);

@@ -31,7 +31,7 @@ unsigned long owner_thread = 0;  // the thread whose call Lua is in; 0: none
 int calls_within = 0;            // of its calls within each other
 bool is_torn = false;            // this process was forked while another thread was in a call
 unsigned long main_thread = 0;
-PyThreadState* unlocked = nullptr;              // of the owner, while other threads of Python run
+PyThreadState* unlocked = nullptr;              // state of the owner's thread, while others run
 auto* const last_exception = new py::object();  // that a function raised during the present call
 std::mutex waiting;
 std::condition_variable left;
@@ -300,7 +300,7 @@ RunningOn::~RunningOn() {
 void raise_exception(lua_State* L, const py::error_already_set& raised) {
     *last_exception = raised.value();
     if (raised.trace()) PyException_SetTraceback(last_exception->ptr(), raised.trace().ptr());
-    // Whoever exits, or Ctrl-C in a function of Python: no pcall and no point of a sweep takes that for an error.
+    // SystemExit and KeyboardInterrupt stop everything: a pcall or a point of a sweep must not catch them as errors.
     if (!py::isinstance(*last_exception, py::handle(PyExc_Exception))) lua::request_stop(lua::Stop::interrupted);
     luaL_checkstack(L, 3, "for an exception");
     lua::push(L, Held(*last_exception));

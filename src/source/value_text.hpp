@@ -29,7 +29,7 @@ public:
     /// An expression that gives the value at `index` again; `nil` and one of the remarks() when there is none.
     std::string expression(int index);
 
-    /// The numbers, if they travel by themselves.
+    /// Returns the variable that stands for the numbers, if vectors travel by themselves.
     std::optional<std::string> aside(const std::vector<double>& numbers);
 
     /// "w = 3": what must stand before the expressions.

@@ -257,7 +257,7 @@ int bifurcation(lua_State* L) {
                                   }}));
 }
 
-/// The task that these options are, over that grid.
+/// Makes a task of the options of sweep.
 SweepTask task_of(const lua::Options& options, int function, const PointGrid& grid) {
     SweepOptions asked;
     options.fill(asked);

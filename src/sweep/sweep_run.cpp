@@ -492,7 +492,7 @@ public:
         return finished();
     }
 
-    // The same with points that are done elsewhere: for engines that Python has. Each call has the state that makes it.
+    // Python's executors compute the points; each of these calls may come from another Lua thread.
 
     [[nodiscard]] std::vector<double> left() const {
         std::vector<double> firsts;
@@ -511,7 +511,7 @@ public:
         if (trouble_) fail();
         return results_->done();
     }
-    /// What is done so far becomes dinal.partial.
+    /// Puts the finished points into dinal.partial.
     void keep(lua_State* L) {
         L_ = L;
         if (!journal_) keep_unfinished(L_, print_, results_);
@@ -635,7 +635,7 @@ private:
     std::optional<text::Error> trouble_;
 };
 
-// ---- a sweep whose points are done elsewhere, as a Lua object that no list shows
+// ---- a sweep whose points are computed by Python's executors, as a Lua object without documentation
 
 struct PartedSweep {
     explicit PartedSweep(std::vector<DataColumn> parameters) : grid(std::move(parameters)) {}
@@ -699,7 +699,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Columns as CSV behind a line with which a part of it, or a changed one, is not taken for whole.
+/// Writes columns as CSV, after a line with the size and a digest that show whether the block is whole.
 std::string block_of(std::span<const DataColumn> columns) {
     std::string text;
     for (const DataColumn& column : columns) text += (text.empty() ? "" : ",") + files::field_of(column.name);
@@ -718,7 +718,7 @@ std::string block_of(std::span<const DataColumn> columns) {
     return fmt::format("# {} bytes, {:016x}\n", text.size(), source::digest_of(text)) + text;
 }
 
-/// The next block of a text, which it loses; none where it is not whole.
+/// Removes the first block from the text and returns its columns; empty if the block is not whole.
 std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
     const std::size_t line = text.find('\n') + 1;
     std::size_t bytes = 0;
@@ -733,7 +733,7 @@ std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
     text.remove_prefix(line + bytes);
     std::vector<DataColumn> columns;
     for (files::ReadColumn& column : read.value().columns) {
-        // Empty messages are no numbers.
+        // A column of empty messages was read as numbers.
         const bool is_error = column.name == "error" && !column.of_words;
         columns.push_back(is_error ? column_of("error", std::vector<std::string>(column.numbers.size()))
                                    : column_of(std::move(column)));
@@ -778,7 +778,7 @@ std::optional<text::Error> SweepJournal::open() {
     }
     if (descriptor < 0 || ::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode))
         return refused(path_, "is not a regular file");
-    // Not flock(): a pool of processes would inherit that lock, and outlive us with it.
+    // flock() would be inherited by a pool of processes, which may outlive this one and keep the lock.
     struct flock whole {};
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;
@@ -791,11 +791,11 @@ std::optional<text::Error> SweepJournal::open() {
             .culprit = file_};
     }
     if (!fs::exists(file_, error)) return take_points();
-    discard();  // it was finished since we looked
+    discard();  // another process has just finished it
     return take_result();
 }
 
-/// Takes what is whole, and cuts off what is not.
+/// Reads the whole blocks and cuts off the rest.
 std::optional<text::Error> SweepJournal::take_points() {
     std::string text;
     char buffer[1U << 16U];
@@ -818,7 +818,7 @@ std::optional<text::Error> SweepJournal::take_points() {
     return rest.empty() ? std::nullopt : append("");
 }
 
-/// After what is whole.
+/// Writes after the last whole block.
 std::optional<text::Error> SweepJournal::append(std::string_view text) {
     const int file = journal_->number();
     bool good = ::ftruncate(file, static_cast<off_t>(size_)) == 0;

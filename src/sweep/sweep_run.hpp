@@ -38,7 +38,7 @@ public:
     double* column(std::string_view name);
     static constexpr std::size_t most_columns = 20'000;
 
-    /// What was had elsewhere of these points: results by their names, and the messages as the last column.
+    /// Adds results of these points, by name; the last column has the messages.
     void take(const std::vector<std::size_t>& points, std::span<const DataColumn> columns);
 
     /// A word as a number that can stand in a column: a nan of its own.
@@ -114,12 +114,12 @@ void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked)
 /// goes on from there, with a file also in another process.
 Data swept(lua_State* L, const SweepTask& task);
 
-/// Pushes a sweep whose points are done elsewhere: left(), take(first, data), keep() and finish().
+/// Pushes a sweep whose points the caller computes: left(), take(first, data), keep() and finish().
 void push_parted(lua_State* L, std::vector<DataColumn> parameters,
                  const std::function<SweepTask(const PointGrid&)>& task);
 /// sweep{ ... }
 int run_sweep(lua_State* L);
-/// The same of the options of sweep, and of the mark of a function of another language.
+/// Does that for the options of sweep, and the mark of a function of another language.
 int sweep_in_parts(lua_State* L);
 
 /// sweep, bifurcation and minimise; in bind_sweep.cpp.
@@ -127,7 +127,7 @@ void register_sweep(lua_State* L);
 extern const lua::Class sweep_functions;
 void register_unfinished_sweep(lua_State* L);
 
-/// How many points a chunk has: what is lost at most when the process is killed.
+/// The number of points of a chunk: at most so many are lost when the process is killed.
 std::size_t chunk_size_for(std::size_t points);
 
 /// The finished points of a sweep in FILE.part, to whose end chunks are added as they are completed, by this process

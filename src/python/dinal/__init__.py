@@ -17,7 +17,7 @@ import sys as _sys
 
 
 def _find_numpy():
-    """In a plain virtual environment Debian's NumPy, and nothing else of Debian."""
+    """Makes Debian's NumPy, and nothing else of Debian, visible in a plain virtual environment."""
     if "numpy" in _sys.modules or _util.find_spec("numpy"):
         return
     spec = _machinery.PathFinder.find_spec("numpy", ["/usr/lib/python3/dist-packages"])
@@ -54,7 +54,7 @@ def __dir__():
 _dinal.set_up(_objects, _objects.in_notebook())
 _members = _objects.build()
 globals().update(_members)
-from ._sweep import sweep  # noqa: E402: it takes an executor, unlike that of Lua
+from ._sweep import sweep  # noqa: E402: replaces that of Lua, because it takes an executor
 sweep.__module__, _members["sweep"] = "dinal", sweep
 __all__ = ["Error", "Function", "Object", "Record", "RunWarning", "lua", "partial", *_members]
 for _class in (Error, Function, Object, Record, RunWarning):

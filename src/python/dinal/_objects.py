@@ -19,7 +19,7 @@ class Error(Exception):
     """What is wrong, where the limit is and what to do, in one sentence; and facts: call, option, culprit."""
 
     call = option = culprit = ""
-    __str__ = Exception.__str__  # that of KeyError has quotes
+    __str__ = Exception.__str__  # KeyError would put the message into quotes
 
     def __reduce__(self):
         return error_again, (type(self).__mro__[2], str(self), self.call, self.option, self.culprit)
@@ -29,7 +29,7 @@ class RunWarning(RuntimeWarning):
     """A run ended before its time. run.status says how, run.outcome where and why."""
 
 
-# What a sentence says, as kinds of exceptions: an unknown or missing option, a name that is not there, a wrong value.
+# Patterns in messages, and the exception that Python raises in such a case.
 KINDS = [(r"has no option| needs | is needed|takes |must be an? (?!finite|whole).*, got |must be [a-zT].*, got (None|True|False|an? |the string)",
           TypeError), (r"No such file", FileNotFoundError),
          (r"has no (field|column|row)|there is no ", KeyError), (r" must |at most|exclude each other|of another sweep", ValueError)]
@@ -51,7 +51,7 @@ class Record(dict):
 class Object(_dinal.Reference):
     """A value of Lua. Its class says what it has."""
 
-    __slots__ = ("_recipe",)  # of what has no text: the name of the member, the object that has it, the arguments
+    __slots__ = ("_recipe",)  # the call that made an object without a Lua text: name, owner, arguments, options
     __array_ufunc__ = None  # 2 * e is a matter of e, also when the 2 is NumPy's
 
     def __getattr__(self, name):
@@ -80,13 +80,13 @@ class Object(_dinal.Reference):
         return numpy.array(value) if is_words else value
 
     def __copy__(self):
-        return self  # nothing changes it
+        return self  # objects never change
 
     def __deepcopy__(self, memo):
         return self
 
     def __reduce__(self):
-        """Its Lua text; a run, an energy, a fit is what the same call gives there, to the last digit that it shows."""
+        """Pickles the Lua text of an object; a run, an energy or a fit is made again by the same call and must look the same."""
         if type(self).__name__ == "Data":
             return of_parts, _dinal.parts(self)
         if type(self) in BY_RECIPE:
@@ -115,7 +115,7 @@ class Object(_dinal.Reference):
         return _dinal.drawn(self.plot(show=False)) if hasattr(type(self), "plot") else None
 
     def _repr_html_(self):
-        """What it says at the prompt, and its picture: Debian 12's nbconvert takes the lines out of an SVG in the page."""
+        """The text of the prompt and the picture, as an image because Debian 12's nbconvert drops the lines of an SVG."""
         svg = self._repr_svg_()
         image = svg and "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
         text = "" if svg and type(self).__name__ in ("Run", "Picture") else f"<pre>{html.escape(repr(self))}</pre>"
@@ -144,7 +144,7 @@ class Module(types.ModuleType):
 # ---- for the C++ side
 
 def error_of(cause, is_own, message, *facts):
-    """Of the program's own errors the words and the kind are Python's; others are of the user's Lua."""
+    """The exception for an error of Lua. Errors of the program get Python's words and kind; those of a user's Lua stay."""
     message, call, option, culprit = (text.decode(errors="replace") for text in (message, *facts))
     message = _words.in_sentence(message) if is_own else message
     kind = next((kind for said, kind in KINDS if is_own and re.search(said, message)), None)
@@ -162,7 +162,7 @@ def error_again(kind, message, *facts):
 # ---- objects that travel
 
 def kept(value):
-    """The value as it is now."""
+    """A copy that later changes of lists and arrays do not reach."""
     if isinstance(value, dict):
         return {key: kept(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -171,7 +171,7 @@ def kept(value):
 
 
 def remembered(value, name, owner, arguments, options):
-    """The value; what has no Lua text remembers how it was made."""
+    """Returns the value; an object without a Lua text remembers the call that made it."""
     if type(value) in BY_RECIPE:
         Object._recipe.__set__(value, (name, owner, kept(arguments), kept(options)))
     return value
@@ -309,7 +309,7 @@ def callable_of(member, has_self, owner):
 
 
 def draw(axes, picture):
-    """With Matplotlib: each figure into axes of its own."""
+    """Draws each figure of a picture into axes of Matplotlib."""
     import numpy
     figures, several = _dinal.figures(picture), numpy.ravel(axes)
     if len(figures) != len(several):
@@ -335,7 +335,7 @@ def draw(axes, picture):
 
 
 def is_row(value):
-    """x of plot(x, y), and not a curve (x, y)."""
+    """Whether the value is a row of numbers, as x of plot(x, y), and not a curve (x, y)."""
     import numpy
     try:
         return not isinstance(value, Object) and numpy.ndim(value) == 1
@@ -344,7 +344,7 @@ def is_row(value):
 
 
 def link_of(link):
-    """(weights, options) as one table; ("motor", "load", options) is one anyway."""
+    """Joins a link given as (weights, options); to_lua joins ("motor", "load", options)."""
     return {**link[0], **link[1]} if isinstance(link, (list, tuple)) and len(link) == 2 and all(isinstance(part, dict) for part in link) else link
 
 

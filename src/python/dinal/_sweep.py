@@ -38,7 +38,7 @@ def run_of_file(text, name):
 
 
 def is_own(value):
-    """Whether it is of the user, and no library's."""
+    """Whether a user wrote it: its module is neither dinal nor in a library folder."""
     module = sys.modules.get(getattr(value, "__module__", None) or getattr(value, "__name__", ""))
     file = getattr(module, "__file__", None) or ""
     return module is None or module.__name__.partition(".")[0] not in {*sys.stdlib_module_names, "dinal"} and "-packages" not in file
@@ -49,7 +49,7 @@ def names_in(code):
 
 
 def digest(value, seen):
-    """What a value is, the same in all processes; of a function its code and what it takes from outside."""
+    """Describes a value the same way in all processes. A function counts by its code and all that it uses."""
     if isinstance(value, (int, float, complex, str, bytes, type(None), type(...))):
         return [type(value).__name__, repr(value)]
     if isinstance(value, tuple):
@@ -58,7 +58,7 @@ def digest(value, seen):
         return [value.co_code.hex(), value.co_names, value.co_varnames, digest(value.co_consts, seen)]
     if id(value) in seen:
         return seen[id(value)][0]
-    seen[id(value)] = len(seen), value  # kept, so that no other one has its id
+    seen[id(value)] = len(seen), value  # keeps the value, so that no other one gets its id
     if isinstance(value, types.ModuleType):
         return [value.__name__, pathlib.Path(value.__file__).read_text() if is_own(value) and value.__file__ else ""]
     if isinstance(value, types.FunctionType) and is_own(value):
@@ -142,7 +142,7 @@ def sweep(*, over, run, executor=None, file=None, seed=0, progress=None, workers
     own = run.options["run"] if isinstance(run, LuaFile) else run
     if is_lua and executor is None and progress is None:
         return _dinal.sweep({**kept, "run": own})
-    # Without a file what Ctrl-C leaves of a function of Python is for no other call.
+    # Without a file, the points that Ctrl-C leaves are not resumed: computing the digest might fail for a local function.
     mark = "" if is_lua else hashlib.sha256(repr(digest(run, {})).encode() if file else os.urandom(32)).hexdigest()
     parts = _dinal.sweep_in_parts({**kept, "run": own}, mark)
     call, tries = (part, run, options), 0

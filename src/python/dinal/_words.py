@@ -9,13 +9,13 @@ COMMENT, STRING, NAME, NUMBER, SIGN, SPACE = range(1, 7)
 NAMES = {"nil": "None", "true": "True", "false": "False", "sys": "osc", "local": "", "vector": "numpy"}
 SIGNS = {"^": "**", "~=": "!=", ":": "."}
 NEVER = set("do end for if while repeat goto string table io os pairs ipairs pcall error assert tostring tonumber type "
-            "coroutine setmetatable progress help check report lab match abs deg rest .. %".split())  # what is left as it is in Lua
-members = set()  # of dinal, which are named with it
-classes = {}  # in Python, by their names in Lua
+            "coroutine setmetatable progress help check report lab match abs deg rest .. %".split())  # examples with these words stay in Lua
+members = set()  # names that need "dinal." before them
+classes = {}  # Python's names of classes by those of Lua
 
 
 class NoPython(Exception):
-    """A piece of Lua that no expression of Python is."""
+    """Raised for Lua that cannot be translated."""
 
 
 def python_name(name):
@@ -23,14 +23,14 @@ def python_name(name):
 
 
 class Reader:
-    """The tokens of a piece of Lua, from which Python is written."""
+    """Translates the tokens of a piece of Lua."""
 
     def __init__(self, text):
         self.tokens = [(m.lastindex, m[0]) for m in TOKEN.finditer(text)]
         self.at = 0
 
     def peek(self):
-        """The next token that is no blank."""
+        """Returns the next token that is not blank."""
         return next(((kind, text) for kind, text in self.tokens[self.at:] if kind != SPACE), (SIGN, ""))
 
     def take(self):
@@ -38,7 +38,7 @@ class Reader:
         return self.tokens[self.at - 1]
 
     def until(self, *ends):
-        """Python for what stands before one of these, which is taken; and which it was."""
+        """Translates up to one of these tokens, which is consumed; returns the text and that token."""
         out, before = "", (SIGN, "")
         while self.at < len(self.tokens):
             kind, text = self.take()
@@ -95,7 +95,7 @@ class Reader:
         return out, ""
 
     def function(self):
-        """The parameters, as far as the expression that is returned."""
+        """Returns the parameters and moves to the expression behind `return`."""
         while self.take()[1] != "(":
             if self.at == len(self.tokens) or self.tokens[self.at - 1][0] == NAME:
                 raise NoPython("a named function")
@@ -107,7 +107,7 @@ class Reader:
         return parameters
 
     def entries(self, end):
-        """Those of a table, or arguments: (name or None, Python)."""
+        """Returns the entries of a table, or arguments, as (name or None, Python)."""
         found = []
         while True:
             name = None
@@ -148,7 +148,7 @@ class Reader:
         return f"({', '.join(listed)}, {fields})" if listed else fields
 
     def arguments(self, called):
-        """A table of options at the end of a call is its keywords."""
+        """Translates arguments; a table of options at the end becomes keywords."""
         entries = self.entries(")")
         texts = [text for _, text in entries]
         if called and texts and texts[-1].startswith("dict(") and texts[-1].endswith(")"):
@@ -161,7 +161,7 @@ def literal(named):
 
 
 def python(lua):
-    """Lua text as Python, None where it has none."""
+    """Translates Lua text to Python; returns None where that is not possible."""
     try:
         text = "\n".join(line.strip(" ") for line in Reader(lua).until("")[0].split("\n"))
         compile(text.replace("...", "0"), "example", "exec")
@@ -172,7 +172,7 @@ def python(lua):
 
 
 def in_sentence(text):
-    """A message of the program: what it names and shows is Python's."""
+    """Translates the names, examples and values in a message."""
     out, at = "", 0
     for found in re.finditer(r"[\w.:]*\{|[\w.:]+\(", text):
         if found.start() < at:
@@ -198,7 +198,7 @@ WORDS = [(r"\bsys([:.])(?=[a-z])", r"osc\1"), (r"\b([a-z]\w*):(?=[a-z])", r"\1."
          (r"\ba table\b", "a dict")]
 
 
-# ---- what options and results are
+# ---- types of options and results
 
 ACCEPTED = {"number": "Number", "flag": "bool", "text": "str", "numbers": "Numbers"}
 WANTED = {"a number": "Number", "excitation": "Excitation", "function": "Callback", "law": "Friction", "a spring": "Spring",
@@ -219,13 +219,13 @@ FIELDS = {"names": "list[str]", "silent": "list[str]", "half_cycles": "list[Reco
 
 
 class Type(str):
-    """In a signature: without the quotes of a string."""
+    """A string that a signature shows without quotes."""
 
     __repr__ = str.__str__
 
 
 def type_of_option(name, kind, choices, wanted, is_theory):
-    wanted = re.sub(r"\{.*\}", "{", wanted)  # not what an example has in it
+    wanted = re.sub(r"\{.*\}", "{", wanted)  # words of the example do not count
     if choices:
         return Type(f"Literal[{', '.join(map(repr, choices))}]")
     if kind in ACCEPTED and name != "file":
@@ -246,7 +246,7 @@ def type_of_result(name, text):
 
 
 def type_of_field(value):
-    """Of a property, whose documentation begins with its signature."""
+    """Returns the type of a property, whose documentation begins with its signature."""
     head, _, result = value.__doc__.partition("\n")[0].partition(" ->")
     return type_of_result(head.rpartition(".")[2], result)
 
@@ -254,7 +254,7 @@ def type_of_field(value):
 # ---- signatures and documentation
 
 class Default(Type):
-    """What an option is when it is not given, in the words of its documentation."""
+    """The default of an option, in the words of its documentation."""
 
 
 def takes_one_table(member):
@@ -287,13 +287,13 @@ def positional_names(member):
 
 
 def signature_of(member, has_self, owner):
-    """What editors, checkers of types and help() read; what is right is for Lua to say."""
+    """The signature for editors, type checkers and help(); Lua checks the call itself."""
     P = inspect.Parameter
     shown = {"self": P("self", P.POSITIONAL_ONLY)} if has_self else {}
     head = member["signature"].partition(" ->")[0]
     optional = re.findall(r"\w+(?= =)", head) + re.findall(r"\w+", head.partition("[")[2])
     with_curves = "{ {" in head
-    several = len(re.findall(r"OPTIONS", member["form"])) > 1  # forms of the call: each has its own needs
+    several = len(re.findall(r"OPTIONS", member["form"])) > 1  # a call with two forms: no option is needed in both
     for name in [] if with_curves else positional_names(member):
         default = Default("...") if several or name in optional or member["kind"] == "metamethod" else P.empty
         shown[name] = P(name, P.POSITIONAL_OR_KEYWORD, default=default, annotation=Type(POSITIONAL.get(name, "Number")))

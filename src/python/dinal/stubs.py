@@ -31,7 +31,7 @@ def sweep(*, over: Options, run: Callback, executor: Executor | Callable[[], Exe
           max_time: Number | None = ...) -> Data: ...
 '''
 COLUMNS = "t theta velocity M friction damping acceleration".split()
-# More than the tables of the program say: fields with names of the user's, results that depend on the arguments.
+# Additions to the tables of the program: fields named by the user, and results that depend on the arguments.
 MORE = {"Run": f'''    @overload
     def at(self, t: Number) -> tuple[float, ...]: ...
     @overload
