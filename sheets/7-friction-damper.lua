@@ -81,7 +81,7 @@ local function peak(Rd)
   return highest
 end
 
-local torque, peaks = vector.linspace(0.2, 2, 10)*given.M0, {}
+local torque, peaks = vector.linspace(0.4, 1.6, 21)*given.M0, {}
 for i = 1, #torque do peaks[i] = peak(torque[i]) end
 page:plot{ { torque, peaks }, xlabel = "Rd", ylabel = "peak, rad" }]] },
   },
@@ -138,7 +138,7 @@ page:plot{ { torque, peaks }, xlabel = "Rd", ylabel = "peak, rad" }]] },
           { limit/2, "half of it: look at the amplitude once more" },
         } },
       { name = "e", asks = "slip torque with the least peak over all omega", unit = "torque", answer = Rd, tolerance = 0.1, task = "7.4",
-        how = "minimise the greatest amplitude over omega, or the lowest place of the curve",
+        how = "the lowest place of the greatest amplitude over omega, as a curve over Rd",
         mistakes = {
           { limit, "that glues them at the crossing; the best slip torque lets them slip" },
           { function(x) return x > 1.1*Rd and x < 3*Rd end, "too tight: the peak near the resonance of both together is higher; was omega scanned down to there?" },

@@ -259,7 +259,7 @@ test("a response over two parameters is a response at each value of the first", 
         near((at.points.omega - 1.3):abs():min(), 0, 1e-7)
     end
     local picture = tostring(c:plot{ overlay = "points", show = false })
-    has(picture, "amplitude", "points")
+    has(picture, "amplitude", "fold")
     has(c:plot{ x = "omega", y = "amplitude", show = false }, "unstable")
     raises_here(function() c:plot{ overlay = "jumps" } end, "the overlay 'jumps' has no M0")
 end)
