@@ -974,9 +974,7 @@ int fit_value(lua_State* L) {
                            "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
                        .culprit = std::string(name)});
     }
-    const std::vector<std::string> values = names_of_fit(*fit);
-    raise_unknown_name(L, fmt::format("a fit has no field '{}'; its values are {}", name, fmt::join(values, ", ")),
-                       name, values, fit_class);
+    raise_unknown_name(L, fmt::format("a fit has no field '{}'", name), name, names_of_fit(*fit), fit_class);
 }
 
 lua::Pushed fit_system(lua_State* L, const FitHandle& fit) {

@@ -496,11 +496,14 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
         if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
     }
     std::string cure = text::did_you_mean(wrong, names);
-    names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(known.size()));  // the sentence has these
+    const bool listed = std::all_of(known.begin(), known.end(), [&sentence](const std::string& name) {
+        return sentence.find(name) != std::string::npos;
+    });
+    if (listed) names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(known.size()));
     lua::raise(L, {.sentence = std::move(sentence),
                    .culprit = std::string(wrong),
                    .cure = std::move(cure),
-                   .instead = fmt::format("; it also has {}", fmt::join(names, ", "))});
+                   .instead = fmt::format("; it {}has {}", listed ? "also " : "", fmt::join(names, ", "))});
 }
 
 std::string_view status_word(model::Outcome outcome) {

@@ -584,7 +584,7 @@ private:
         const double cell = size_.height / std::max(1.0, static_cast<double>(colours.cells));
         for (std::size_t i = 0; i < colours.cells; ++i) {
             const double y = panel_.bottom - static_cast<double>(i) * cell;
-            const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(colours.cells);
+            const double part = static_cast<double>(i) / std::max(1.0, static_cast<double>(colours.cells) - 1);
             const double below = colours.continuous && i > 0 ? 0.5 : 0;  // no seams
             page_.rectangle({colours.left, y - cell}, {colours.right, y + below},
                             colours.continuous ? flowing_colour(part) : shade_colour(i, colours.cells));
