@@ -201,8 +201,8 @@ int load_file(lua_State* L, const std::string& file) {
 /// The ending of what is no Lua and may be the name of a file; "" for all else.
 std::string ending_of_file(lua_State* L, std::string_view name) {
     constexpr std::size_t longest = 4096;
-    const bool with_options = lua_gettop(L) == 2 && lua_istable(L, 2);
-    const bool one = (lua_gettop(L) == 1 || with_options) && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
+    const bool options = lua_gettop(L) == 2 && lua_type(L, 2) != LUA_TSTRING;
+    const bool one = (lua_gettop(L) == 1 || options) && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
     std::string ending = one ? text::ending_of(name) : "";
     if (ending.empty()) return "";
     const int status = luaL_loadbufferx(L, name.data(), name.size(), "=load", "t");

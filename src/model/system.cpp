@@ -26,7 +26,7 @@ text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint
     OscillatorParameters parameters;
     constexpr double none = 1e-100;  // of a body that is moved
     parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
-    parameters.inertia = std::max(parameters.inertia, none);
+    if (parameters.inertia == 0) parameters.inertia = none;
     parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
     parameters.spring = own.spring, parameters.walls = own.walls;
     if (!own.friction.law.under(1).none() && !own.friction.law.is_one_way()) parameters.friction = own.friction.law;

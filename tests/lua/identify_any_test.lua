@@ -188,7 +188,7 @@ test("what cannot be fitted of several bodies is told", function()
         refused({ measured = "load.theta", theta0 = { laod = 1 } }, "theta0: the system has no 'laod'", "did you mean 'load'?"),
         refused({ theta0 = 1 }, "theta0 must be a table by body, such as { load = 1 }, got 1"),
         refused({ theta0 = { shaft = 1 } }, "theta0 must be a table by body"),
-        refused({ M = { laod = 1 } }, "M: there is no body 'laod'", "did you mean 'load'?"),
+        refused({ M = { laod = 1 } }, "M: there is no body or link 'laod'", "did you mean 'load'?"),
     })
     raises(function() identify { data = measured_both(1), system = varying, free = { "load.k" } } end, "measured must be", "got nil")
 end)

@@ -41,7 +41,7 @@ assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 local function example_of(heading)
     local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
         ["excitation.samples 2"] = "excitation.samples{}", ["excitation.constant"] = "excitation.constant{}", ["run:continue"] = "run:continue(true)",
-        ["rig_run:save"] = 'rig_run:save("x.csv", 1)', ["rig_run:continue"] = "rig_run:continue(true)" }
+        ["rig_run:save"] = 'rig_run:save("x.csv", 1)', ["rig_run:continue"] = "rig_run:continue(true)", load = 'load("x.csv", 1)' }
     local message = raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
 end

@@ -901,8 +901,8 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        // What a limit is compared with must be known as well as the motion.
-        if (mode.holds(joint)) {
+        // What a limit is compared with must be known as well as the motion, and what moves a body is its input.
+        if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
             const Series series = cheb::fit(s.holding[joint]);
             const double torques = std::max(size_at(joint), held),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
