@@ -133,4 +133,14 @@ test("laws side by side add their torques", function()
     raises(function() system { I = 1, k = 1, friction = friction.jenkins { stiffness = 9, Rd = 1 }, normal = math.sin } end, "must be a number")
 end)
 
+test("sliders on a geared link stand still while another law holds it", function()
+    local rig = system { bodies = { a = { I = 0.55, k = 3.4, C = 0.05, Rd = 0.4 }, b = { I = 1.3, C = 0.1 } },
+        links = { l = { "a", "b", ratio = -1.285391943567641, friction = { friction.jenkins { stiffness = 13, Rd = 0.36 }, friction.coulomb { Rd = 0.1 } } } } }
+    local M = { a = excitation.harmonic { amplitude = 4, omega = 1.7 } }
+    local run = rig:simulate { M = M, t_end = 15 }
+    equal(run.outcome, "reached the end")
+    near(run.a.theta, rig:simulate { M = M, t_end = 15, integrator = integrator.spectral { max_panel = 0.05 } }.a.theta, 1e-11)
+    closes(run)
+end)
+
 finish()

@@ -575,7 +575,10 @@ void Mechanics::rates(const Moment& at, double* out, const Mode* mode) const {
     for (std::size_t s = 0; s < sliders_.size(); ++s) {
         const bool sticks = mode != nullptr && mode->sliders[s] == Motion::stuck;
         const std::size_t joint = sliders_[s].joint;
-        out[sliders_[s].bend - 2 * bodies()] = sticks ? velocity(joint, at.y) - belt(joint, at.t, at.side) : 0;
+        // Where the contact stands, what is left of the slip is rounding, which no polynomial follows.
+        const double moving = belt(joint, at.t, at.side), slips = velocity(joint, at.y) - moving;
+        const bool stands = std::fabs(slips) <= 16 * rounding * (speed_scale(joint, at.y) + std::fabs(moving));
+        out[sliders_[s].bend - 2 * bodies()] = sticks && !stands ? slips : 0;
     }
     for (std::size_t k = 0; k < drive_.states.size(); ++k) out[k] = rates_[k].value(at);
     for (std::size_t b = 0; b < bristles_.size(); ++b) {

@@ -1853,7 +1853,10 @@ void Engine::watch(Ending& ending) {
         if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !rubs(j))) watch_normal(j, ending);
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
-    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) watch_slider(s, ending);
+    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
+        // Where others hold its contact, what is left of the slip is rounding.
+        if (!frame_->keeps(mechanics_.sliders()[s].joint)) watch_slider(s, ending);
+    }
     watch_relays(ending);
     if (has_pieces_) watch_conditions(ending);
     watch_users(ending);
@@ -2702,7 +2705,8 @@ bool Engine::turn_sliders() {
     bool turned = false;
     for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
         const double way = model::sign_of(mode_.sliders[s]);
-        if (!(way * slip(mechanics_.sliders()[s].joint) < 0)) continue;
+        const std::size_t joint = mechanics_.sliders()[s].joint;
+        if (!(way * slip(joint) < -16 * rounding * mechanics_.speed_scale(joint, y_))) continue;
         let_slide(s, Motion::stuck);
         turned = true;
     }
