@@ -53,14 +53,16 @@ MORE = {"Run": f'''    @overload
     @overload
     def __getitem__(self, key: slice, /) -> list[Record]: ...
     def keys(self) -> list[str]: ...
-''', "Rig": '''    def __getattr__(self, name: str) -> System: ...
-    def __getitem__(self, key: str, /) -> System: ...
 ''', "Fit": "".join(f"    {name}: float\n" for name in "I k C Rd Re omega0 zeta dead_zone theta0 velocity0 offset".split()) + '''
     def __getitem__(self, key: str, /) -> float: ...
 ''', "SteadyMotion": '''    def __getitem__(self, key: str, /) -> SteadyMotion: ...
 '''}
+# A system with named bodies and its runs have fields of these names.
 AFTER = '''class RigRun(Run):
     def __getattr__(self, name: str) -> Run: ...
+class Rig(System):
+    def __getattr__(self, name: str) -> System: ...
+    def __getitem__(self, key: str, /) -> System: ...
 '''
 
 
@@ -92,7 +94,7 @@ def body(name, members):
                 text += f"    def __call__(self, *arguments: Any, **options: Any) -> {inspect.signature(value).return_annotation}: ...\n"
                 continue
             text += ("" if isinstance(members, type) else "    @staticmethod\n") + \
-                function(own, value, "    ", "RigRun" if (name, own) == ("Rig", "simulate") else None)
+                function(own, value, "    ")
         elif own == "__call__":
             text += "    def __call__(self, t: Any, theta: Number = ..., velocity: Number = ...) -> Any: ...\n"
     return text or "    pass\n"
@@ -112,7 +114,8 @@ def stubs():
             text += f"class _{name}:\n{body(name, value)}{name}: _{name}\n"
         elif name != "sweep":
             text += function(name, value)
-    return text + AFTER
+    system = dinal._members["System"]
+    return text + AFTER + function("simulate", system.simulate, "    ", "RigRun") + function("with_", system.with_, "    ", "Rig")
 
 
 if __name__ == "__main__":
