@@ -39,6 +39,17 @@ test("elastic stops are the torque that anybody can write as M", function()
     end
 end)
 
+test("a block that a damped stop leaves inside of it is seen at the other one", function()
+    -- It leaves the lower stop before it is out of it, and flies freely to the upper one in one stretch.
+    local run = system { I = 1, k = 0, walls = { lower = -1, upper = 1, stiffness = 40, damping = 4 } }:simulate { velocity0 = -1, t_end = 8 }
+    local impacts = of_kind(run, "impact")
+    near(impacts.t[1], 1, 1e-13)
+    equal(impacts.theta[2], 1.0)
+    local release = of_kind(run, "release")[1]
+    near(impacts.t[2], release.t + (1 - release.theta) / release.velocity, 1e-12)
+    closes(run)
+end)
+
 test("stiff stops are rigid walls", function()
     local function run(walls) return system { I = 1, k = 4, walls = walls }:simulate { theta0 = -1, t_end = 10 } end
     local stiff, rigid = run { upper = 0.5, stiffness = 1e10 }, run { upper = 0.5 }

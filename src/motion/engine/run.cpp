@@ -2040,6 +2040,11 @@ void Engine::watch_stop(std::size_t joint, Ending& ending) const {
     const int pressed = mode_.presses[joint];
     const int deep = pressed != 0 ? pressed : angle[0] > stops.upper ? 1 : angle[0] < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && at_wall_[joint] != 0)) return watch_walls(joint, stops, By::stop, ending);
+    if (pressed == 0) {  // it may come to the other wall before
+        model::Walls other = stops;
+        (deep > 0 ? other.upper : other.lower) = deep * model::never;
+        watch_walls(joint, other, By::stop, ending);
+    }
     std::vector<double> y;
     const auto value = [&](double q, double v) {
         const double torque = deep * stops.torque(deep, q, v);
