@@ -90,12 +90,16 @@ Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
         q(i) = rig.drive.theta0[k], v(i) = rig.drive.velocity0[k], I(i) = rig.system.bodies[k].inertia;
     }
     const auto difference = [](const Joint& joint, const Eigen::VectorXd& of) {
-        return of(joint.first) - (joint.second < 0 ? 0 : of(joint.second));
+        double sum = 0;
+        for (const auto& [body, weight] : joint.of) sum += weight * of(static_cast<Eigen::Index>(body));
+        return sum;
     };
     std::vector<double> impulse(joints, 0);
     const auto push = [&](const Joint& joint, double by, Eigen::VectorXd& velocity) {
-        velocity(joint.first) += by / I(joint.first);
-        if (joint.second >= 0) velocity(joint.second) -= by / I(joint.second);
+        for (const auto& [body, weight] : joint.of) {
+            const auto k = static_cast<Eigen::Index>(body);
+            velocity(k) += weight * by / I(k);
+        }
     };
     for (double t = 0; t < end - dt / 2; t += dt) {
         const Eigen::VectorXd middle = q + dt / 2 * v;
@@ -114,7 +118,7 @@ Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
                 const Joint& joint = rig.system.joints[j];
                 const double most = joint.friction.law.sliding(Motion::forward, 0) * dt;
                 if (most == 0) continue;
-                const double lightness = 1 / I(joint.first) + (joint.second < 0 ? 0 : 1 / I(joint.second));
+                const double lightness = joint.lightness(rig.system.bodies);
                 const double wanted =
                     std::clamp(impulse[j] - difference(joint, next) / lightness, -most, most) - impulse[j];
                 impulse[j] += wanted;
