@@ -25,7 +25,8 @@ namespace {
 const char original_key = 0;  // in the registry: load as it was
 
 enum class Duplicates { keep, mean, first, last };
-struct LoadOptions : files::ReadOptions {
+struct LoadOptions {
+    int skip = 0;
     bool sort = false;
     Duplicates duplicates = Duplicates::keep;
 };
@@ -168,13 +169,14 @@ int load_file(lua_State* L, const std::string& file) {
     const lua::Options options(L, 2, load_call);
     LoadOptions asked;
     options.fill(asked);
+    files::ReadOptions reading{.skip = asked.skip};
     if (options.has("names")) {
         options.push("names");
         const auto count = static_cast<lua_Integer>(lua_istable(L, -1) ? lua_rawlen(L, -1) : 0);
         if (count == 0) options.wrong("names");
         for (lua_Integer i = 1; i <= count; ++i) {
             if (lua_rawgeti(L, -1, i) != LUA_TSTRING) options.wrong("names");
-            asked.names.emplace_back(lua::text_at(L, -1));
+            reading.names.emplace_back(lua::text_at(L, -1));
             lua_pop(L, 1);
         }
         lua_pop(L, 1);
@@ -189,7 +191,7 @@ int load_file(lua_State* L, const std::string& file) {
         if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
         return push_loaded_run(L, lua::value_or_raise(L, "load", std::move(record)), {});
     }
-    auto read = files::read_columns(file, asked);
+    auto read = files::read_columns(file, reading);
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     files::ReadColumns content = lua::value_or_raise(L, "load", std::move(read));
     arrange(options, asked, content);

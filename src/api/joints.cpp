@@ -232,7 +232,9 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
     std::vector<model::Weight> weights;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const std::string& body = system.bodies[i].name;
-        if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL) {
+        const bool is_option = std::any_of(link_options.begin(), link_options.end(),
+                                           [&](const text::Option& option) { return body == option.name; });
+        if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL && !is_option) {
             const double by = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : 0;
             if (!std::isfinite(by) || by == 0) {
                 options.fail("links", fmt::format("links.{}: the weight of {} must be a number other than 0, got {}",

@@ -61,6 +61,7 @@ test("nonlinear springs and feedback count at the rest, and states have modes", 
     raises(function() system { I = 1, k = 0 }:modes { M = 1 } end, "nothing holds the bodies")
     raises(function() system { I = 1, k = 0, Rd = 1 }:modes { M = 2 } end, "would have to hold 2, but holds 1")
     raises(function() system { I = 1, k = 1 }:modes { M = excitation.harmonic { omega = 1 } } end, "M must be constant")
+end)
 
 test("a clutch that holds is rigid, sliding loses its stability where the response has its Hopf point, states have modes", function()
     local rig = system { bodies = { a = { I = 1, k = 8 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 100 } } }
