@@ -224,7 +224,7 @@ int samples_from_file(lua_State* L) {
     options.fill(points);
     points.t = numbers(time);
     points.M = numbers(value);
-    const auto between = model::terms::interpolation_names[static_cast<std::size_t>(points.interpolation)];
+    const char* const between = model::terms::interpolation_names[static_cast<std::size_t>(points.interpolation)];
     const bool linear = points.interpolation == model::Interpolation::linear;
     points.origin = fmt::format("{}, {{ time = {}, value = {}{}{} }}", text::quoted(file), name(time), name(value),
                                 linear ? "" : fmt::format(", interpolation = \"{}\"", between),

@@ -200,6 +200,7 @@ std::string steady_story(lua_State* L, const SteadyHandle& s) {
     const Steady& all = s->whole ? *s->whole : *s;
     if (!all.question.is_plain()) return analysis::told(all.question, all.motion, found.size());
     std::vector<analysis::OtherMotion> others;
+    others.reserve(found.size());
     for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
     return analysis::told(s->question, s->motion, steady_shape(L, s), others);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -205,7 +206,9 @@ constexpr lua::Member system_members[] = {
      {"sys.spring -> spring or nil", "The spring in addition to k theta; nil if there is none.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
     {lua::a_value<SystemHandle, of_body<[](const model::Oscillator& system) { return walls_by_name(system.walls()); }>>,
-     {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad; nil if there are none.",
+     {"sys.walls -> table or nil",
+      "The end stops { lower, upper, restitution }, rad, or elastic ones { lower, upper, stiffness, damping }; nil if there "
+      "are none.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
     {lua::a_value<SystemHandle, [](const SystemHandle& system) { return units_by_name(system->units); }>,
      {"sys.units -> table",
@@ -295,19 +298,27 @@ int field_of_names(lua_State* L, const model::System& system, std::string_view n
 
 /// What a friction that varies says under these names: what the user wrote.
 int field_of_varying(lua_State* L, const model::System& system, std::string_view name) {
-    if (name != "Rd" && name != "Re" && name != "normal" && name != "friction" && name != "dead_zone") return 0;
+    constexpr std::array<std::string_view, 6> own{"Rd", "Re", "normal", "friction", "walls", "dead_zone"};
+    if (std::find(own.begin(), own.end(), name) == own.end()) return 0;
     push_joint(L, system, 0);
     const char* varying = varying_option(L);
+    if (system.joints.front().stops && name == "dead_zone") lua::raise(L, "with elastic walls a mass has no dead zone");
+    if (!system.joints.front().friction.is_of_numbers()) varying = "friction";
     if (name != "dead_zone") {
         if (lua_getfield(L, -1, lua_tostring(L, 2)) != LUA_TNIL) return 1;
+        if (name == "walls") return 1;
         lua_pop(L, 1);
         if (name == "Re" && lua_getfield(L, -1, "Rd") != LUA_TNIL) return 1;
         if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // of no matter to the law
     }
     if (varying != nullptr && name != "normal") {
         lua_getfield(L, 3, varying);
+        const auto* law = lua::test<model::Friction>(L, -1);
         lua::raise(L, fmt::format("this system has no constant {}: its {} is {}", name, varying,
-                                  lua::is_callable(L, -1) ? "a function" : lua::describe(L, -1)));
+                                  law != nullptr            ? source::lua_text(L, *law)
+                                  : lua::is_callable(L, -1) ? "a function"
+                                  : lua_istable(L, -1)      ? "a list of laws"
+                                                            : lua::describe(L, -1)));
     }
     lua_settop(L, 2);
     return 0;

@@ -17,7 +17,7 @@
 #include "lua/interrupt.hpp"
 
 // Those of the C library: in what the linker joins with this file, malloc, free and realloc lead to the end of it.
-// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
+// NOLINTBEGIN(clang-diagnostic-reserved-identifier,bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
 extern "C" void* __real_malloc(std::size_t size);
 extern "C" void __real_free(void* block);
 extern "C" void* __real_realloc(void* block, std::size_t size);
@@ -243,4 +243,4 @@ extern "C" void __wrap_free(void* block) {
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
     operator delete(block);
 }
-// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
+// NOLINTEND(clang-diagnostic-reserved-identifier,bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)

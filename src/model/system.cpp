@@ -14,11 +14,11 @@ std::string System::angle_in_words(const Joint& joint) const {
     return sum;
 }
 
-System as_system(const Oscillator& system) {
+System as_system(const Oscillator& body) {
     Joint ground;
-    ground.stiffness = system.stiffness(), ground.damping = system.damping();
-    ground.spring = system.spring(), ground.friction.law = system.friction(), ground.walls = system.walls();
-    return {.bodies = {{"", system.inertia()}}, .joints = {ground}, .named = false, .units = system.units()};
+    ground.stiffness = body.stiffness(), ground.damping = body.damping();
+    ground.spring = body.spring(), ground.friction.law = body.friction(), ground.walls = body.walls();
+    return {.bodies = {{"", body.inertia()}}, .joints = {ground}, .named = false, .units = body.units()};
 }
 
 text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint) {

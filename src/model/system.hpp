@@ -52,7 +52,9 @@ struct ContactFriction {
     /// The law, or another torque, can make the contact stick.
     [[nodiscard]] bool none() const { return is_constant() && law.none(); }
     /// Returns whether friction is what an Oscillator can have.
-    [[nodiscard]] bool is_plain() const { return is_constant() && sliders.empty() && !law.is_one_way(); }
+    [[nodiscard]] bool is_plain() const { return is_constant() && is_of_numbers(); }
+    /// Its torques have an Rd and an Re: it is no freewheel, and there are no sliders behind springs.
+    [[nodiscard]] bool is_of_numbers() const { return sliders.empty() && !law.is_one_way(); }
 };
 
 /// The given motion of a body: its angle, or its velocity.

@@ -550,7 +550,10 @@ private:
             places.push_back(places.empty() ? y : std::max(y, places.back() + apart));
         }
         double lowest = panel_.bottom;
-        for (std::size_t i = places.size(); i-- > 0; lowest -= apart) lowest = places[i] = std::min(places[i], lowest);
+        for (std::size_t i = places.size(); i-- > 0;) {
+            places[i] = std::min(places[i], lowest);
+            lowest = places[i] - apart;
+        }
         for (std::size_t i = 0; i < outside.size(); ++i) {
             const double y = panel_.bottom - outside[i].up * size_.height;
             page_.line({panel_.right, y}, {panel_.right + 0.7 * em, places[i]}, 0.6, colour_of(outside[i].curve));

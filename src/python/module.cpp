@@ -247,7 +247,7 @@ py::object written(py::handle self) {
         py::dict variables;
         source::ValueText writer(L, [&](int index) -> std::string {
             if (lua_rawequal(L, index, 1) != 0) return "";  // the object itself has no text
-            const std::string name = fmt::format("python{}", variables.size() + 1);
+            std::string name = fmt::format("python{}", variables.size() + 1);
             variables[name.c_str()] = to_python(L, index);
             return name;
         });

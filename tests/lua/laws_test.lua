@@ -143,4 +143,18 @@ test("sliders on a geared link stand still while another law holds it", function
     closes(run)
 end)
 
+test("a law without an Rd has none as a field, and elastic stops are the walls", function()
+    local held = system { I = 1, k = 1, friction = friction.freewheel { Rd = 0.1 } }
+    raises_here(function() return held.Rd end, "this system has no constant Rd: its friction is friction.freewheel{ Rd = 0.1 }")
+    raises_here(function() return held.dead_zone end, "no constant dead_zone: its friction is friction.freewheel")
+    local joint = system { I = 1, k = 1, friction = { friction.jenkins { stiffness = 2, Rd = 1 }, friction.coulomb { Rd = 1 } } }
+    raises_here(function() return joint.Re end, "this system has no constant Re: its friction is a list of laws")
+    equal(joint.omega0, 1.0)
+    equal(joint.walls, nil)
+    local stopped = system { I = 1, k = 1, Rd = 0.1, walls = { upper = 0.5, stiffness = 100 } }
+    equal(stopped.walls.stiffness, 100.0)
+    equal(stopped.Rd, 0.1)
+    raises_here(function() return stopped.dead_zone end, "with elastic walls a mass has no dead zone")
+end)
+
 finish()

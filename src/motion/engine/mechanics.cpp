@@ -151,13 +151,13 @@ void Frame::close_loops(Eigen::MatrixXd rows) {
     std::vector<Shape> of_leads(leads_.size());
     std::size_t free = 0;
     for (Eigen::Index k = 0; k < leads; ++k) {
-        if (stopped.count(k) == 0) of_leads[static_cast<std::size_t>(k)] = {{free++, 1}};
+        if (!stopped.contains(k)) of_leads[static_cast<std::size_t>(k)] = {{free++, 1}};
     }
     for (const auto& [lead, row] : stopped) {
         anchor_.row(lead) = rows.row(row).tail(rows.rows());
         Shape& own = of_leads[static_cast<std::size_t>(lead)];
         for (Eigen::Index k = 0; k < leads; ++k) {
-            if (stopped.count(k) == 0) add_shape(own, of_leads[static_cast<std::size_t>(k)], -rows(row, k));
+            if (!stopped.contains(k)) add_shape(own, of_leads[static_cast<std::size_t>(k)], -rows(row, k));
         }
         drop_rounding(own, 1);
     }

@@ -21,9 +21,9 @@ public:
         auto piece = pieces_.upper_bound(t);
         if (piece == pieces_.begin() || !(t < std::prev(piece)->second.to)) {
             const double before = piece == pieces_.begin() ? -model::never : std::prev(piece)->second.to;
-            const double after = piece == pieces_.end() ? model::never : piece->first;
-            auto [from, made] = make(t, before, after);
-            piece = std::next(pieces_.insert_or_assign(from, std::move(made)).first);
+            const double after = piece == pieces_.end() ? +model::never : piece->first;
+            const auto [from, made] = make(t, before, after);
+            piece = std::next(pieces_.insert_or_assign(from, made).first);
         }
         const auto& [from, own] = *std::prev(piece);
         return cheb::value(own.slope, (t - from) / own.h - 1);
@@ -44,8 +44,8 @@ private:
         std::pair<double, Piece> best;
         double least = model::never;
         for (int look = 0; look < most_looks; ++look) {
-            double from = std::max(before, t - h_);
-            for (double at = angle_.next_break(from); at <= t; at = angle_.next_break(from)) from = at;
+            double from = std::max(before, t - h_), broken = angle_.next_break(from);
+            while (broken <= t) from = broken, broken = angle_.next_break(from);
             const double to = std::min(from + 2 * h_, next), h = (to - from) / 2;
             if (!(from + h > from) || !(from + h < to)) break;
             Nodes angles{};

@@ -1771,7 +1771,8 @@ bool Engine::handle(const Ending& ending) {
             const model::Walls& stops = *problem_.system.joints[j].stops;
             const int side = ending.side != 0 ? ending.side : mode_.presses[j];
             origin_[j] = stops.at(side), reach_[j] = 0;
-            at_wall_[j] = ending.side == 0 && std::fabs(gap(j, origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
+            const bool there = std::fabs(gap(j, origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
+            at_wall_[j] = ending.side == 0 && there ? 1 : 0;
             press(j, ending.side);
             echo(now_.hi, 1);
             return decide(true) && (!too_often() || fail(Outcome::chattering));
