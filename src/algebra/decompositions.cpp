@@ -2,14 +2,28 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <limits>
+#include <new>
+#include <string>
 
 namespace dinal::algebra {
 namespace {
 
 class FactoredSparse final : public Factored {
 public:
-    explicit FactoredSparse(const Eigen::SparseMatrix<double>& A) { decomposition_.compute(A); }
-    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const override { x = decomposition_.solve(b); }
+    explicit FactoredSparse(const Eigen::SparseMatrix<double>& A) {
+        decomposition_.compute(A);
+        // Eigen catches what it could not allocate, and says so in capitals; a singular matrix fails likewise.
+        const bool lacks_memory = decomposition_.lastErrorMessage().find("MEMORY") != std::string::npos;
+        if (decomposition_.info() != Eigen::Success && lacks_memory) throw std::bad_alloc();
+    }
+    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const override {
+        if (decomposition_.info() == Eigen::Success) {
+            x = decomposition_.solve(b);
+        } else {
+            x = Eigen::VectorXd::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
+        }
+    }
 
 private:
     Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition_;

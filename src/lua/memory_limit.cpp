@@ -17,10 +17,14 @@
 #include "lua/interrupt.hpp"
 
 // Those of the C library: in what the linker joins with this file, malloc, free and realloc lead to the end of it.
-// NOLINTBEGIN(clang-diagnostic-reserved-identifier,bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)
-extern "C" void* __real_malloc(std::size_t size);
-extern "C" void __real_free(void* block);
-extern "C" void* __real_realloc(void* block, std::size_t size);
+extern "C" {
+void* plain_malloc(std::size_t size) __asm__("__real_malloc");
+void plain_free(void* block) __asm__("__real_free");
+void* plain_realloc(void* block, std::size_t size) __asm__("__real_realloc");
+void* counted_malloc(std::size_t size) __asm__("__wrap_malloc");
+void counted_free(void* block) __asm__("__wrap_free");
+void* counted_realloc(void* block, std::size_t size) __asm__("__wrap_realloc");
+}
 
 namespace dinal::lua {
 namespace {
@@ -68,7 +72,7 @@ void* allocate(void*, void* block, std::size_t, std::size_t size) {
     const Bytes before = size_of(block);
     if (size == 0) {
         count(-before);
-        __real_free(block);
+        plain_free(block);
         return nullptr;
     }
     if (const Bytes more = static_cast<Bytes>(size) - before; more > 0) {
@@ -81,23 +85,35 @@ void* allocate(void*, void* block, std::size_t, std::size_t size) {
             return nullptr;
         }
     }
-    void* result = __real_realloc(block, size);
+    void* result = plain_realloc(block, size);
     count(result == nullptr ? 0 : size_of(result) - before);
     return result;
 }
 
 /// A block of the C library in place of `block`, which may be null; null if the limit does not allow it.
 void* counted(std::size_t size, void* block) {
-    if (!limited()) return __real_realloc(block, size);
+    if (!limited()) return plain_realloc(block, size);
     const Bytes before = size_of(block);
     if (!allowed(static_cast<Bytes>(std::min<std::size_t>(size, 1ULL << 62U)) - before)) {
         stop_here(Stop::memory);
         return nullptr;
     }
-    void* result = __real_realloc(block, size);
+    void* result = plain_realloc(block, size);
     if (result != nullptr || size == 0) count(size_of(result) - before);
     return result;
 }
+
+// AddressSanitizer takes far more for itself.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define DINAL_SANITIZED
+#endif
+#endif
+#if defined(DINAL_SANITIZED) || defined(__SANITIZE_ADDRESS__)
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
 
 /// The system refuses what passes the limit by something that is not counted, such as the pages of a picture: twice the
 /// limit, and what the program and its threads take themselves.
@@ -124,7 +140,7 @@ void set_memory_limit(lua_State* L, std::size_t bytes) {
     taken = 0;
     limit = static_cast<Bytes>(std::min<std::size_t>(bytes, std::numeric_limits<Bytes>::max() / 2));
     lua_setallocf(L, allocate, nullptr);
-    set_backstop(bytes);
+    if (!is_sanitized) set_backstop(bytes);
 }
 
 void settle_refusal() noexcept {
@@ -193,17 +209,17 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
 
 // Malloc by others than Lua and operator new, which is that of Eigen's matrices: the linker leads their calls here
 // (--wrap in CMakeLists.txt). Libraries that are linked dynamically keep the plain one.
-extern "C" void* __wrap_malloc(std::size_t size) {
+void* counted_malloc(std::size_t size) {
     return dinal::lua::counted(size, nullptr);
 }
 
-extern "C" void* __wrap_realloc(void* block, std::size_t size) {
+void* counted_realloc(void* block, std::size_t size) {
     return dinal::lua::counted(size, block);
 }
 
-extern "C" void __wrap_free(void* block) {
+void counted_free(void* block) {
     if (dinal::lua::limited()) dinal::lua::count(-dinal::lua::size_of(block));
-    __real_free(block);
+    plain_free(block);
 }
 
 // NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
@@ -214,7 +230,7 @@ extern "C" void __wrap_free(void* block) {
         dinal::lua::stop_here(dinal::lua::Stop::memory);
         throw std::bad_alloc();
     }
-    void* block = __real_malloc(std::max<std::size_t>(size, 1));
+    void* block = plain_malloc(std::max<std::size_t>(size, 1));
     if (block == nullptr) {
         if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the backstop of the system
         throw std::bad_alloc();
@@ -237,10 +253,9 @@ extern "C" void __wrap_free(void* block) {
     if (dinal::lua::limited()) {
         dinal::lua::count(-dinal::lua::size_of(block));
     }
-    __real_free(block);
+    plain_free(block);
 }
 
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
     operator delete(block);
 }
-// NOLINTEND(clang-diagnostic-reserved-identifier,bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,readability-identifier-naming)

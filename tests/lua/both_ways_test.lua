@@ -87,6 +87,9 @@ local kinds = {
     ["a spring in Lua"] = function() return merged(dry, { spring = function(x) return 0.5 * x ^ 3 end }) end,
     ["walls of restitution 0"] = stops(0),
     ["walls of restitution 0.7"] = stops(0.7),
+    ["elastic walls"] = function() return merged(dry, { walls = { lower = -0.6, upper = 0.7, stiffness = 300, damping = 2 } }) end,
+    Jenkins = function() return { friction = friction.jenkins { stiffness = 6, Rd = 0.4 } } end,
+    freewheel = function() return { friction = friction.freewheel { Rd = 0.2 } } end,
     ["belt constant"] = acts(function() return { belt = 0.2 } end),
     ["belt of t"] = acts(function() return { belt = function(t) return 0.2 * math.sin(1.3 * t) end } end),
     base = acts(function() return { base = 0.3 * sine } end),
@@ -317,7 +320,7 @@ only.steady.Dahl = nil -- as slow as LuGre, and as smooth
 local function asked(question) return only[question] or kinds end
 
 -- One body with one of these laws runs as a system of several today.
-local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal of t and theta" }
+local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal of t and theta", "elastic walls", "Jenkins", "freewheel" }
 local endless = "event that bounces endlessly"
 local groups = { ["laws of several"] = varying, springs = { "spring.polynomial", "a spring in Lua" },
     walls = { "walls of restitution 0", "walls of restitution 0.7" },

@@ -65,4 +65,17 @@ test("a moved body is written, changed and refused", function()
     raises(function() system { bodies = { cam = { theta = function(t, theta) return theta end } } } end, "function of t alone")
 end)
 
+test("a body moved by its angle is moved as by the velocity of it, for long and through a ratchet", function()
+    local function ratchet(lever)
+        return system { bodies = { lever = lever, wheel = { I = 2, C = 0.05, Rd = 0.3 } },
+            links = { pawl = { "wheel", "lever", friction = friction.freewheel { Rd = 0.02 } } } }:simulate { t_end = 30 }
+    end
+    local by_angle = ratchet { theta = function(t) return 0.3 * math.sin(6 * t) end }
+    local by_velocity = ratchet { velocity = function(t) return 1.8 * math.cos(6 * t) end }
+    equal(by_angle.outcome, "reached the end")
+    equal(#by_angle.events, #by_velocity.events)
+    near(by_angle.wheel.theta, by_velocity.wheel.theta, 1e-10)
+    near(by_angle.events.t, by_velocity.events.t, 1e-8)
+end)
+
 finish()

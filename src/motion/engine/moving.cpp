@@ -1,9 +1,12 @@
 #include "motion/engine/moving.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "motion/belt_slope.hpp"
 #include "motion/engine/nodes.hpp"
@@ -12,17 +15,18 @@ namespace dinal::motion::engine {
 
 namespace {
 
-/// The derivative of given angles by series on pieces, each as long as a polynomial follows them to rounding.
+/// The derivative of given angles by series on pieces, each as long as a polynomial follows them to rounding. Where the
+/// pieces are depends on the angles alone: halves of halves of even parts between breaks, since in what another order
+/// of questions left over a derivative would be rounding over a tiny length.
 class VelocityOfAngle final : public model::UserFunction {
 public:
-    VelocityOfAngle(model::Excitation angle, double pace) : angle_(std::move(angle)), h_(pace), longest_(pace) {}
+    VelocityOfAngle(model::Excitation angle, double start, double pace)
+        : angle_(std::move(angle)), longest_(2 * pace), breaks_{start} {}
 
     double value(double t, const model::State& /*state*/) override {
         auto piece = pieces_.upper_bound(t);
         if (piece == pieces_.begin() || !(t < std::prev(piece)->second.to)) {
-            const double before = piece == pieces_.begin() ? -model::never : std::prev(piece)->second.to;
-            const double after = piece == pieces_.end() ? +model::never : piece->first;
-            const auto [from, made] = make(t, before, after);
+            const auto [from, made] = make(t);
             piece = std::next(pieces_.insert_or_assign(from, made).first);
         }
         const auto& [from, own] = *std::prev(piece);
@@ -36,18 +40,26 @@ private:
         cheb::Series<node_count - 1> slope{};
     };
 
-    /// Around t, between those that are there and where the angle breaks.
-    std::pair<double, Piece> make(double t, double before, double after) {
+    /// The part around t on which nothing breaks, no longer than the longest piece, and the next break.
+    std::array<double, 3> part_around(double t) {
+        while (breaks_.back() <= t) breaks_.push_back(angle_.next_break(breaks_.back()));
+        const auto next = std::upper_bound(breaks_.begin(), breaks_.end(), t);
+        const double begin = next == breaks_.begin() ? *next : *std::prev(next);
+        const bool ends = next != breaks_.begin() && *next < model::never;
+        const double length = ends ? (*next - begin) / std::ceil((*next - begin) / longest_) : longest_;
+        const double from = begin + std::floor((t - begin) / length) * length, to = from + length;
+        return {from, ends && !(to < *next) ? *next : to, *next};
+    }
+
+    std::pair<double, Piece> make(double t) {
         constexpr double enough = 8 * rounding;
         constexpr int most_looks = 40;
-        const double next = std::min(angle_.next_break(t), after);
+        auto [from, to, next] = part_around(t);
         std::pair<double, Piece> best;
         double least = model::never;
         for (int look = 0; look < most_looks; ++look) {
-            double from = std::max(before, t - h_), broken = angle_.next_break(from);
-            while (broken <= t) from = broken, broken = angle_.next_break(from);
-            const double to = std::min(from + 2 * h_, next), h = (to - from) / 2;
-            if (!(from + h > from) || !(from + h < to)) break;
+            const double h = (to - from) / 2;
+            if (look > 0 && (!(from + h > from) || !(from + h < to))) break;
             Nodes angles{};
             for (std::size_t j = 0; j < node_count; ++j) {
                 const double at = from + h * (1 + cheb::nodes[j]);
@@ -64,22 +76,22 @@ private:
                 best = {from, {to, h, slope}};
             }
             if (!std::isfinite(size) || tail <= enough * size || (look > 3 && !(tail < 2 * least))) break;
-            h_ /= 2;
+            (t < from + h ? to : from) = from + h;
         }
-        h_ = std::min(2 * h_, longest_);
         return best;
     }
 
     model::Excitation angle_;
-    double h_, longest_;
+    double longest_;
+    std::vector<double> breaks_;      // those that are known; the first is the start
     std::map<double, Piece> pieces_;  // by where they begin
 };
 
-model::Excitation velocity_of(const model::Moved& moved, double pace) {
+model::Excitation velocity_of(const model::Moved& moved, double start, double pace) {
     if (!moved.by_angle) return moved.motion;
     if (moved.motion.constant_from() == -model::never) return {};
     model::Scripted script;
-    script.function = std::make_shared<VelocityOfAngle>(moved.motion, pace);
+    script.function = std::make_shared<VelocityOfAngle>(moved.motion, start, pace);
     return model::Excitation::make(script).value();
 }
 
@@ -95,7 +107,7 @@ Moving::Moving(const model::System& given, const model::Drive& asked, double sta
         joint.name = given.bodies[i].name, joint.of = {{i, 1}}, joint.rigid = true;
         system.joints.push_back(std::move(joint));
         drive.loads.emplace_back();
-        drive.belts.push_back(velocity_of(*moved, pace));
+        drive.belts.push_back(velocity_of(*moved, start, pace));
         if (moved->by_angle) drive.theta0[i] = belt_from(moved->motion, start);
         drive.velocity0[i] = belt_from(drive.belts.back(), start);
         if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any will do

@@ -523,7 +523,8 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
     towards = pull > 0 ? Motion::forward : Motion::backward;
     const double holding = mechanics_.holding(joint, towards, at) + mode.friction[joint].blunt;
     if (std::isinf(holding)) return -model::never;  // a freewheel, backward
-    if (n() > 1 || !mechanics_.is_native(joint) || mechanics_.has_belts() || mechanics_.states() > 0) {
+    if (n() > 1 || !mechanics_.is_native(joint) || mechanics_.has_belts() || mechanics_.states() > 0 ||
+        mode.presses[joint] != 0) {
         return std::fabs(pull) - look.blurred - holding;
     }
     // The limit is a razor's edge. The angle stands for all that are within half a unit of its last place.
@@ -1778,6 +1779,13 @@ bool Engine::handle(const Ending& ending) {
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
         case By::slider:
+            if (static_cast<Motion>(ending.side) == Motion::stuck) {
+                // What its slip has left, and its spring beyond its limit, is rounding: it would slide again at once.
+                const Mechanics::Slider& own = mechanics_.sliders()[j];
+                const model::Weight& first = problem_.system.joints[own.joint].of.front();
+                y_[n() + first.body] -= slip(own.joint) / first.by;
+                y_[own.bend] *= 1 - 8 * rounding;
+            }
             let_slide(j, static_cast<Motion>(ending.side));
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         case By::corner: {
