@@ -339,7 +339,11 @@ void change_numbers(model::System& system, std::size_t j, const Change& change_n
 /// Pushes the system, or raises what is wrong with its numbers.
 int push_with_numbers(lua_State* L, const model::System& system) {
     if (!system.named) return push_alone(L, "identify", system, 0);
-    for (std::size_t j = 0; j < system.joints.size(); ++j) push_alone(L, "identify", system, j), lua_pop(L, 1);
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (!system.is_link(j) && system.bodies[j].moved) continue;
+        push_alone(L, "identify", system, j);
+        lua_pop(L, 1);
+    }
     lua::push<model::SystemHandle>(L, std::make_shared<const model::System>(system));
     return 1;
 }

@@ -199,6 +199,9 @@ text::Expected<model::Oscillator> oscillator_of(const model::System& system) {
 }
 
 int push_alone(lua_State* L, std::string_view call, const model::System& system, std::size_t j) {
+    if (!system.is_link(j) && system.bodies[j].moved) {
+        lua::fail(L, call, {fmt::format("{} is moved, and so no system by itself", system.joints[j].name)});
+    }
     const auto oscillator = lua::value_or_raise(L, call, model::oscillator_at(system, j));
     model::System one{
         .bodies = {{"", oscillator.inertia()}}, .joints = {system.joints[j]}, .named = false, .units = system.units};

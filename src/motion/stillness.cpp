@@ -108,7 +108,9 @@ std::vector<model::Event> turns_on_belt(const Trajectory& run) {
         moved_at = to, velocity = now->velocity;
     };
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-        const double width = times[i + 1] - times[i], steps = parts * std::ceil(std::max(1.0, width / longest));
+        constexpr double most = 1e4;  // a body that is moved may have any inertia, and no period
+        const double width = times[i + 1] - times[i];
+        const double steps = parts * std::ceil(std::clamp(width / longest, 1.0, most));
         const auto count = width > 0 ? static_cast<std::size_t>(steps) : 0;
         for (std::size_t k = 1; k < count; ++k) look(times[i] + static_cast<double>(k) * width / steps);
         look(times[i + 1]);

@@ -78,4 +78,11 @@ test("a body moved by its angle is moved as by the velocity of it, for long and 
     near(by_angle.events.t, by_velocity.events.t, 1e-8)
 end)
 
+test("a body that is moved is no system by itself", function()
+    local rig = system { bodies = { cam = { theta = 0.1, k = 3 }, b = { I = 1 } }, links = { rod = { "b", "cam", k = 3 } } }
+    raises_here(function() return rig.cam end, "sys.cam: cam is moved, and so no system by itself")
+    equal(rig.b.I, 1.0)
+    equal(rig:with { bodies = { b = { I = 2 } } }.b.I, 2.0)
+end)
+
 finish()
