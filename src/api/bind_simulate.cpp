@@ -196,6 +196,9 @@ bool sees_all(const model::System& system, const model::Drive& drive, bool locat
     see_in(drive.base);
     for (const model::OwnState& state : drive.states) see(*state.rate);
     for (const model::WantedEvent& event : drive.events) see(*event.when);
+    for (const model::Body& body : system.bodies) {
+        if (body.moved) see_in(body.moved->motion);
+    }
     for (const model::Joint& joint : system.joints) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) see(*spring->function);
         if (const auto* law = joint.friction.law.as<model::laws::UserLaw>()) see(*law->function);

@@ -135,6 +135,10 @@ double Excitation::view(double t, double spacing) const {
         if (from < to && t < to) {
             nearest = std::min(nearest, std::max(from - t, apart / spacing));
         }
+        if (const auto* script = std::get_if<Scripted>(&c.term)) {
+            const double own_time = t - script->delay;
+            nearest = std::min(nearest, script->function->told_until(own_time) - own_time);
+        }
     }
     return nearest;
 }

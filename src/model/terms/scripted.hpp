@@ -70,6 +70,9 @@ public:
     virtual Formula* read() { return nullptr; }
     /// The first time after t at which it is known to jump or kink; `never` when nothing is known.
     virtual double next_break(double /*t*/) { return never; }
+    /// Where a stretch from t on must end at the latest, lest it step over what the function does in it; `never` when
+    /// nothing is known.
+    virtual double told_until(double /*t*/) { return never; }
     /// Its conditions of theta, velocity and states are known.
     virtual bool has_pieces() { return false; }
     /// The piece at this moment. Decisions that the piece holds already stay, except those that depend on `again`.

@@ -25,7 +25,6 @@ constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
 /// In units of the longest stretch: on one shorter than this no pulse can hide.
 constexpr double too_short_to_look = 1e-6;
-const double smallest = std::numeric_limits<double>::min() / rounding;
 
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
 using Integration = Eigen::Matrix<double, node_count, node_count>;

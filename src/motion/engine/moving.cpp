@@ -10,35 +10,45 @@
 
 #include "motion/belt_slope.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/engine/unseen.hpp"
 
 namespace dinal::motion::engine {
 
-namespace {
-
 /// The derivative of given angles by series on pieces, each as long as a polynomial follows them to rounding. Where the
 /// pieces are depends on the angles alone: halves of halves of even parts between breaks, since in what another order
-/// of questions left over a derivative would be rounding over a tiny length.
+/// of questions left over a derivative would be rounding over a tiny length. No stretch of a run passes the end of a
+/// piece: a polynomial hides nothing from it.
 class VelocityOfAngle final : public model::UserFunction {
 public:
-    VelocityOfAngle(model::Excitation angle, double start, double pace)
-        : angle_(std::move(angle)), longest_(2 * pace), breaks_{start} {}
+    VelocityOfAngle(model::Excitation angle, double start, double longest)
+        : angle_(std::move(angle)), longest_(longest), breaks_{start} {}
 
     double value(double t, const model::State& /*state*/) override {
-        auto piece = pieces_.upper_bound(t);
-        if (piece == pieces_.begin() || !(t < std::prev(piece)->second.to)) {
-            const auto [from, made] = make(t);
-            piece = std::next(pieces_.insert_or_assign(from, made).first);
-        }
-        const auto& [from, own] = *std::prev(piece);
+        const auto& [from, own] = piece_at(t);
         return cheb::value(own.slope, (t - from) / own.h - 1);
     }
     double next_break(double t) override { return angle_.next_break(t); }
+    double told_until(double t) override {
+        constexpr double beside = 1e-9;  // of a piece: who stands so near to its end stands at it
+        const auto& [from, own] = piece_at(t);
+        return own.to - t > beside * own.h ? own.to : piece_at(own.to).second.to;
+    }
+    /// The longest between two looks at a function between which it may do what the series do not.
+    [[nodiscard]] double gap() const { return gap_; }
 
 private:
     struct Piece {
         double to = 0, h = 0;
         cheb::Series<node_count - 1> slope{};
     };
+
+    /// The piece in which t is, and where that begins.
+    const std::pair<const double, Piece>& piece_at(double t) {
+        const auto next = pieces_.upper_bound(t);
+        if (next != pieces_.begin() && t < std::prev(next)->second.to) return *std::prev(next);
+        const auto [from, made] = make(t);
+        return *pieces_.insert_or_assign(from, made).first;
+    }
 
     /// The part around t on which nothing breaks, no longer than the longest piece, and the next break.
     std::array<double, 3> part_around(double t) {
@@ -47,17 +57,25 @@ private:
         const double begin = next == breaks_.begin() ? *next : *std::prev(next);
         const bool ends = next != breaks_.begin() && *next < model::never;
         const double length = ends ? (*next - begin) / std::ceil((*next - begin) / longest_) : longest_;
-        const double from = begin + std::floor((t - begin) / length) * length, to = from + length;
+        double part = std::floor((t - begin) / length);
+        if (begin + (part + 1) * length <= t) ++part;  // the quotient was rounded down
+        const double from = begin + part * length, to = begin + (part + 1) * length;
         return {from, ends && !(to < *next) ? *next : to, *next};
     }
 
     std::pair<double, Piece> make(double t) {
-        constexpr double enough = 8 * rounding;
-        constexpr int most_looks = 40;
+        constexpr double enough = 8;  // times the rounding of the angles and of the times at which they are asked
+        constexpr int most_looks = 40, patience = 12;
         auto [from, to, next] = part_around(t);
+        const auto halve = [&, t] {
+            const double middle = from + (to - from) / 2;
+            (t < middle ? to : from) = middle;
+        };
+        while ((to - from) * cheb::widest_gap > angle_.finest_detail(from, to).apart) halve();
         std::pair<double, Piece> best;
         double least = model::never;
-        for (int look = 0; look < most_looks; ++look) {
+        Told told = Told::unknown;
+        for (int look = 0, in_vain = 0; look < most_looks && in_vain < patience; ++look) {
             const double h = (to - from) / 2;
             if (look > 0 && (!(from + h > from) || !(from + h < to))) break;
             Nodes angles{};
@@ -69,35 +87,61 @@ private:
             }
             const Series series = cheb::fit(angles);
             const double tail = cheb::tail(series), size = cheb::size(series);
-            if (!std::isfinite(size) || tail < least / 2) {
-                least = tail;
+            const double late = std::max(std::fabs(from), std::fabs(to));
+            const bool smooth = tail <= enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
+            if (told == Told::strays) least = model::never;  // a series that hid something is no measure
+            ++in_vain;
+            const double part = smooth ? 0 : tail / size;
+            if (!std::isfinite(size) || smooth || part < least / 2) {
+                least = part, in_vain = 0;
                 cheb::Series<node_count - 1> slope = cheb::derivative(series);
                 for (double& c : slope) c /= h;
                 best = {from, {to, h, slope}};
             }
-            if (!std::isfinite(size) || tail <= enough * size || (look > 3 && !(tail < 2 * least))) break;
-            (t < from + h ? to : from) = from + h;
+            told = smooth ? by_series(series, from, h) : Told::unknown;
+            if (!std::isfinite(size) || (smooth && told != Told::strays)) break;
+            halve();
         }
+        if (told != Told::all) gap_ = std::max(gap_, 2 * best.second.h * cheb::widest_gap);
         return best;
     }
 
+    enum class Told { unknown, strays, all };
+    /// Whether the functions of the angle do what the series tells between its nodes.
+    Told by_series(const Series& series, double from, double h) {
+        constexpr double clearly = 64, hair = 16;
+        constexpr int thorough = 64;
+        const double late = std::max(std::fabs(from), std::fabs(from + 2 * h));
+        Told told = Told::all;
+        for (const model::Component& c : angle_.components()) {
+            const auto* script = std::get_if<model::Scripted>(&c.term);
+            if (script == nullptr || c.gain == 0 || told == Told::strays) continue;
+            model::Formula* formula = script->function->read();
+            if (formula == nullptr || formula->gave_up()) {
+                told = Told::unknown;
+                continue;
+            }
+            unseen_.begin(*formula, nullptr);
+            unseen_.give(0, {from + h - script->delay, h - hair * rounding * late});
+            const double size = cheb::size(series);
+            const double allowed =
+                (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
+            if (unseen_.is_told(allowed, 0)) continue;
+            const auto found = unseen_.search({}, thorough, [=](const Series&) { return allowed; });
+            if (found.place) told = Told::strays;
+            if (!found.place && !found.proven) told = Told::unknown;
+        }
+        return told;
+    }
+
     model::Excitation angle_;
-    double longest_;
+    double longest_, gap_ = 0;
+    Unseen unseen_;
     std::vector<double> breaks_;      // those that are known; the first is the start
     std::map<double, Piece> pieces_;  // by where they begin
 };
 
-model::Excitation velocity_of(const model::Moved& moved, double start, double pace) {
-    if (!moved.by_angle) return moved.motion;
-    if (moved.motion.constant_from() == -model::never) return {};
-    model::Scripted script;
-    script.function = std::make_shared<VelocityOfAngle>(moved.motion, start, pace);
-    return model::Excitation::make(script).value();
-}
-
-}  // namespace
-
-Moving::Moving(const model::System& given, const model::Drive& asked, double start, double pace)
+Moving::Moving(const model::System& given, const model::Drive& asked, double start, double longest)
     : system(given), drive(asked) {
     drive.loads.resize(system.joints.size());
     for (std::size_t i = 0; i < given.bodies.size(); ++i) {
@@ -107,11 +151,24 @@ Moving::Moving(const model::System& given, const model::Drive& asked, double sta
         joint.name = given.bodies[i].name, joint.of = {{i, 1}}, joint.rigid = true;
         system.joints.push_back(std::move(joint));
         drive.loads.emplace_back();
-        drive.belts.push_back(velocity_of(*moved, start, pace));
+        drive.belts.push_back(moved->by_angle ? model::Excitation() : moved->motion);
+        if (moved->by_angle && moved->motion.constant_from() > -model::never) {
+            const auto velocity = std::make_shared<VelocityOfAngle>(moved->motion, start, longest);
+            model::Scripted script;
+            script.function = velocity;
+            drive.belts.back() = model::Excitation::make(script).value();
+            velocities_.push_back(velocity);
+        }
         if (moved->by_angle) drive.theta0[i] = belt_from(moved->motion, start);
         drive.velocity0[i] = belt_from(drive.belts.back(), start);
         if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any will do
     }
+}
+
+double Moving::gap() const {
+    double gap = 0;
+    for (const auto& velocity : velocities_) gap = std::max(gap, velocity->gap());
+    return gap;
 }
 
 }  // namespace dinal::motion::engine

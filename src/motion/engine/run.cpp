@@ -2956,24 +2956,16 @@ Run run_plain(const Request& problem) {
         engine.run();
         return result;
     }
+    const double run = problem.window.end - problem.window.start;
     const Moving moving(problem.system, problem.drive, problem.window.start,
-                        (problem.window.end - problem.window.start) / 64);
-    const Request held{.system = moving.system,
-                       .drive = moving.drive,
-                       .window = problem.window,
-                       .rows = problem.rows,
-                       .monitor = problem.monitor,
-                       .limits = problem.limits,
-                       .before = problem.before,
-                       .tolerance = problem.tolerance,
-                       .longest = problem.longest,
-                       .step = problem.step,
-                       .keeps_torques = problem.keeps_torques,
-                       .history_bytes = problem.history_bytes,
-                       .hidden = moving.system.joints.size() - problem.system.joints.size(),
-                       .joined_elsewhere = problem.joined_elsewhere};
+                        std::min({problem.longest, run / 32,
+                                  longest_in_periods * problem.system.shortest_natural_period()}));
+    Request held = problem.on(moving.system, moving.drive);
+    held.hidden = moving.system.joints.size() - problem.system.joints.size();
     Engine engine(held, result);
     engine.run();
+    result.gap = std::max(result.gap, moving.gap());
+    result.unproven = std::max(result.unproven, moving.gap());
     return result;
 }
 
@@ -3006,18 +2998,7 @@ Run run(const Request& problem) {
             joint.spring = model::springs::UserSpring{witnesses.heard(spring->function, of("spring", j), "theta")};
         }
     }
-    const Request heard{.system = system,
-                        .drive = drive,
-                        .window = problem.window,
-                        .rows = problem.rows,
-                        .monitor = problem.monitor,
-                        .limits = problem.limits,
-                        .before = problem.before,
-                        .tolerance = problem.tolerance,
-                        .longest = problem.longest,
-                        .step = problem.step,
-                        .keeps_torques = problem.keeps_torques};
-    Run result = run_plain(heard);
+    Run result = run_plain(problem.on(system, drive));
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
     result.contradiction = witnesses.verdict(whole);
     if (result.contradiction) result.outcome = Outcome::not_a_function;

@@ -70,6 +70,24 @@ struct Request {
     std::size_t history_bytes = limits.memory / 4;
     std::size_t hidden = 0;         ///< rigid joints behind those of the system, which move bodies
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
+
+    /// The same of another system and its drive, which must outlast it.
+    [[nodiscard]] Request on(const model::System& other, const model::Drive& its) const {
+        return {.system = other,
+                .drive = its,
+                .window = window,
+                .rows = rows,
+                .monitor = monitor,
+                .limits = limits,
+                .before = before,
+                .tolerance = tolerance,
+                .longest = longest,
+                .step = step,
+                .keeps_torques = keeps_torques,
+                .history_bytes = history_bytes,
+                .hidden = hidden,
+                .joined_elsewhere = joined_elsewhere};
+    }
 };
 
 /// The run, whose functions somebody has heard already.
