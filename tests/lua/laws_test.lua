@@ -1,11 +1,6 @@
 -- Laws with a direction or a memory: freewheels, Jenkins elements, and laws side by side.
 dofile "tests/lua/support.lua"
 
-local function closes(run)
-    local total = run:energy().total
-    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.impacts), 1))
-end
-
 test("a freewheel lets its load run on, and takes it along", function()
     -- The load is driven by the motor and overruns it when the motor brakes.
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } },

@@ -1,12 +1,6 @@
 -- Machines: gears, planetary sets and couplings, torques on links.
 dofile "tests/lua/support.lua"
 
--- What does not add up is rounding of all that flows.
-local function closes(run)
-    local total = run:energy().total
-    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.viscous), 1))
-end
-
 local M = excitation.harmonic { amplitude = 3, omega = 1.3 }
 
 test("an elastic gear acts like a shaft of the reflected load", function()

@@ -1,11 +1,6 @@
 -- Bodies that are moved: their angle or velocity is given.
 dofile "tests/lua/support.lua"
 
-local function closes(run)
-    local total = run:energy().total
-    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.dry), math.abs(total.impacts), 1))
-end
-
 test("an end that is moved is a shaking support", function()
     local A, w = 0.2, 1.7
     local rig = system { bodies = { cam = { theta = function(t) return A * math.sin(w * t) end }, load = { I = 2, C = 0.1 } },

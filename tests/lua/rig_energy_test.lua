@@ -1,11 +1,5 @@
 dofile "tests/lua/support.lua"
 
-local function closes(run, what, within)
-    local total = run:energy().total
-    assert(total.closure < (within or 1e-11), string.format("%s: closure %.3g of %.6g", what, total.closure, total.flow))
-    return run:energy()
-end
-
 test("a torque gives what it times the way of its body is, and a clutch turns what it slips into heat", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     local run = rig:simulate { velocity0 = { motor = 3 }, M = { motor = 1 }, t_end = 4 }

@@ -1,11 +1,6 @@
 -- Elastic stops, which push back with k x + C x' at the depth x and never pull.
 dofile "tests/lua/support.lua"
 
-local function closes(run)
-    local total = run:energy().total
-    near(total.error, 0, 1e-11 * math.max(total.flow or 0, math.abs(total.input), math.abs(total.impacts), 1))
-end
-
 test("a block on a damped stop leaves it where the stop would begin to pull", function()
     local k, C = 4, 1
     local run = system { I = 1, k = 0, walls = { upper = 1, stiffness = k, damping = C } }:simulate { velocity0 = 1, t_end = 5 }

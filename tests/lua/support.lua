@@ -53,6 +53,16 @@ function support.has_not(text, ...)
     end
 end
 
+--- The energy of a run adds up, to a part of all that flows; returns it.
+function support.closes(run, what, within)
+    local energy = run:energy()
+    local total = energy.total
+    if not (total.closure < (within or 1e-11)) then
+        error(("%senergy closes to %.3g of %.6g"):format(what and what .. ": " or "", total.closure, total.flow), 2)
+    end
+    return energy
+end
+
 --- The story of a run or of a motion has each of these pieces in it, wherever its lines end.
 function support.says(run, ...)
     support.has((run:explain():gsub("%s+", " ")), ...)
