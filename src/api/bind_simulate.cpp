@@ -47,6 +47,21 @@ std::optional<std::size_t> memory_of_machine() {
     return bytes;
 }
 
+/// A run may take half of the memory of the machine, and most of what the script may still have.
+motion::Limits limits_of_run(bool dense) {
+    motion::Limits limits{.dense = dense};
+    if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
+    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
+    return limits;
+}
+
+/// The default of dt; the natural period is infinite if there is none.
+double usual_dt(const motion::Window& window, double natural_period) {
+    constexpr double rows_a_period = 40, least = 1e3, most = 1e5;
+    const double length = window.end - window.start;
+    return length / std::clamp(std::ceil(rows_a_period * length / natural_period), least, most);
+}
+
 /// As the integrator plays it: M as native terms, where its functions can be read so.
 model::Drive played_drive(lua_State* L, const source::Task& task) {
     model::Drive played = task.drive;
@@ -211,13 +226,6 @@ bool sees_all(const model::System& system, const model::Drive& drive, bool locat
     return all;
 }
 
-motion::Limits limits_of_run(bool dense) {
-    motion::Limits limits{.dense = dense};
-    if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
-    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
-    return limits;
-}
-
 std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
                                                   bool goes_on) {
     const auto memories = std::make_shared<const Memories>(L, options, M, goes_on);
@@ -263,12 +271,6 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         call.failed() ? call.raise_error() : lua::raise_interrupted(L);
     }
     return 1;
-}
-
-double usual_dt(const motion::Window& window, double natural_period) {
-    constexpr double rows_a_period = 40, least = 1e3, most = 1e5;
-    const double length = window.end - window.start;
-    return length / std::clamp(std::ceil(rows_a_period * length / natural_period), least, most);
 }
 
 int simulate_system(lua_State* L) {

@@ -18,11 +18,6 @@ namespace dinal::api {
 
 int simulate_system(lua_State* L);
 
-/// A run may take half of the memory of the machine, and most of what the script may still have.
-[[nodiscard]] motion::Limits limits_of_run(bool dense);
-/// The default of dt; the natural period is infinite if there is none.
-double usual_dt(const motion::Window& window, double natural_period);
-
 /// What is asked of the core: simulate() or resume().
 using Compute = std::function<text::Expected<motion::Trajectory>(
     const source::Task& task, const motion::Monitor& monitor, const motion::Limits& limits)>;

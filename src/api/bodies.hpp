@@ -1,4 +1,4 @@
-// Systems of several bodies, and of one whose friction depends on more than its speed, as Lua sees them.
+// Systems of any bodies and links, and what drives them, as Lua writes them.
 #pragma once
 
 #include <functional>
@@ -24,11 +24,8 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
 enum class Names { bodies, links, both };
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::System& system,
                     Names which, const std::function<void(std::size_t)>& f);
-/// Those of the call, by the names of the bodies.
+/// Everything that the call says of what acts on the system, and from where it starts: by default from rest at 0.
 model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system);
-/// The same from rest at 0.
-model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::System& system);
-std::vector<std::string> names_of_states(const model::Drive& drive);
 /// What users' functions get as theta, velocity and z.
 void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive);
 

@@ -64,7 +64,7 @@ void check_one_way(const lua::Options& options, const model::System& system, std
 
 }  // namespace
 
-model::Drive asked_acting(lua_State* L, const lua::Options& options, const model::System& system) {
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system) {
     model::Drive drive = model::Drive::at_rest(system.bodies.size(), system.joints.size());
     const auto named = [&](const char* option, std::size_t joint) {
         return fmt::format("{}: {}", options.call(), part_of_option(system, option, joint));
@@ -82,11 +82,6 @@ model::Drive asked_acting(lua_State* L, const lua::Options& options, const model
     drive.events = read_events(L, options);
     for (std::size_t i = 0; i < system.joints.size(); ++i)
         check_relays(options, drive.loads[i], names_for_relays(system, drive), part_of_option(system, "M", i));
-    return drive;
-}
-
-model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system) {
-    model::Drive drive = asked_acting(L, options, system);
     for (const auto& [option, values] :
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
         for_each_named(L, options, option, system, Names::bodies, [&, name = option, to = values](std::size_t i) {
@@ -126,15 +121,11 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
     return drive;
 }
 
-std::vector<std::string> names_of_states(const model::Drive& drive) {
-    std::vector<std::string> names;
-    for (const model::OwnState& state : drive.states) names.push_back(state.name);
-    return names;
-}
-
 void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive) {
     if (system.named) call.name_bodies(body_names(system));
-    if (!drive.states.empty()) call.name_states(names_of_states(drive));
+    std::vector<std::string> states;
+    for (const model::OwnState& state : drive.states) states.push_back(state.name);
+    if (!states.empty()) call.name_states(states);
 }
 
 }  // namespace dinal::api

@@ -74,6 +74,12 @@ std::vector<Hit> named(std::string_view name) {
     return globals.empty() ? others : globals;
 }
 
+/// Those of a method of an object of the user's own: help "rig:simulate", where rig is his variable.
+std::vector<Hit> named_by_method(std::string_view name) {
+    const std::size_t separator = name.find_last_of(".:");
+    return separator == std::string_view::npos ? std::vector<Hit>{} : named(name.substr(separator + 1));
+}
+
 /// Lower case, and dead_zone is found as "dead zone".
 std::string searchable(std::string_view text) {
     std::string result = text::lower(text);
@@ -242,6 +248,8 @@ std::string found_about(std::string_view words, const terminal::Display& screen)
     if (!text.empty()) {
         return text;
     }
+    for (const Hit& hit : named_by_method(words)) text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
+    if (!text.empty()) return text;
     const std::vector<Hit> hits = mentioning(words);
     for (std::size_t i = 0; i < std::min(most, hits.size()); ++i) {
         text += hit_line(hits[i], screen);

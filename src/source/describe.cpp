@@ -98,10 +98,6 @@ std::string joint_text(lua_State* L, const model::System& system, std::size_t j,
 
 }  // namespace
 
-std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
-    return lua_text(L, model::as_system(system), whole);
-}
-
 std::string lua_text(lua_State* L, const model::System& system, ValueText* whole) {
     if (!system.named) return "system" + joint_text(L, system, 0, whole);
     std::vector<std::string> bodies, links;

@@ -25,11 +25,9 @@ const lua::LuaFunction* function_alone(const model::Excitation& excitation);
 /// With `whole`, functions come with the variables that they take from outside, and tables whole.
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
 
-/// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }": makes the same system again; parts that are 0 are left out.
-/// With `whole`, the function of a friction law comes with the variables that it takes from outside.
-std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole = nullptr);
-
-/// "system{ bodies = { a = { I = 1, k = 4 } } }": the same of several bodies.
+/// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }" or "system{ bodies = { a = { I = 1, k = 4 } } }" makes the same
+/// system again; parts that are 0 are left out. With `whole`, the functions of friction laws come with the variables
+/// that they take from outside.
 std::string lua_text(lua_State* L, const model::System& system, ValueText* whole = nullptr);
 
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".

@@ -138,8 +138,7 @@ std::string ValueText::object(int index) {
         return "vector{ " + text + " }";
     }
     const auto text = [this](const auto* own) { return own != nullptr ? lua_text(L_, *own, this) : ""; };
-    std::string own = text(lua::test<model::Oscillator>(L_, index)) + text(lua::test<model::Friction>(L_, index)) +
-                      text(lua::test<model::Spring>(L_, index));
+    std::string own = text(lua::test<model::Friction>(L_, index)) + text(lua::test<model::Spring>(L_, index));
     if (const auto* rig = lua::test<model::SystemHandle>(L_, index)) own = lua_text(L_, **rig, this);
     if (const auto* excitation = lua::test<model::Excitation>(L_, index)) own = describe(L_, *excitation, this);
     if (const auto* method = lua::test<motion::Integrator>(L_, index)) own = lua_text(*method);

@@ -142,6 +142,8 @@ test("help searches words, suggests names, and shows where to begin", function()
     assert(select(2, many:gsub("\n  %S", "")) <= 10, many)
     has(many, "more: use more of the word")
     has(output 'help "run.enrgy"', "did you mean 'energy'?")
+    has(output 'help "rig:simulate"', "sys:simulate{") -- the object of a user has a name of his own
+    has(output 'help "rig:bogus"', "nothing about 'rig:bogus'")
     has(output 'help "thta0"', "did you mean 'theta0'?")
     has(output "help()", "sys = system{", "help(2)")
     equal(output "help(1)", output "help()")
