@@ -436,8 +436,8 @@ constexpr std::array<Topic, 52> topics = {{
      "system{ walls = { lower = -1, upper = 1, restitution = .5 } } bounces at walls; impacts are\n"
      "events of the run.\n",
      "wall walls gap impact impacts restitution"},
-    {"multibody coupled clutch gear masses",
-     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md.\n",
+    {"multibody coupled clutch gear gearbox planetary brake pulley ratchet isolator blade machine masses",
+     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md shows nine machines.\n",
      "two several bodies mass chain degrees freedom"},
     {"measured measurement",
      "M from a table: excitation.samples{ t = { 0, 1 }, M = { 0, 2 } } or excitation.samples \"force.csv\".\n"
