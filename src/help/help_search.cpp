@@ -396,10 +396,11 @@ constexpr std::array<Topic, 52> topics = {{
      "sys:steady{ belt = .2 } finds the limit cycle, with s.period and s.amplitude;\n"
      "examples/250-belt-squeal.lua shows one.\n",
      "limit cycle belt stick-slip oscillation"},
-    {"eigenfrequency eigenvalue natural",
+    {"eigenfrequency eigenvalue natural modal modes campbell",
      "sys.omega0 and sys.T0 are the natural frequency and period without damping,\n"
-     "sys.omega1 is the damped frequency.\n",
-     "frequency period own"},
+     "sys.omega1 is the damped frequency. sys:modes has the frequencies and damping of several\n"
+     "bodies or a sliding contact; docs/bodies.md plots them over a parameter.\n",
+     "frequency frequencies period own mode shape damping parameter"},
     {"decrement dashpot",
      "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
      "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
