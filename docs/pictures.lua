@@ -30,20 +30,17 @@ draw("hunting", { { hunting.t, hunting.states.w, label = "Re = 0.06" },
   { shaken.t, shaken.states.w, label = "with dither" },
   xlabel = "t", ylabel = "speed w", size = { 12, 6 } })
 
--- bodies.md: a clutch that closes, and a drill string.
-local drive = system{ bodies = { motor = { I = 1 }, load = { I = 3 } },
-  links = { clutch = { "motor", "load", Rd = 2, Re = 2.4, normal = function(t) return math.min(t, 1) end } } }
-local run = drive:simulate{ velocity0 = { motor = 3 }, t_end = 4 }
-draw("clutch", { { run.motor.t, run.motor.velocity, label = "motor" }, { run.load.t, run.load.velocity, label = "load" },
-  xlabel = "t", ylabel = "velocity, rad per time unit", title = "A clutch that closes locks at t = 1.625",
-  size = { 12, 6 } })
-
-local rig = system{
-  bodies = { top = { I = 2 }, bit = { I = 0.1, friction = friction.stribeck{ Rd = 0.5, Re = 1, speed = 0.5 } } },
-  links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
-local drilling = rig:simulate{ M = { top = function(t, theta, velocity) return 20*(1 - velocity.top) end }, t_end = 20 }
-drilling:plot{ file = file "drill-string", title = "A drill string: the bit sticks and slips", size = { 12, 9 } }
-drawn[#drawn + 1] = file "drill-string"
+-- bodies.md: its own lines draw its pictures, so they are run as they stand there, with the files in the folder.
+local page = assert(io.open(here .. "bodies.md"))
+local code = { "local function print() end\n" }
+for block in page:read "a":gmatch "\n```lua\n(.-)\n```\n" do
+  code[#code + 1] = block:gsub('file = "([%w-]+)%.svg"', function(name)
+    drawn[#drawn + 1] = file(name)
+    return ("file = %q"):format(file(name))
+  end)
+end
+page:close()
+assert(load(table.concat(code, "\n"), "=bodies.md"))()
 
 -- README.md: what dry friction holds does not creep, and a resonance that leans over.
 local held, smoothed = system{ I = 1, k = 1, Rd = 1 }, system{ I = 1, k = 1 }

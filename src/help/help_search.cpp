@@ -404,10 +404,11 @@ constexpr std::array<Topic, 52> topics = {{
      "sys:steady{ belt = .2 } finds the limit cycle, with s.period and s.amplitude;\n"
      "examples/250-belt-squeal.lua shows one.\n",
      "limit cycle belt stick-slip oscillation"},
-    {"eigenfrequency eigenvalue natural",
+    {"eigenfrequency eigenvalue natural modal modes campbell",
      "sys.omega0 and sys.T0 are the natural frequency and period without damping,\n"
-     "sys.omega1 is the damped frequency.\n",
-     "frequency period own"},
+     "sys.omega1 is the damped frequency. sys:modes has the frequencies and damping of several\n"
+     "bodies or a sliding contact; docs/bodies.md plots them over a parameter.\n",
+     "frequency frequencies period own mode shape damping parameter"},
     {"decrement dashpot",
      "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
      "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
@@ -444,8 +445,8 @@ constexpr std::array<Topic, 52> topics = {{
      "system{ walls = { lower = -1, upper = 1, restitution = .5 } } bounces at walls; impacts are\n"
      "events of the run.\n",
      "wall walls gap impact impacts restitution"},
-    {"multibody coupled clutch gear masses",
-     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md.\n",
+    {"multibody coupled clutch gear gearbox planetary brake pulley ratchet isolator blade machine masses",
+     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md shows nine machines.\n",
      "two several bodies mass chain degrees freedom"},
     {"measured measurement",
      "M from a table: excitation.samples{ t = { 0, 1 }, M = { 0, 2 } } or excitation.samples \"force.csv\".\n"

@@ -89,23 +89,55 @@ std::string listed(const OptionLine& line) {
     return fmt::format("- `{}`: {}\n", line.name, without_limits(line.meaning));
 }
 
-/// The options that stand with the same words in several calls, in the order in which they come first.
-std::vector<std::string> shared_options() {
-    constexpr std::size_t least = 40;  // what is shorter is read more quickly than looked for
-    std::vector<std::string> once, shared;
+/// What an option means, without its default and whether it is needed: sys:with has the options of system without them.
+std::string sense(const OptionLine& line) {
+    std::string meaning = without_limits(line.meaning);
+    const std::size_t needed = meaning.rfind("needed)");
+    if (needed != std::string::npos && needed + 7 == meaning.size())
+        meaning = meaning[needed - 1] == '(' ? meaning.substr(0, needed - 1) : meaning.substr(0, needed - 2) + ")";
+    return fmt::format("{}: {}", line.option, meaning);
+}
+
+/// An option with the number of calls that have it in the same sense.
+struct Listed {
+    std::string sense, words;  ///< words as in the first of the calls
+    std::string_view name;
+    int calls = 1;
+};
+
+std::vector<Listed> listed_options() {
+    std::vector<Listed> all;
     for (const Section& section : sections()) {
         for (const lua::Member& member : section.description->members) {
             for (const text::Call* call : calls_of(member.doc)) {
                 for (const OptionLine& line : option_lines(call->options)) {
-                    const std::string words = listed(line);
-                    const auto has = [&words](const std::vector<std::string>& list) {
-                        return std::find(list.begin(), list.end(), words) != list.end();
-                    };
-                    if (words.size() < least || has(shared)) continue;
-                    (has(once) ? shared : once).push_back(words);
+                    const auto known = std::find_if(all.begin(), all.end(),
+                                                    [&line](const Listed& each) { return each.sense == sense(line); });
+                    if (known == all.end()) {
+                        all.push_back({sense(line), listed(line), line.option});
+                    } else {
+                        ++known->calls;
+                    }
                 }
             }
         }
+    }
+    return all;
+}
+
+/// The options that stand in the same sense in several calls, in the order in which they come first. A short one is
+/// read more quickly than looked for: it counts only from three calls on, and if no other shared one has its name.
+std::vector<Listed> shared_options() {
+    const std::vector<Listed> all = listed_options();
+    const auto is_long = [](const Listed& each) { return each.calls > 1 && each.words.size() >= 40; };
+    const auto is_short = [](const Listed& each) { return each.calls > 2 && each.words.size() < 40; };
+    std::vector<Listed> shared;
+    for (const Listed& each : all) {
+        const auto has_the_name = [&](const Listed& other) {
+            return &other != &each && other.name == each.name && (is_long(other) || is_short(other));
+        };
+        if (is_long(each) || (is_short(each) && std::none_of(all.begin(), all.end(), has_the_name)))
+            shared.push_back(each);
     }
     return shared;
 }
@@ -132,15 +164,17 @@ constexpr Task tasks[] = {
 struct Writer {
     std::string text;
     bool all = false;  ///< every entry by itself, with its example
-    std::vector<std::string> shared = {};
+    std::vector<Listed> shared = {};
 
     void options(const text::Call& call) {
         std::string elsewhere;
         for (const OptionLine& line : option_lines(call.options)) {
-            if (std::find(shared.begin(), shared.end(), listed(line)) == shared.end()) {
-                text += listed(line);
-            } else {
+            const bool is_shared = std::any_of(shared.begin(), shared.end(),
+                                               [&line](const Listed& each) { return each.sense == sense(line); });
+            if (is_shared) {
                 elsewhere += fmt::format("{}`{}`", elsewhere.empty() ? "" : ", ", line.option);
+            } else {
+                text += listed(line);
             }
         }
         if (!elsewhere.empty())
@@ -216,8 +250,9 @@ std::string index_page() {
     }
     text += "\n| task | look at |\n|---|---|\n";
     for (const Task& task : tasks) text += fmt::format("| {} | {} |\n", task.task, task.names);
-    return text + fmt::format("\n## Options of several calls\n\n{}\nNext: [limits](limits.md).\n",
-                              fmt::join(shared_options(), ""));
+    text += "\n## Options of several calls\n\n`help(x)` has the default of each call, and what it needs.\n\n";
+    for (const Listed& each : shared_options()) text += each.words;
+    return text + "\nNext: [limits](limits.md).\n";
 }
 
 std::string text_of_page(const Page& topic) {

@@ -1,4 +1,4 @@
-"""What the Python module costs: python3 speed.py, with PYTHONPATH at the module. No test: docs/benchmarks.md has the numbers."""
+"""What the Python module costs: python3 speed.py, with PYTHONPATH at the module. No test: docs/python.md has the numbers."""
 
 import math
 import time
