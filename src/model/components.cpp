@@ -6,7 +6,7 @@
 namespace dinal::model {
 namespace {
 
-/// From when on the term is constant, and whether it is 0 then.
+/// The time from which a term is constant, and whether it is 0 then.
 struct Settled {
     double time;
     bool at_zero;
@@ -93,7 +93,7 @@ Components Components::joined(const Components& a, const Components& b) {
         std::copy(a.stretch_.begin(), a.stretch_.end(), b.places_->all.begin() + static_cast<std::ptrdiff_t>(first));
         return {b.places_, first, n + m};
     }
-    // Twice as many places, free ones on both sides: a sum may grow at either end.
+    // Twice as many places, with free ones on both sides: a sum may grow at either end.
     const std::size_t first = (n + m) / 2;
     const auto places = std::make_shared<Places>(std::vector<Component>(2 * (n + m)), first, first + n + m);
     const auto middle =

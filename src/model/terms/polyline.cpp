@@ -7,7 +7,7 @@
 namespace dinal::model::terms {
 namespace {
 
-/// The last point is as good as one period after the first: by so much of the period it may be off.
+/// The tolerance, as a part of the period, for a last point that repeats the first one.
 constexpr double comes_again = 1e-9;
 
 bool closes_period(const Samples& s) {
@@ -19,7 +19,7 @@ double range_of(const std::vector<double>& values) {
     return *high - *low;
 }
 
-/// So that slopes can be computed; what is wrong is told by complaint().
+/// Returns whether slopes can be computed; complaint() reports the reason if not.
 bool is_well_formed(const Samples& s) {
     return !s.t.empty() && s.t.size() == s.M.size() && !text::complaint(samples_options, s) &&
            !not_increasing("t", s.t);
