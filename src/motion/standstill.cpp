@@ -9,15 +9,15 @@ namespace dinal::motion {
 
 namespace {
 
-/// More standstills than this, each at once after the one before, lead nowhere.
+/// More successive standstills than this count as chatter.
 constexpr int most_at_once = 200;
-/// A stick that rounding decides lasts no longer, as a part of T0.
+/// The longest stick that can be an artefact of rounding, as a part of T0.
 constexpr double briefly = 1e-3;
-/// What the impulse of such a stick is below, in torques times a radian of the free motion.
+/// The bound of the impulse that friction withholds in such a stick, in torques times a radian of the free motion.
 constexpr double withheld = 64 * std::numeric_limits<double>::epsilon();
-/// What theta carries of the roundings of a long motion, in torques.
+/// The rounding error that theta accumulates in a long motion, relative to the torques.
 constexpr double rounding_of_torques = 1024 * std::numeric_limits<double>::epsilon();
-/// A velocity that is only a direction.
+/// A velocity that only shows a direction.
 constexpr double hair = std::numeric_limits<double>::min();
 
 }  // namespace
@@ -38,7 +38,7 @@ Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events
     if (problem.before == model::Motion::stuck) {
         phase_ = Phase::stuck;
     } else if (problem.drive.start().velocity == 0) {
-        // The law was asked at the end of the part before.
+        // The law was evaluated at the end of the first part.
         phase_ = problem.before ? Phase::leaving : Phase::arrived;
     }
 }
@@ -60,7 +60,7 @@ model::Motion Standstill::pulled_on(double M, double theta) const {
 
 bool Standstill::creep(const Moment& now) {
     if (feedback_ || system_.has_remainder() || passes() || motion_ == model::Motion::stuck) return false;
-    if (!(system_.holding(motion_) > balance())) return false;  // it is held as well as it slides
+    if (!(system_.holding(motion_) > balance())) return false;  // its breakaway torque does not exceed sliding friction
     const double off =
         std::fabs(model::sign_of(motion_) * std::fma(-system_.stiffness(), now.theta, now.M) - balance());
     if (!(off <= rounding_of_torques * torques(now))) return false;
@@ -84,7 +84,7 @@ model::State Standstill::on_its_way(const model::State& y) const {
 
 bool Standstill::jumps(double t, double theta) const {
     if (!feedback_ || passes()) return false;
-    constexpr double rounding = 1e-12;  // of a formula
+    constexpr double rounding = 1e-12;  // relative rounding of a user's formula
     const double above = excitation_.value(t, {theta, hair}), below = excitation_.value(t, {theta, -hair});
     const double torques = std::fabs(above) + std::fabs(below) + system_.greatest_holding();
     return std::fabs(above - below) > rounding * torques;
@@ -94,7 +94,7 @@ double Standstill::arrived_at(const Moment& now) const {
     const double k = system_.stiffness();
     if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring()) return now.theta;
     const double rounding = rounding_of_torques * std::max(torques(now), torques_before_);
-    if (phase_ != Phase::creeping) {  // most are clearly on one side of the limit
+    if (phase_ != Phase::creeping) {  // quick test: most are clearly off the limit
         const double torque = now.M - k * now.theta;
         const double over = std::fabs(torque) - system_.holding(model::motion_of(torque));
         if (!(std::fabs(over) <= 2 * rounding)) return now.theta;
@@ -118,7 +118,7 @@ bool Standstill::ask(const Moment& now) {
     } else if (stuck()) {
         tell(model::EventKind::stick, now);
     } else if (motion_ != before && before != model::Motion::stuck) {
-        // The same direction again: it only touched zero, which is no event; nor is it one where it was put there.
+        // Going on in the same direction is no event, nor is an initial velocity set at rest.
         tell(model::EventKind::turn, now);
     }
     return goes_on_after(now.t);
@@ -150,8 +150,8 @@ bool Standstill::release(const Moment& now, model::Motion towards) {
     return goes_on_after(now.t);
 }
 
-/// Whether the stick that ends now was none: the mass came down to velocity zero right at the limit, and friction
-/// withheld an impulse below rounding while M passed it. Which side of the limit it was on is for rounding to say.
+/// Returns whether the stick that ends now is an artefact of rounding: the mass reached velocity zero right at the
+/// limit, and friction withheld an impulse below rounding before M passed it.
 bool Standstill::only_touched(const Moment& now) const {
     if (events_ == nullptr || events_->empty() || came_ == model::Motion::stuck) return false;
     const model::Event& last = events_->back();
@@ -171,7 +171,7 @@ bool Standstill::never_left(const Moment& now) {
     } else if (at_start(now.t)) {
         began_stuck_ = true;
     } else {
-        tell(model::EventKind::stick, now);  // it was on its way, came to rest, and did not go on
+        tell(model::EventKind::stick, now);  // it stopped and did not start again
         came_ = motion_, M_stuck_ = now.M;
     }
     motion_ = model::Motion::stuck;
@@ -191,7 +191,7 @@ void Standstill::turned(const Moment& now) {
 
 bool Standstill::finish() {
     if (!stuck()) return false;
-    if (phase_ == Phase::creeping) tell(model::EventKind::stick, crept_);  // nothing came that would have moved it
+    if (phase_ == Phase::creeping) tell(model::EventKind::stick, crept_);  // no further motion follows
     return true;
 }
 

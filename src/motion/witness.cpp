@@ -14,11 +14,11 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-// Of a hundred questions at most three are put again: one of 64 in turn, and two of 160 because of a jump.
-constexpr std::uint64_t first_again = 12;  ///< the first question after which one is put again
+// At most three of a hundred evaluations are repeated: one in 64 routinely, and two in 160 because of jumps.
+constexpr std::uint64_t first_again = 12;  ///< the first evaluation after which one is repeated
 constexpr std::uint64_t questions_between = 64;
 constexpr std::uint64_t questions_a_jump = 160;
-/// A jump is a change this many times as great as changes mostly are.
+/// A jump is a change this many times larger than usual.
 constexpr double jump_factor = 8;
 
 }  // namespace
@@ -40,7 +40,7 @@ void Witness::keep(std::size_t place, const Answer& answer, std::span<const doub
     for (std::size_t i = 0; i < count; ++i) states_[place * count + i] = i < states.size() ? states[i] : 0;
 }
 
-/// Every fourth answer, the older the fewer.
+/// Keeps every fourth answer; the older, the fewer.
 void Witness::keep_for_later(const Answer& answer, std::span<const double> states) {
     if (asked_ == 1) keep(first_place, answer, states);
     if (asked_ % 4 != 0) return;
@@ -49,13 +49,14 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
 
-/// Asks for an answer again. One that fails now fails as it would have failed anywhere else: that is another story.
+/// Repeats an evaluation; returns whether the answer is the same. A failure now would also have occurred without the
+/// witness.
 bool Witness::stands_by(std::size_t place) {
     const Answer& answer = answers_[place];
     const std::size_t count = states_.size() / places;
     const std::span<const double> states{states_.data() + place * count, count};
     const double again = function_->value_with(answer.t, answer.state, states);
-    // The same bits, but for the sign of zero, which moves nothing.
+    // Equal except for the sign of zero, which does not matter.
     if (again == answer.value) return true;
     if (std::isfinite(again)) {
         testimony_->found = model::Contradiction{who_, argument_, answer.t, answer.value, again};
@@ -63,18 +64,18 @@ bool Witness::stands_by(std::size_t place) {
     return false;
 }
 
-/// The answers take turns, old and new ones.
+/// Repeats an evaluation of varying age.
 bool Witness::ask_again() {
     next_ = asked_ + questions_between;
     for (std::size_t i = 0; i <= 2 * ages; ++i) {
-        constexpr std::size_t stride = 7;  // has no factor in common with their number, 37
+        constexpr std::size_t stride = 7;  // coprime to the number of places, 37
         turn_ = (turn_ + stride) % (2 * ages + 1);
         if ((known_ >> turn_ & 1U) != 0) return stands_by(turn_);
     }
     return true;
 }
 
-/// Takes note of an answer, and asks again what it makes doubtful. False when the function is found out.
+/// Records an answer and repeats doubtful evaluations. Returns false if the function contradicted itself.
 bool Witness::heard(const Answer& answer, std::span<const double> states) {
     ++asked_;
     bool jumped = false;
@@ -90,7 +91,7 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     keep_for_later(answer, states);
     if (!jumped) return asked_ < next_ || ask_again();
     ++jumps_asked_;
-    // What a relay in a closure said before it switched, it does not say again; nor chance what it said once.
+    // A relay in a closure no longer returns what it returned before it switched, and random numbers do not repeat.
     return stands_by(before_jump_) && stands_by(last_);
 }
 
@@ -150,7 +151,7 @@ std::shared_ptr<model::UserFunction> Witnesses::heard(const std::shared_ptr<mode
 model::Excitation Witnesses::heard(const model::Excitation& excitation, const std::string& who) {
     return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
         if (const auto* controller = dynamic_cast<const model::Controller*>(function.get())) {
-            // One that samples is asked in order, and may remember what it likes.
+            // A sampled controller is evaluated in order and may have a memory.
             const auto inside = with_witness_inside(*controller, [&](const auto& inner) { return heard(inner, who); });
             return inside == nullptr ? function : inside;
         }
