@@ -15,9 +15,9 @@ namespace dinal::motion::engine {
 
 namespace {
 
-/// The derivative of given angles by series on pieces, each as long as a polynomial follows them to rounding. Where the
-/// pieces are depends on the angles alone: halves of halves of even parts between breaks, since in what another order
-/// of questions left over a derivative would be rounding over a tiny length.
+/// The derivative of a prescribed angle, by series on pieces short enough for a polynomial to reach rounding. The
+/// pieces are halvings of equal parts between breaks, so they depend on the angle only and not on the order of
+/// evaluation: leftover tiny pieces would differentiate rounding errors.
 class VelocityOfAngle final : public model::UserFunction {
 public:
     VelocityOfAngle(model::Excitation angle, double start, double pace)
@@ -40,7 +40,7 @@ private:
         cheb::Series<node_count - 1> slope{};
     };
 
-    /// The part around t on which nothing breaks, no longer than the longest piece, and the next break.
+    /// The part around t without breaks, no longer than the longest piece, and the next break.
     std::array<double, 3> part_around(double t) {
         while (breaks_.back() <= t) breaks_.push_back(angle_.next_break(breaks_.back()));
         const auto next = std::upper_bound(breaks_.begin(), breaks_.end(), t);
@@ -83,8 +83,8 @@ private:
 
     model::Excitation angle_;
     double longest_;
-    std::vector<double> breaks_;      // those that are known; the first is the start
-    std::map<double, Piece> pieces_;  // by where they begin
+    std::vector<double> breaks_;      // known breaks; the first is the start
+    std::map<double, Piece> pieces_;  // by the time at which they begin
 };
 
 model::Excitation velocity_of(const model::Moved& moved, double start, double pace) {
@@ -110,7 +110,7 @@ Moving::Moving(const model::System& given, const model::Drive& asked, double sta
         drive.belts.push_back(velocity_of(*moved, start, pace));
         if (moved->by_angle) drive.theta0[i] = belt_from(moved->motion, start);
         drive.velocity0[i] = belt_from(drive.belts.back(), start);
-        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any will do
+        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any inertia will do
     }
 }
 

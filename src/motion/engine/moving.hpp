@@ -1,4 +1,4 @@
-// Bodies that are moved: the velocity of a given angle, and the rigid joints that move them.
+// Bodies with prescribed motion: the velocity of a prescribed angle, and the rigid joints that impose it.
 #pragma once
 
 #include "model/drive.hpp"
@@ -6,12 +6,12 @@
 
 namespace dinal::motion::engine {
 
-/// A system in which each body that is moved is held by a rigid joint behind all others, as on a belt of its velocity.
+/// A system in which a rigid joint, behind all others, imposes each prescribed motion like a belt of that velocity.
 struct Moving {
     model::System system;
     model::Drive drive;
 
-    /// `pace` is how long one may look at given angles at first, time units.
+    /// `pace` is the initial length over which prescribed angles are sampled, time units.
     Moving(const model::System& given, const model::Drive& asked, double start, double pace);
 };
 

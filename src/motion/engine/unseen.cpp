@@ -10,9 +10,9 @@ namespace {
 using model::bounds::Disc;
 using model::bounds::Interval;
 
-// A disc about a stretch, three times as wide, holds an ellipse of Bernstein's with foci at both ends, the sum of whose
-// half axes is rho. A function that differs there from its value in the middle by r at most differs on the stretch from
-// its polynomial of degree n by 4 r rho^-n / (rho - 1) at most (Trefethen, Approximation Theory and Approximation
+// A disc with three times the radius of a stretch contains a Bernstein ellipse with foci at both ends and half axes
+// that add up to rho. If a function differs there from its value in the middle by at most r, it differs on the stretch
+// from its polynomial of degree n by at most 4 r rho^-n / (rho - 1) (Trefethen, Approximation Theory and Approximation
 // Practice, theorem 8.2).
 constexpr double rho = 5.82842712474619, greatest_power = 6.16227766016838;  // 3 + sqrt(3^2 - 1) and 3 + sqrt(3^2 + 1)
 
@@ -23,7 +23,7 @@ constexpr double falls(std::size_t n) {
     return 4 / (power(rho, n) * (rho - 1));
 }
 
-/// |Tk(z) - Tk(0)| at most for all z in that disc, where z = 3 i is worst.
+/// The maximum of |Tk(z) - Tk(0)| in that disc, at z = 3 i.
 constexpr Series growth = [] {
     Series most{};
     for (std::size_t k = 1; k < node_count; ++k) {
@@ -33,8 +33,8 @@ constexpr Series growth = [] {
     return most;
 }();
 
-/// How far a polynomial strays in the disc from its value in the middle. Its last terms may be roundings, which would
-/// grow.
+/// A bound of how far a polynomial deviates in the disc from its value in the middle. Trailing terms that may be
+/// rounding are dropped, as they would grow.
 double strays(const Series& series) {
     const double noise = 4 * rounding * cheb::size(series);
     std::size_t last = node_count - 1;
@@ -49,7 +49,7 @@ Interval range(const Series& series) {
     return {series[0] - way, series[0] + way};
 }
 
-/// The same on a part of the stretch; exactly where that is all of it.
+/// The series on a part of the stretch; exactly the same for all of it.
 Series on_part(const Series& series, double middle, double half) {
     if (half == 1) return series;
     Nodes values;
@@ -61,7 +61,8 @@ Series on_part(const Series& series, double middle, double half) {
 
 bool Unseen::is_told(double allowed, double part) {
     constexpr double close = 1e-9;
-    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // others change at breaks only
+    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // other conditions change at breaks
+                                                                                    // only
     walk_.begin(*formula_, piece_, ranges);
     for (const Input& input : inputs_) {
         walk_.set(input.place, {cheb::value(input.series, 0), strays(input.series)},
@@ -84,7 +85,7 @@ void Unseen::sample() {
     series_ = cheb::fit(values);
 }
 
-/// By how much it may stray in this part, 0 where that is allowed; or where it does.
+/// Returns a bound of the deviation in this part, 0 if it is allowed; sets `place` if a sample deviates by more.
 double Unseen::look(const Part& part, double allowed, std::optional<double>& place) {
     const auto strays_at = [&](double x, double found) {
         const bool strays = std::fabs(found - cheb::value(series_, x)) > allowed;
