@@ -18,9 +18,9 @@
 namespace dinal::source {
 namespace {
 
-constexpr int deepest_value = 5000;  // tables within tables; each takes some of the C++ stack
+constexpr int deepest_value = 5000;  // nesting depth of tables, each of which uses the C++ stack
 
-const char memory_key = 0;  // registry key, in the state that is carried to
+const char memory_key = 0;  // registry key in the target state
 
 }  // namespace
 
@@ -48,7 +48,7 @@ Carrier::Carrier(lua_State* from, lua_State* to, CarryObject other_objects)
     lua_pop(from, 2);
 }
 
-/// What stands on the tops of both states belongs together, if it is the same there.
+/// Registers the values on the tops of both states as corresponding, if they are the same.
 void Carrier::note_standard(const std::string& library, const std::string& name) {
     const int type = lua_type(from_, -1);
     const bool same_type = type == lua_type(to_, -1);
@@ -62,7 +62,7 @@ void Carrier::note_standard(const std::string& library, const std::string& name)
     }
 }
 
-/// The tables of a library stand on the tops of both states.
+/// Registers a library, whose tables are on the tops of both states.
 void Carrier::note_library(const std::string& library) {
     lua_pushnil(from_);
     while (lua_next(from_, -2) != 0) {
@@ -77,7 +77,7 @@ void Carrier::note_library(const std::string& library) {
     }
 }
 
-/// Pushes, in `to`, what stands there.
+/// Pushes the value at a place in `to`.
 void Carrier::push_place(const Place& place) {
     lua_pushglobaltable(to_);
     for (const std::string& name : {place.module, place.name}) {
@@ -88,8 +88,8 @@ void Carrier::push_place(const Place& place) {
     }
 }
 
-/// A user's string.trim and its like, which nothing may name where it is called: ("x"):trim(). What cannot be carried
-/// is left out, since it need not be used.
+/// Carries functions that a user has added to libraries, such as string.trim, because ("x"):trim() does not name them.
+/// Failures are ignored, as they may be unused.
 void Carrier::carry_additions() {
     for (const Place& place : std::exchange(additions_, {})) {
         lua::push_standard_globals(from_);
@@ -119,7 +119,7 @@ std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
     return good ? std::nullopt : error_;
 }
 
-/// "run > helper > cfg.last"; of a long one, its beginning and its end.
+/// The path to the value: "run > helper > cfg.last"; a long one is shortened in the middle.
 std::string Carrier::way() const {
     constexpr std::size_t most = 12;
     std::string text;
@@ -149,13 +149,13 @@ bool Carrier::fail(int index, std::string_view cure) {
     return false;
 }
 
-/// The value on the top of `to` is what `identity` is in `from`.
+/// Registers the value on the top of `to` as the counterpart of `identity`.
 void Carrier::remember(const void* identity) {
     lua_pushvalue(to_, -1);
     lua_rawsetp(to_, memory_, identity);
 }
 
-/// Pushes it if it was carried before, or is of a library.
+/// Pushes the counterpart if the value was carried before or belongs to a library.
 bool Carrier::known(int index) {
     const void* identity = lua_topointer(from_, index);
     if (lua_rawgetp(to_, memory_, identity) != LUA_TNIL) return true;
@@ -166,7 +166,7 @@ bool Carrier::known(int index) {
     return true;
 }
 
-/// Leaves the value on the top of `to`, or nothing when it fails.
+/// Pushes the value to `to`; pushes nothing on failure.
 bool Carrier::value(int index) {
     luaL_checkstack(from_, 8, "to carry values");
     luaL_checkstack(to_, 12, "for values that are carried");
@@ -238,7 +238,7 @@ bool Carrier::c_function(int index) {
     const bool plain = lua_getupvalue(from_, index, 1) == nullptr;
     if (!plain) lua_pop(from_, 1);
     if (!plain || lua::documented(from_, index).member == nullptr) return fail(index);
-    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours that was taken out of its object
+    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours taken out of its object
     return true;
 }
 
@@ -262,7 +262,7 @@ bool Carrier::function(int index) {
         const std::vector<std::string> here = way_;
         for (const std::string& name : facts->perhaps) {
             if (!good || global(name)) continue;
-            way_ = here;  // nobody knows that it is needed
+            way_ = here;  // it may not be needed
             error_.reset();
         }
     }
@@ -271,7 +271,7 @@ bool Carrier::function(int index) {
     return good;
 }
 
-/// The upvalues of the function at `index`, for its copy in `to`.
+/// Carries the upvalues of the function at `index` to its copy in `to`.
 bool Carrier::variables(int index, int copy) {
     for (int i = 1; const char* name = lua_getupvalue(from_, index, i); ++i) {
         const auto [place, is_new] =
@@ -295,7 +295,7 @@ bool Carrier::variables(int index, int copy) {
     return true;
 }
 
-/// A global that a function names, if it is a user's.
+/// Carries a global that a function names, if it is a user's.
 bool Carrier::global(const std::string& name) {
     if (!globals_.insert(name).second) return true;
     lua_pushglobaltable(from_);
@@ -325,7 +325,7 @@ bool Carrier::global(const std::string& name) {
     return good;
 }
 
-// Objects of our classes, carried: what is native is shared, a user's functions in them are carried, too.
+// Objects of our classes: native parts are shared, user functions in them are carried.
 
 bool Carrier::object(int index) {
     const auto shared = [this](const auto* own) {
@@ -359,7 +359,7 @@ bool Carrier::object(int index) {
     return true;
 }
 
-/// The function as it is in the other state; itself where it, or something before it, cannot be there.
+/// The function in the other state; the same function if it, or an earlier value, cannot be carried.
 Carrier::Function Carrier::user_function(const Function& function) {
     if (error_ || function == nullptr) return function;
     const auto* own = dynamic_cast<const lua::LuaFunction*>(function.get());
@@ -404,7 +404,7 @@ model::Excitation Carrier::excitation(const model::Excitation& own) {
     for (const model::Component& component : own.components()) {
         model::Term term = component.term;
         if (auto* script = std::get_if<model::Scripted>(&term)) script->function = user_function(script->function);
-        // As it was made once, so it is right.
+        // valid, as the original was
         const model::Excitation one = model::Excitation::make(std::move(term)).value();
         sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
     }
