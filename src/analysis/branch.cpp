@@ -18,7 +18,7 @@ constexpr double creeping = 1e-4;     // the walk ends after many steps this sho
 constexpr int most_creeps = 40;
 constexpr double least_slope = 1e-7;  // least |dp/ds| beside a fold
 constexpr double upright = 1e-6;      // error of dp/ds; below it the branch is vertical
-constexpr double dying = 1e-2;        // of the greatest motion: lower limit of the units
+constexpr double dying = 1e-2;        // part of the greatest motion: lower limit of the units
 constexpr double vanishes = 1e-3;     // a smaller cycle is a rest
 constexpr double boundless = 1e8;     // a motion grown by this factor is at a resonance without a periodic motion
 
@@ -76,7 +76,7 @@ public:
         lap.to = sign() * lap.step.to;
         lap.finished = lap.step.finished;
         if (lap.step.differentiable) lap.derivative = sign() * lap.step.derivative;
-        see(lap.step.outcome, map.contradiction());
+        note_outcome(lap.step.outcome, map.contradiction());
         return lap;
     }
 
@@ -138,7 +138,7 @@ public:
             path_.end = WalkEnd::lost;
             return path_;
         }
-        tell(*next);
+        find_motion(*next);
         add(*next, BranchKind::point);
         return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
     }
@@ -267,7 +267,7 @@ private:
             if (step > corner_step) orientation_ = orientation(spot->slopes, on);
             creeps = step < creeping ? creeps + 1 : 0;
             longest = std::min(longest_step, 1.5 * longest);
-            tell(*spot);
+            find_motion(*spot);
             if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
             std::vector<Special> specials = specials_before(*spot, ahead);
             // At a Hopf point the branch is vertical, and the sign of its slope is rounding.
@@ -360,7 +360,7 @@ private:
             if ((spot.lap.to - spot.x).cwiseQuotient(units_).norm() < astray) differentiate(spot);
         }
         if (spot.slopes.size() > 0 && !circuit_.stopped()) {
-            tell(spot);
+            find_motion(spot);
             return spot;
         }
         path_.end = circuit_.stopped() ? WalkEnd::stopped : WalkEnd::lost;
@@ -446,13 +446,13 @@ private:
         return {};
     }
 
-    void tell(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
+    void find_motion(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
     std::optional<Spot> at_value(const Spot& a, const Spot& b, double p) {
         const double part = (p - a.p) / (b.p - a.p);
         Vector guess = (1 - part) * scaled(a) + part * scaled(b);
         guess[units_.size()] = p / range_;
         auto spot = correct(guess, across(), part < 0.5 ? a.slopes : b.slopes);
-        if (spot) tell(*spot);
+        if (spot) find_motion(*spot);
         return spot;
     }
 
@@ -480,7 +480,7 @@ private:
                 side = -1;
             }
         }
-        if (best) tell(*best);
+        if (best) find_motion(*best);
         return best;
     }
 
@@ -516,7 +516,7 @@ private:
         const Vector here = tangent(before, ahead);
         auto beyond = beyond_corner(before, here);
         if (!beyond) return false;
-        tell(*beyond);
+        find_motion(*beyond);
         if (becomes_symmetric(now.motion, beyond->motion)) return false;
         const Vector beside = tangent(*beyond, scaled(*beyond) - scaled(before));
         const Eigen::Index n = units_.size();
@@ -537,7 +537,7 @@ private:
         ways << on_a, on_b;
         const Vector parts = algebra::solve_least_squares(ways, scaled(b) - scaled(a));
         auto corner = spot_at(scaled(a) + parts[0] * on_a);
-        if (corner) tell(*corner);
+        if (corner) find_motion(*corner);
         return corner;
     }
 
@@ -672,7 +672,7 @@ private:
     Vector units_, greatest_;
     bool sharp_ = false;      // whether differences are of higher order
     bool rough_ = false;      // whether a one-sided difference by p is enough, as for a guess
-    double orientation_ = 0;  // of the tangents of the walk
+    double orientation_ = 0;  // orientation of the walk's tangents
     double reach_ = 1;        // the present step: differences must not cross a corner beyond it
     std::vector<std::optional<Anchor>> anchors_;
     std::vector<std::pair<double, Vector>> seen_;  // parameter and place of points at requested values

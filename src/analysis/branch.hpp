@@ -29,7 +29,7 @@ public:
         Eigen::VectorXd to;
         bool finished = false;
         std::optional<Eigen::MatrixXd> derivative = {};  ///< by the place; none: use differences
-        MapStep step = {};                               ///< for a period map
+        MapStep step = {};                               ///< step of a period map
         double time = 0;
         std::shared_ptr<const HeldMode> mode = {};  ///< discrete state at the end, if known
     };
@@ -70,7 +70,7 @@ public:
     [[nodiscard]] bool stopped() const { return stopped_; }
 
 protected:
-    void see(model::Outcome outcome, const std::optional<model::Contradiction>& contradiction) {
+    void note_outcome(model::Outcome outcome, const std::optional<model::Contradiction>& contradiction) {
         if (contradiction) contradiction_ = contradiction;
         stopped_ = stopped_ || contradiction_ || outcome == model::Outcome::interrupted ||
                    outcome == model::Outcome::excitation_not_finite;
@@ -117,7 +117,7 @@ struct BranchPoint {
 enum class WalkEnd { range, lost, closed, vanished, stopped };
 
 struct BranchPath {
-    std::vector<BranchPoint> points;  ///< in order along the branch, without the first one
+    std::vector<BranchPoint> points;  ///< points in order along the branch, without the first one
     WalkEnd end = WalkEnd::range;
 };
 

@@ -88,7 +88,7 @@ public:
         std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
     }
 
-    std::string told() {
+    std::string build_text() {
         if (joint_.rigid) return tell_rigid();
         if (!is_link_ && whole_.system.bodies[joint_.first()].moved) return tell_moved();
         tell_setting();
@@ -558,7 +558,7 @@ private:
     }
 
     [[nodiscard]] bool held_at_most() const {
-        return model::held_against(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
+        return model::cannot_break_away(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
     }
 
     void tell_recurrence(const Recurrence& motion) {
@@ -670,7 +670,7 @@ class WholeStory : protected Prose {
 public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
-    std::string told(const std::vector<Energy>& energies) {
+    std::string build_text(const std::vector<Energy>& energies) {
         const bool all = tells_all(whole_);
         if (all) tell_setting();
         end_paragraph();
@@ -678,7 +678,7 @@ public:
             if (whole_.joint && *whole_.joint != j) continue;
             // Joints with numbers out of range are skipped.
             const auto seen = model::oscillator_at(system_, j);
-            if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).told();
+            if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).build_text();
         }
         if (all) text_ += "\n";
         if (all && !energies.empty()) tell_energy(energies);
@@ -780,7 +780,7 @@ private:
 }  // namespace
 
 std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
-    return WholeStory(run).told(energies);
+    return WholeStory(run).build_text(energies);
 }
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,

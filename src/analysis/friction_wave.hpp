@@ -11,7 +11,7 @@
 namespace dinal::analysis {
 
 struct Fundamental {
-    double mean = 0;            ///< of theta
+    double mean = 0;            ///< mean of theta
     std::complex<double> wave;  ///< (2/T) times the integral of theta e^(-i omega t), with t from the drive's start
 };
 

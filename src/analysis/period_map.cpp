@@ -68,12 +68,12 @@ MapStep PeriodMap::operator()(const Place& from) const {
         return step;
     }
     const std::vector<Stretch> parts = stretches(run);
-    step = told(run, parts);
+    step = step_of_run(run, parts);
     differentiate(parts, step);
     return step;
 }
 
-MapStep PeriodMap::told(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
+MapStep PeriodMap::step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
     MapStep step;
     step.outcome = run.outcome;
     const double begins = run.t_start, ends = run.t_stop, first = run.initial.theta;

@@ -7,7 +7,7 @@ namespace dinal::analysis {
 
 namespace {
 
-constexpr std::size_t most_events = 400;  // in a period; more are not accepted as periodic
+constexpr std::size_t most_events = 400;  // events in a period; more are not accepted as periodic
 constexpr double same = 1e-7;             // amplitudes: above the rounding of events, below any real change
 constexpr double near_enough = 1e-4;      // amplitudes: distance of a steady motion from its limit
 constexpr double settling = 0.1;          // amplitudes: distance of a settling motion from its limit

@@ -19,7 +19,7 @@ struct Recurrence {
     double amplitude = 0, centre = 0;  ///< half the distance between the extremes, and their middle
     double change = 0;                 ///< from the period before, in amplitudes
     double since = 0, until = 0;       ///< interval in which the motion repeats to a thousandth of its amplitude
-    std::size_t stops = 0;             ///< in a period
+    std::size_t stops = 0;             ///< stops in a period
     double stuck = 0;                  ///< part of a period
 };
 

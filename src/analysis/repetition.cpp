@@ -306,8 +306,7 @@ TorqueRange extremes(const model::Excitation& excitation, const Repetition& repe
         range.high = std::max(range.high, value);
     };
     double jump = excitation.next_break(repeats.start);
-    const double behind_end = end + 1e-12 * (std::fabs(end) + repeats.period);  // includes a jump at the end of the
-                                                                                // period
+    const double behind_end = end + 1e-12 * (std::fabs(end) + repeats.period);  // a jump at the end counts
     while (jump < behind_end) {
         see(excitation.value(jump));
         see(excitation.value_before(jump));

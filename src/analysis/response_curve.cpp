@@ -95,7 +95,7 @@ private:
         return circuit_of_periods(question_.family, p, motion, periods, monitor_);
     }
 
-    void see(const Circuit& circuit) {
+    void note_outcome(const Circuit& circuit) {
         if (circuit.contradiction()) curve_.contradiction = circuit.contradiction();
         stopped_ = stopped_ || circuit.stopped();
     }
@@ -158,7 +158,7 @@ private:
         }
     }
     void add_born(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
-        see(circuit);
+        note_outcome(circuit);
         if (path.points.size() < 2) return;
         // The smallest cycles are about the Hopf point itself.
         BranchPoint& first = path.points.front();
@@ -199,14 +199,14 @@ private:
         WalkEnd back_end = WalkEnd::range;
         if (both) {
             BranchPath back = walk(circuit, sorted_, p, -way_);
-            see(circuit);
+            note_outcome(circuit);
             back_end = back.end;
             branch.assign(back.points.rbegin(), back.points.rend());
         }
         branch.push_back({p, motion, true});
         if (back_end != WalkEnd::closed && !stopped()) {
             BranchPath on = walk(circuit, sorted_, p, way_);
-            see(circuit);
+            note_outcome(circuit);
             branch.insert(branch.end(), on.points.begin(), on.points.end());
             if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
         }

@@ -8,7 +8,7 @@ namespace dinal::analysis {
 struct CurveQuestion {
     Family family;
     std::vector<double> values;  ///< parameter values in the order of the sweep
-    model::State start = {};     ///< for the first search
+    model::State start = {};     ///< start of the first search
     bool doubled = false;        ///< whether to follow motions of twice the period from doublings
 };
 

@@ -67,7 +67,7 @@ public:
         Lap lap{.to = back.to, .finished = back.finished};
         lap.time = back.time;
         if (back.mode) lap.mode = std::make_shared<const HeldMode>(*back.mode);
-        see(back.outcome, here.runs.contradiction());
+        note_outcome(back.outcome, here.runs.contradiction());
         return lap;
     }
 
@@ -225,7 +225,7 @@ private:
     double offset_ = 0, period_ = 0;
     std::optional<Chart> chart_;
     Returns::Section section_;
-    std::vector<std::vector<bool>> relays_;  // for each load
+    std::vector<std::vector<bool>> relays_;  // switch positions for each load
     VectorXd there_, growth_;
     std::unique_ptr<Here> here_;
 };
@@ -249,7 +249,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     const Circuit::Lap lap = still.lap(x, p);
     const VectorXd units = still.units(x, lap, rest);
     const Eigen::Index n = x.size();
-    Eigen::MatrixXd D(n, n);  // for scaled places
+    Eigen::MatrixXd D(n, n);  // derivative by scaled places
     constexpr double h = 1e-4;
     for (Eigen::Index i = 0; i < n; ++i) {
         const VectorXd step = h * units[i] * VectorXd::Unit(n, i);
@@ -264,7 +264,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     }
     const double turn = std::fabs(std::arg(values[best]));
     if (!(turn > 1e-6)) return {};
-    constexpr double small = 1e-3;  // in units: the cycle deviates from linear motion by its square
+    constexpr double small = 1e-3;  // size in units: the cycle deviates from linear motion by its square
     const Eigen::VectorXcd mode = small * vectors.col(best).normalized().cwiseProduct(units);
     // The angle, or velocity if no angle is measured, with the largest swing.
     const std::vector<Eigen::Index> own = still.own();

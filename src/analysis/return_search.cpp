@@ -52,7 +52,7 @@ double shortest_sampling(const model::Excitation& excitation) {
     return least;
 }
 
-/// The greatest angle or velocity among the first `count` numbers.
+/// The greatest range among the first `count` numbers.
 double greatest(const Reach& reach, Index count) {
     return reach.range().head(count).cwiseAbs().maxCoeff();
 }
@@ -68,12 +68,12 @@ public:
 private:
     /// Completes the answer for a motion of facts_.period that begins at this moment, and returns its state half a
     /// period later; none if it cannot be run, and the search continues.
-    std::optional<VectorXd> tells(const Moment& moment, double start);
+    std::optional<VectorXd> complete(const Moment& moment, double start);
     /// The same for a run that has settled up to its end and repeats after facts_.period.
-    std::optional<VectorXd> tell_settled(const Runs::Run& so_far);
-    std::optional<VectorXd> tell_period(const Moment& from, Runs::Run run, double period);
+    std::optional<VectorXd> complete_settled(const Runs::Run& so_far);
+    std::optional<VectorXd> complete_period(const Moment& from, Runs::Run run, double period);
     /// Completes the answer for bodies that rest or rotate steadily; `stands`: friction holds all.
-    void tell_rest(const Runs::Run& run, bool stands);
+    void complete_rest(const Runs::Run& run, bool stands);
 
     [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
     [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
@@ -93,7 +93,7 @@ private:
     void note_rest(const Runs::Run& run, bool stands);
     struct Closed;
     class ClosedSearch;
-    bool tells_closed(Returns& map, const Closed& found);
+    bool complete_closed(Returns& map, const Closed& found);
     void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
 
     Runs runs_;
@@ -242,8 +242,7 @@ std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start,
     Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
     facts_.outcome = run.outcome;
     reach = reach_of(run, chart_);
-    constexpr double beyond = 1e100, no_number = 1e50;  // above no_number, a non-finite M is blamed on the growing
-                                                        // motion
+    constexpr double beyond = 1e100, no_number = 1e50;  // above no_number the motion is blamed for a NaN in M
     const double greatest = analysis::greatest(reach, 2 * n());
     const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
     if (whole && greatest < beyond) return run;
@@ -290,18 +289,18 @@ void ReturnSearch::forced() {
         Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
         ClosedSearch search(map, facts_.maps, 1);
         const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
-        if (found && tells_closed(map, *found)) return;
+        if (found && complete_closed(map, *found)) return;
     }
-    std::vector<double> ranges{greatest(reach, n())};  // of single periods
-    std::vector<double> sizes;                         // of the first batch of returns and both halves of the second,
-    std::size_t between = 1;                           // whose ends are this many returns apart
+    std::vector<double> ranges{greatest(reach, n())};  // ranges in single periods
+    std::vector<double> sizes;  // sizes of the first batch of returns and both halves of the second,
+    std::size_t between = 1;    // whose ends are this many returns apart
     const double natural = runs_.natural_period();
     const int longest = question().periods > 0 ? question().periods : 32;
     for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
         Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
         ClosedSearch search(map, facts_.maps, longest);
         const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
-        if (found && tells_closed(map, *found)) return;
+        if (found && complete_closed(map, *found)) return;
         if (search.failed()) {
             facts_.outcome = *search.failed();
             if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
@@ -373,7 +372,7 @@ public:
             std::size_t m = comes_back(settled);
             if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
             if (m == 0) continue;
-            tell(m);
+            finish(m);
             return;
         }
         judge_growth();
@@ -404,7 +403,7 @@ private:
         }
         s_.largest_ = std::max(s_.largest_, size);
         sizes_.push_back(size);
-        constexpr double dead = 1e-11;  // of the greatest motion: it dies out
+        constexpr double dead = 1e-11;  // part of the greatest motion: it dies out
         small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
         if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
         t_ = run_.t_stop;
@@ -493,13 +492,13 @@ private:
         return 0;
     }
 
-    void tell(std::size_t m) {
+    void finish(std::size_t m) {
         SteadyMotion& facts = s_.facts_;
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
         if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
-        if (const auto middle = s_.tell_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
+        if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
     /// Detects growth; a beating motion has equal maxima in both halves.
@@ -523,7 +522,7 @@ private:
     std::optional<model::WantedEvent> passage_;
     int looks_ = 0;               // number of sections tried
     Runs::Run run_;               // the last run
-    std::vector<double> sizes_;   // for all runs
+    std::vector<double> sizes_;   // sizes of all runs
     std::size_t small_ = 0;       // number of last runs with hardly any motion
     std::vector<VectorXd> seen_;  // at each return,
     std::vector<double> times_;   // and its time
@@ -575,7 +574,7 @@ bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double len
     ClosedSearch search(map, facts_.maps, 16);
     const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
     const auto found = search.follow(first, counts);
-    return found && tells_closed(map, *found);
+    return found && complete_closed(map, *found);
 }
 
 /// Detects a rest of an autonomous system: standing, or steady rotation with all other numbers constant.
@@ -600,11 +599,11 @@ void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
     facts_.period = 0;
     facts_.stable = true;
     facts_.status = SteadyStatus::rest;
-    tell_rest(run, stands);
+    complete_rest(run, stands);
 }
 
 /// Completes the answer for a closed motion; returns false if no run stays on it.
-bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
+bool ReturnSearch::complete_closed(Returns& map, const Closed& found) {
     if (!(found.period > 0)) return false;  // a passage at once: the motion has nearly stopped
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
@@ -626,7 +625,7 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
         note_family(facts_);
     }
     const Moment moment = map.moment(found.x, found.mode);
-    const auto middle = tells(moment, map.start());
+    const auto middle = complete(moment, map.start());
     if (middle) {
         note_symmetry(moment.y, *middle);
     } else {
@@ -661,24 +660,24 @@ SteadyMotion ReturnSearch::found() {
 
 // ---- the answer
 
-std::optional<VectorXd> ReturnSearch::tells(const Moment& moment, double start) {
+std::optional<VectorXd> ReturnSearch::complete(const Moment& moment, double start) {
     const double period = facts_.period;
     constexpr double rows = 400;
     Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
     facts_.begun = std::make_shared<const model::Drive>(runs_.from(moment, start));
-    return tell_period(moment, std::move(run), period);
+    return complete_period(moment, std::move(run), period);
 }
 
-std::optional<VectorXd> ReturnSearch::tell_settled(const Runs::Run& so_far) {
+std::optional<VectorXd> ReturnSearch::complete_settled(const Runs::Run& so_far) {
     const double period = facts_.period, t = so_far.t_stop;
     constexpr double rows = 400;
     Runs::Run run = runs_.go_on(so_far.carry, t, t + period, motion::Grid::every(period / rows));
     if (!model::is_whole(run.outcome)) return {};
-    return tell_period(Runs::at_stop(so_far), std::move(run), period);
+    return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }
 
-void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
+void ReturnSearch::complete_rest(const Runs::Run& run, bool stands) {
     const Moment now = Runs::at_stop(run);
     const auto velocity = now.y.segment(n(), n());
     const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
@@ -692,7 +691,7 @@ void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
 }
 
 /// Completes the answer with a run that is one period from this moment.
-std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run run, double period) {
+std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, Runs::Run run, double period) {
     const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;

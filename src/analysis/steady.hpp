@@ -56,7 +56,7 @@ struct SteadyQuestion {
 
 /// The motion of one of several bodies.
 struct BodyMotion {
-    double low = 0, high = 0;  ///< of its angle, measured from another body if they rotate
+    double low = 0, high = 0;  ///< range of its angle, measured from another body if they rotate
     double turned = 0;         ///< rotation in a period, or in a time unit if nothing has a period
     double begin = 0;          ///< its angle at the start
 };
@@ -69,8 +69,8 @@ struct PeriodOfBodies {
 
 struct SteadyMotion {
     SteadyStatus status = SteadyStatus::none;
-    int periods = 1;     ///< of M in one of the motion
-    double period = 0;   ///< of the motion
+    int periods = 1;     ///< periods of M in one of the motion
+    double period = 0;   ///< period of the motion
     model::State start;  ///< at the beginning of M's period
     double amplitude = 0, low = 0, high = 0, t_high = 0;
     std::size_t stops = 0;
@@ -79,17 +79,14 @@ struct SteadyMotion {
     bool differentiable = false;  ///< whether there are multipliers
     bool stable = false, symmetric = false;
     std::optional<bool> unique;                              ///< none: unknown, search from other starts
-    std::pair<double, double> rest;                          ///< the range of places at which it may stand, if it
-                                                             ///< adheres
-    double growth = 0;                                       ///< of the amplitude, in a period of M
+    std::pair<double, double> rest;                          ///< range in which it may stand, if it adheres
+    double growth = 0;                                       ///< growth of the amplitude in a period of M
     int maps = 0;                                            ///< number of periods that were run
     double residual = 0;                                     ///< residual of the fixed point, in amplitudes
-    model::Outcome outcome = model::Outcome::reached_end;    ///< of the last run
-    std::optional<model::Contradiction> contradiction = {};  ///< for Outcome::not_a_function
-    std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, for motions with more than theta and
-                                                             ///< velocity
-    std::shared_ptr<const SteadyQuestion> asked = {};        ///< question whose run is `settled`; null: it is the last
-                                                             ///< part of a run
+    model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
+    std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, if there is more than a state
+    std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run is `settled`; null: the end of a run
     // For motions found by returns:
     std::vector<BodyMotion> bodies = {};
     std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
@@ -126,9 +123,9 @@ struct SteadyShape {
 SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
 
 /// Describes the answer in sentences.
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::vector<OtherMotion>& others);
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                           const std::vector<OtherMotion>& others);
 /// The same for all bodies.
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
 
 }  // namespace dinal::analysis

@@ -185,7 +185,7 @@ public:
         if (others == 0) tell_unique();
     }
 
-    std::string told() { return std::move(sentences_); }
+    std::string take_text() { return std::move(sentences_); }
 
 private:
     [[nodiscard]] bool several() const { return !names_.empty(); }
@@ -294,16 +294,16 @@ private:
 
 }  // namespace
 
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::vector<OtherMotion>& others) {
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                           const std::vector<OtherMotion>& others) {
     const std::vector<std::string> nobody;
     SteadyStory story(motion, question.is_timeless(), nobody);
     story.tell(shape, model::has_memory<model::SampledController>(question.drive.M()), question.repeats.period);
     if (motion.is_found()) story.tell_others(others);
-    return story.told();
+    return story.take_text();
 }
 
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others) {
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others) {
     std::vector<std::string> names;
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;
@@ -311,7 +311,7 @@ std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std
     SteadyStory story(motion, question.repeats.period == 0, names);
     story.tell({}, sampled, question.repeats.period);
     if (motion.is_found()) story.count_others(others);
-    return story.told();
+    return story.take_text();
 }
 
 }  // namespace dinal::analysis

@@ -696,7 +696,7 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     return figure;
 }
 
-/// Of several branches at one place, a map shows the stable one with the greatest z.
+/// The rows of a map: of several branches at one place, the stable one with the greatest z.
 std::array<plots::Numbers, 3> stable_rows(const Data& data, const std::array<plots::Numbers, 3>& columns) {
     const DataColumn* stable = data.pieces_of.empty() ? nullptr : data.find(data.dotted_of);
     if (stable == nullptr || stable->numbers() == nullptr) return columns;
@@ -792,7 +792,7 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& p
     };
     const lua::Vector* piece = numbers_of(pieces);
     const lua::Vector* solid = numbers_of(data.dotted_of);
-    std::array<std::vector<double>, 2> x, y;  // of the dotted and of the solid line
+    std::array<std::vector<double>, 2> x, y;  // the dotted and the solid line
     std::array<bool, 2> any{};
     std::size_t before = 1;
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -953,8 +953,7 @@ int plot(lua_State* L) {
     figure.x.label = label_of(*data, x.front());
     plots::Curve curve;
     if (!data->points_of.empty() && !options.has("y") && x.front() != data->points_of) y = {data->points_of};
-    const bool leaps = over.size() == 2 && x.front() == over[0];  // x is the outer parameter: a line would jump between
-                                                                  // grid rows
+    const bool leaps = over.size() == 2 && x.front() == over[0];  // a line would jump between grid rows
     if (!data->points_of.empty() || leaps) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);

@@ -89,8 +89,7 @@ bool agree(model::Formula& formula, const model::Excitation& terms, double from,
 /// The same for periodic terms: in the middles of the pieces of the first, second and last period.
 bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& middles, double period,
            double to) {
-    constexpr double allowed = 1e-12, far = 1000;  // relative, for the values; number of the last period if there is
-                                                   // none
+    constexpr double allowed = 1e-12, far = 1000;  // relative, for the values; period number without an end
     double greatest = 0, worst = 0;
     for (const double middle : middles) {
         const double last = to < no_end ? std::floor((to - middle) / period) : far;

@@ -116,7 +116,7 @@ struct FitAnswer {
     std::vector<std::string> silent;
     std::optional<model::System> system;
     bool from_guess = false;  ///< whether a system was given
-    model::Units units;       ///< of the record; without a unit for M if only ratios to I are found
+    model::Units units;       ///< units of the record; without a unit for M if only ratios to I are found
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
 
@@ -872,7 +872,7 @@ private:
     std::vector<Eigen::Index> known_until_;                           ///< number of measured values up to each row
     std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< given values, by body or link
     double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;
-    std::string failure_;  ///< of the last run
+    std::string failure_;  ///< error of the last run
 };
 
 // The answer.

@@ -316,8 +316,7 @@ motion::BetweenRows between_rows(const Run& run) {
     const model::Excitation* M = nullptr;
     if (run.of_body()) M = run.terms ? &*run.terms : &run.origin->drive.loads[run.place()];
     const bool of_state =
-        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // only theta and velocity determine
-                                                                                    // M
+        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // theta and velocity determine M
     const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
     return {run.trajectory, known ? M : nullptr};

@@ -87,7 +87,7 @@ int progress(lua_State* L) {
                                                                : static_cast<lua_Integer>(*steps),
                                    .list = lua_type(L, 1) != LUA_TNUMBER});
     loop.progress.reset(new terminal::Progress(
-        terminal::Progress::of_steps(label, *steps)));  // it can only be made in place, not moved
+        terminal::Progress::of_steps(label, *steps)));  // NOLINT: it cannot be moved, only made here
     lua_pushvalue(L, 1);
     lua_setiuservalue(L, -2, 1);
     lua_pushinteger(L, 0);

@@ -198,11 +198,11 @@ std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const Stead
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
     const std::vector<SteadyHandle>& found = others_of(L, s);
     const Steady& all = s->whole ? *s->whole : *s;
-    if (!all.question.is_plain()) return analysis::told(all.question, all.motion, found.size());
+    if (!all.question.is_plain()) return analysis::description_of(all.question, all.motion, found.size());
     std::vector<analysis::OtherMotion> others;
     others.reserve(found.size());
     for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
-    return analysis::told(s->question, s->motion, steady_shape(L, s), others);
+    return analysis::description_of(s->question, s->motion, steady_shape(L, s), others);
 }
 
 std::string steady_summary(const Steady& s) {
@@ -405,7 +405,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
                       .rows = motion::Grid::every(s.motion.period / rows),
                       .integrator = {}};
     if (s.motion.settled) {
-        // The stored run includes the approach: repeat it with rows in its last period.
+        // Its origin repeats the approach to the motion, too; the rows are those of the last period.
         const motion::Trajectory& last = *s.motion.settled;
         task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.asked) {

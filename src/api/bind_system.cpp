@@ -309,9 +309,7 @@ int field_of_varying(lua_State* L, const model::System& system, std::string_view
         if (name == "walls") return 1;
         lua_pop(L, 1);
         if (name == "Re" && lua_getfield(L, -1, "Rd") != LUA_TNIL) return 1;
-        if (varying != nullptr && std::string_view(varying) == "normal")
-            varying = nullptr;  // a varying load does not affect
-                                // the law
+        if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // does not affect the law
     }
     if (varying != nullptr && name != "normal") {
         lua_getfield(L, 3, varying);

@@ -122,7 +122,7 @@ std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
 namespace {
 
 constexpr int most_breaks = 6;
-constexpr int most_lines = 8;  // in the text of a function
+constexpr int most_lines = 8;  // lines of a function's text
 
 /// A function as its source text, times `gain`.
 std::string formula(lua_State* L, const model::Scripted& s, double gain) {

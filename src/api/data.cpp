@@ -183,11 +183,11 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
                          ListColumn{"velocity", &Event::velocity, in.speed});
     const ListColumn names{
         "name", [&](const Event& e) { return e.user < 0 ? "" : user_names[static_cast<std::size_t>(e.user)]; }};
-    if (!user_names.empty()) data.columns.push_back(names.of(events));
+    if (!user_names.empty()) data.columns.push_back(names.column_from(events));
     const ListColumn where{"where", [&](const Event& e) {
                                return e.user >= 0 ? "" : several->joints[static_cast<std::size_t>(e.where)].name;
                            }};
-    if (several != nullptr) data.columns.insert(data.columns.begin() + 2, where.of(events));
+    if (several != nullptr) data.columns.insert(data.columns.begin() + 2, where.column_from(events));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
 }

@@ -88,7 +88,7 @@ struct ListColumn {
     std::string unit = {};
 
     template <class List>
-    [[nodiscard]] DataColumn of(const List& list) const {
+    [[nodiscard]] DataColumn column_from(const List& list) const {
         using Value = std::decay_t<std::invoke_result_t<const Get&, decltype(*std::begin(list))>>;
         constexpr bool number = std::is_convertible_v<Value, double>;
         std::vector<std::conditional_t<number, double, std::string>> values;
@@ -108,7 +108,7 @@ ListColumn(Name, Get, Unit) -> ListColumn<Get>;
 
 template <class List, class... Get>
 Data table_of(const List& list, const ListColumn<Get>&... columns) {
-    return {.columns = {columns.of(list)...}};
+    return {.columns = {columns.column_from(list)...}};
 }
 
 /// The units of columns; empty if unknown.

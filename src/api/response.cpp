@@ -150,7 +150,7 @@ DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector
                           ListColumn{"status", [](const Jump& j) { return analysis::name(j.at.landed.status); }});
     if (over.size() > 1) {
         const ListColumn beside{over.front().name, &Jump::beside, over.front().unit};
-        jumps.columns.insert(jumps.columns.begin(), beside.of(list));
+        jumps.columns.insert(jumps.columns.begin(), beside.column_from(list));
     }
     const auto drawn = [list, column = column] {
         std::vector<double> x, amplitude;
@@ -193,8 +193,8 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
         ListColumn{"branch", &Point::branch});
     if (!is_plane) return {"points", [points] { return Data(points); }};
     const ListColumn beside{over.front().name, &Point::beside, over.front().unit};
-    points.columns.insert(points.columns.begin(), beside.of(located));
-    points.columns.push_back(ListColumn{"curve", &Point::curve}.of(located));
+    points.columns.insert(points.columns.begin(), beside.column_from(located));
+    points.columns.push_back(ListColumn{"curve", &Point::curve}.column_from(located));
     points.pieces_of = "curve";
     const auto drawn = [over, located] {
         std::vector<double> x, y;
@@ -443,7 +443,7 @@ struct ResponseRow {
     double beside, varied;
     std::size_t branch;
     bool asked;
-    analysis::SteadyStatus status;  ///< of all bodies
+    analysis::SteadyStatus status;  ///< status of the whole motion
     std::vector<RowOfJoint> joints;
 
     [[nodiscard]] const analysis::SteadyMotion& motion() const { return joints.front().motion; }
@@ -505,7 +505,7 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
     std::move(rest.columns.begin(), rest.columns.end(), std::back_inserter(data.columns));
     if (over.size() > 1) {
         const ListColumn beside{over.front().name, &ResponseRow::beside, over.front().unit};
-        data.columns.insert(data.columns.begin(), beside.of(rows));
+        data.columns.insert(data.columns.begin(), beside.column_from(rows));
         data.parameters = {over.front().name, of.name};
     }
     data.pieces_of = "branch";

@@ -23,11 +23,11 @@ struct Data;
 struct Run {
     motion::Trajectory trajectory;
     std::shared_ptr<const source::Origin> origin = {};  ///< null if it was read from a file
-    std::vector<std::string> comments = {};             ///< of that file
+    std::vector<std::string> comments = {};             ///< comments of that file
     std::optional<model::Excitation> terms = {};        ///< M as native terms, if its functions could be read
     std::string readings = {};                          ///< sentences on functions that were read as formulas
     model::Units units = {};                            ///< from a file; a simulated run has those of its system
-    lua::MemoryCharge rows = {};                        ///< of rows read from a file
+    lua::MemoryCharge rows = {};                        ///< memory of rows read from a file
     std::optional<std::size_t> joint = {};              ///< the named body or link from which it is seen
     // The run as seen from each joint, made on demand. Weak, as these keep the run of all bodies.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};

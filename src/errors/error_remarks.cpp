@@ -259,7 +259,7 @@ lua::Remarks first_remarks(lua_State* L, int error, int function) {
     if (facts != nullptr) {
         return remarks(L, frame, *facts, source, message->line);
     }
-    if (const auto syntax = lua::syntax_message(message->words)) {  // of a load() in the chunk
+    if (const auto syntax = lua::syntax_message(message->words)) {  // from a load() in the chunk
         const std::string habit = syntax_habit(L, *syntax, statement_of(source, message->line));
         return {habit, source ? excerpt(*source, message->line, {std::string(syntax->near)}) : "", ""};
     }

@@ -433,12 +433,11 @@ text::Expected<Written> write_csv(const std::string& path, std::span<const Named
 
 namespace {
 
-constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25 bytes; a power of two copies
-                                       // fast
+constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25; 32 copies fast
 
 /// The last value of a column with its text. Friction, pulses or a stuck mass repeat values over many rows.
 struct Cell {
-    std::uint64_t bits = 0;  // of the value above; as bits, because 0 and -0 compare equal
+    std::uint64_t bits = 0;  // the value above; as bits, because 0 and -0 compare equal
     std::size_t length = 0;  // length of the cached text; 0 until a value occurs twice
     char terminator = '\n';
     std::string_view gap = {};  // replaces nan

@@ -313,7 +313,7 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
 namespace {
 
 struct Topic {
-    std::string_view words;  // in lower case; one match is enough
+    std::string_view words;  // words in lower case; one match is enough
     std::string_view text;
     std::string_view more = {};  // two matches are enough
 };

@@ -160,7 +160,7 @@ std::vector<std::string> see_also(const Section& section, const lua::Member& mem
             }
         }
     }
-    const Section* result = result_class(member.doc.signature);
+    const Section* result = section_of_result(member.doc.signature);
     if (result != nullptr && result->description != section.description) {
         names.add(result->description->name);
     }

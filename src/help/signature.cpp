@@ -115,7 +115,7 @@ char call_bracket(std::string_view signature) {
     return open == std::string_view::npos ? ' ' : signature[open];
 }
 
-const Section* result_class(std::string_view signature) {
+const Section* section_of_result(std::string_view signature) {
     const std::size_t arrow = signature.find("-> ");
     if (arrow == std::string_view::npos) {
         return nullptr;

@@ -39,6 +39,6 @@ std::string parameters(std::string_view signature);
 char call_bracket(std::string_view signature);
 
 /// The section of the class of a call's result, of a field or of a constructor; nullptr for other types.
-const Section* result_class(std::string_view signature);
+const Section* section_of_result(std::string_view signature);
 
 }  // namespace dinal::help

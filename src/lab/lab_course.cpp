@@ -308,7 +308,7 @@ void remember(const LabMark& mark) {
 
 }  // namespace
 
-std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script) {
+std::optional<text::Error> start_answer_log(const std::string& file, const std::string& script) {
     auto opened = files::Journal::open(file);
     if (!opened) {
         return opened.error();
@@ -363,7 +363,7 @@ constexpr std::size_t most_wrong = 12;  // limits guessing by a loop
 
 /// The answers to a question so far.
 struct LabAnswer {
-    lua_Integer number;  ///< of the student
+    lua_Integer number;  ///< student number
     std::string question;
     bool right = false;
     int tries = 0;

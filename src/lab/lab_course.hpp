@@ -69,7 +69,7 @@ text::Expected<std::string> lab_question_names();
 
 /// Appends each judged answer of this script to the file, after a first line for its start. Returns an error if the
 /// file cannot be written.
-std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script);
+std::optional<text::Error> start_answer_log(const std::string& file, const std::string& script);
 
 /// Sets the file of wrong values from earlier sessions; Tries::write also adds those of this one. If the file cannot be
 /// written, they count in this session only.

@@ -305,9 +305,7 @@ void on_expiry(sigval) {
 
 /// Starts the timer; 0 stops it.
 void set_timer(Nanoseconds allowed) {
-    if (allowed > 0)
-        latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // first, as it takes effect with the
-                                                                    // deadline
+    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // before the deadline
     deadline = allowed > 0 ? now_by(CLOCK_PROCESS_CPUTIME_ID) + allowed : 0;
     itimerspec times{};
     times.it_value = {allowed / one_second, allowed % one_second};

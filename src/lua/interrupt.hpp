@@ -67,7 +67,7 @@ void look_at_next_instruction() noexcept;
 /// Raises the string "interrupted!" or "limit reached!" in the running code, without position.
 [[noreturn]] void raise_interrupted(lua_State* L);
 
-/// Where the code was stopped, as "lab.lua:3"; "" outside of any Lua function.
+/// The place of the stop, as "lab.lua:3"; "" outside of any Lua function.
 std::string stopped_at();
 
 /// Returns whether an InterruptScope exists.
@@ -93,7 +93,7 @@ private:
 struct WorkerWatch {
     std::atomic<std::uint64_t> task = 0, given_up = 0;  ///< task numbers, from 1
     std::atomic<double> since = 0;                      ///< start of the task, seconds of the watcher's clock
-    const WorkerWatch* outer = nullptr;                 ///< of the worker that waits for this one
+    const WorkerWatch* outer = nullptr;                 ///< watch of the worker that waits for this one
 
     [[nodiscard]] bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
     [[nodiscard]] bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }

@@ -12,9 +12,8 @@ namespace dinal::lua {
 struct LuaMessage {
     std::string_view words;
     std::string_view type = {};  ///< type of the value at fault: "nil"
-    std::string_view kind =
-        {};  ///< of the variable that had it: "global", "local", "field", "method", "for iterator" ...
-    std::string_view name = {};                 ///< the variable's name: "sytem"
+    std::string_view kind = {};  ///< kind of the variable: "global", "local", "field", "method", "for iterator" ...
+    std::string_view name = {};  ///< the variable's name: "sytem"
     std::vector<std::string_view> quoted = {};  ///< all quoted parts
     bool calls = false;                         ///< "attempt to call"
     bool calculates = false;                    ///< "attempt to perform arithmetic on"

@@ -116,8 +116,8 @@ constexpr bool is_sanitized = true;
 constexpr bool is_sanitized = false;
 #endif
 
-/// Limits the address space, for memory that is not counted, such as the pages of a picture: twice the limit, plus the
-/// program's and its threads' own needs.
+/// Limits the data of the process (RLIMIT_DATA), as some memory is not counted, such as a picture: twice the limit plus
+/// the program's and its threads' own needs.
 void set_backstop(std::size_t bytes) {
     constexpr std::size_t own = std::size_t{128} << 20U, for_a_thread = std::size_t{16} << 20U;
     std::size_t pages = 0;

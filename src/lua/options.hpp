@@ -88,7 +88,7 @@ private:
     lua_State* L_;
     int index_;
     text::Call call_;
-    std::bitset<most_options + 1> given_;  ///< for each row
+    std::bitset<most_options + 1> given_;  ///< whether each row's option was given
 };
 
 /// Called for each table of options, within the function that received it.

@@ -27,7 +27,7 @@ struct Prototype {
     std::vector<Constant> constants;
     std::vector<std::string_view> variables;  ///< upvalues, three bytes each
     std::vector<Prototype> inner;
-    std::vector<int> lines;               ///< for each instruction
+    std::vector<int> lines;               ///< source line of each instruction
     std::vector<std::string_view> names;  ///< names of the upvalues
 
     [[nodiscard]] std::size_t size() const { return code.size() / 4; }

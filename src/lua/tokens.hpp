@@ -13,7 +13,7 @@ struct Token {
     TokenKind kind = TokenKind::symbol;
     std::string_view text;
     std::size_t at = 0;  ///< index of its first byte
-    int line = 1;        ///< of its first byte
+    int line = 1;        ///< line of its first byte
     bool open = false;   ///< whether it is a string or long comment without an end
 
     [[nodiscard]] std::size_t end() const { return at + text.size(); }

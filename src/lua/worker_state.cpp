@@ -60,8 +60,7 @@ OwnedState new_state_like(lua_State* like) {
     bool good = L != nullptr;
     if (good) {
         void* of_allocator = nullptr;
-        lua_Alloc allocator = lua_getallocf(like, &of_allocator);  // the parent's allocator: counts bytes if memory is
-                                                                   // limited
+        lua_Alloc allocator = lua_getallocf(like, &of_allocator);  // the parent's: counts bytes if limited
         lua_setallocf(L, allocator, of_allocator);
         for (const lua_CFunction step : {guarded<open_worker>, guarded<take_paths>}) {
             lua_pushcfunction(L, step);

@@ -338,7 +338,7 @@ Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) 
 Walk::Result Walk::run(std::optional<std::size_t> condition) {
     constexpr Result undecided{{std::numeric_limits<double>::quiet_NaN(), never}, never, anything};
     const auto told = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
-    loosest_ = 0;
+    greatest_relative_radius_ = 0;
     for (std::size_t place = 0;;) {
         const Formula::Step& s = formula_->steps()[place];
         const Slot &a = slots_[s.a], &b = slots_[s.b];
@@ -369,7 +369,7 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
                 const Slot decider = compares || quotient ? combined(compares ? Op::subtract : Op::divide, a, b) : a;
                 if (condition == place) return told(decider);
                 const double part = decider.apart > 0 ? never : decider.disc.r / std::fabs(decider.disc.c);
-                loosest_ = std::max(loosest_, part == part ? part : never);
+                greatest_relative_radius_ = std::max(greatest_relative_radius_, part == part ? part : never);
             }
             if (!decision) return undecided;
             if (compares) {

@@ -65,7 +65,7 @@ public:
     /// difference, or the folded argument in periods.
     Result run(std::optional<std::size_t> condition = {});
     /// The greatest ratio of radius to centre among the deciders of held conditions.
-    [[nodiscard]] double loosest() const { return loosest_; }
+    [[nodiscard]] double greatest_relative_radius() const { return greatest_relative_radius_; }
 
 private:
     struct Slot {
@@ -81,7 +81,7 @@ private:
     const Formula* formula_ = nullptr;
     const double* held_ = nullptr;
     bool ranges_ = false;
-    double loosest_ = 0;
+    double greatest_relative_radius_ = 0;
     std::vector<Slot> slots_{};
 };
 

@@ -49,10 +49,10 @@ private:
     Components(std::shared_ptr<Places> places, std::size_t first, std::size_t count);
 
     /// The index of this list's first component in the storage.
-    [[nodiscard]] std::size_t first() const;
+    [[nodiscard]] std::size_t first_place() const;
     /// Claim `count` free places behind or before this list; return false if they are taken.
-    [[nodiscard]] bool take_after(std::size_t count) const;
-    [[nodiscard]] bool take_before(std::size_t count) const;
+    [[nodiscard]] bool claim_after(std::size_t count) const;
+    [[nodiscard]] bool claim_before(std::size_t count) const;
 
     std::shared_ptr<Places> places_;
     std::span<const Component> stretch_;

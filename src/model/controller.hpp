@@ -17,7 +17,7 @@ namespace dinal::model {
 
 class Controller : public terms::UserFunction {
 public:
-    std::shared_ptr<terms::UserFunction> function;  ///< of t, theta, velocity, states; null if a relay needs none
+    std::shared_ptr<terms::UserFunction> function;  ///< function of t, theta, velocity, states; null if not needed
 
     /// No value exists outside of a run.
     double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }

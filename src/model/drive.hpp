@@ -1,5 +1,5 @@
-// The drive of a system in a run: M, moving surfaces, a shaking support, own states, wanted events, and the initial
-// state.
+// The drive of a system in a run: M, moving surfaces, a shaking support, states of its own, wanted events, and the
+// initial state.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,7 @@ struct Drive {
     std::vector<WantedEvent> events = {};
     std::vector<double> theta0, velocity0;  ///< one for each body
 
-    // Of a single body, or of the first one.
+    // For a single body, or the first one.
     [[nodiscard]] const Excitation& M() const { return loads.front(); }
     /// The sum of all loads.
     [[nodiscard]] Excitation sum_of_loads() const {

@@ -16,7 +16,7 @@ namespace dinal::model {
 class Lowered {
 public:
     /// The system must outlive it.
-    Lowered(const Oscillator& system)  // a view of the same system
+    Lowered(const Oscillator& system)  // NOLINT(google-explicit-constructor): a view of the same system
         : inertia_(system.inertia()), damping_(system.damping()), stiffness_(system.stiffness()) {
         const Friction& law = system.friction();
         for (const Motion way : {Motion::backward, Motion::forward}) {

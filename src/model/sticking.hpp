@@ -27,7 +27,7 @@ inline double breakaway_excess(const Lowered& system, double M, double theta) {
 }
 
 /// Returns whether a mass stuck at theta stays there however M changes, as long as |M| <= most_M.
-inline bool held_against(const Lowered& system, double most_M, double theta) {
+inline bool cannot_break_away(const Lowered& system, double most_M, double theta) {
     const double k_theta = system.pull_back(theta);
     return most_M - k_theta <= system.holding(Motion::forward) && most_M + k_theta <= system.holding(Motion::backward);
 }

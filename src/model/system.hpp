@@ -35,7 +35,7 @@ struct ContactFriction {
     /// Replaces the law's sliding torque: a function of (speed, t, theta, velocity, states), where the speed is passed
     /// as the first state.
     std::shared_ptr<UserFunction> function = {};
-    std::vector<laws::Jenkins> sliders = {};  ///< in parallel with the law
+    std::vector<laws::Jenkins> sliders = {};  ///< Jenkins elements in parallel with the law
     std::vector<Friction> listed = {};        ///< the user's list of laws, from which law and sliders were made
     /// Replace the law's numbers, backward and forward.
     std::array<std::optional<Excitation>, 2> sliding = {}, holding = {};

@@ -116,7 +116,7 @@ Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) co
         append_values(times[i], values);
     }
     const std::vector<double> small = invisible(values, width);
-    std::vector<char> straight(times.size(), 0);  // of the interval after each time
+    std::vector<char> straight(times.size(), 0);  // whether each interval is drawn straight
     straight.back() = 1;
     while (times.size() < enough && std::find(straight.begin(), straight.end(), 0) != straight.end()) {
         std::vector<double> more_times, more_values;

@@ -51,7 +51,7 @@ public:
     /// theta and velocity at a time of the run, with the accuracy of its integrator.
     [[nodiscard]] virtual text::Expected<model::State> at(double t) const = 0;
 
-    /// The own states at a time of the run; empty if it has none.
+    /// The run's own states at a time; empty if it has none.
     [[nodiscard]] virtual std::vector<double> states_at(double /*t*/) const { return {}; }
 
     /// The time up to which the motion is stored completely, so that at() need not evaluate M and legs() covers it:

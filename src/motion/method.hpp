@@ -38,7 +38,7 @@ struct OwnRule {
     const char* release;  ///< text before the release torque: "the listing let it go at"
 };
 
-/// How the general engine divides a run into stretches.
+/// The division of a run into stretches by the general engine.
 struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< longest stretch, time units
@@ -64,7 +64,7 @@ concept Method = requires(const T& method, const model::Oscillator& system, cons
 class MethodView {
 public:
     template <Method M>
-    MethodView(const M& method)  // implicit, like a string_view of a string
+    MethodView(const M& method)  // NOLINT(google-explicit-constructor): like a string_view of a string
         : method_(&method), common_(&common_of<M>) {}
     template <Method... M>
     MethodView(const std::variant<M...>& one)  // NOLINT(google-explicit-constructor)

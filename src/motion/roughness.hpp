@@ -6,7 +6,7 @@
 
 namespace dinal::motion {
 
-/// Of three short stretches: the greatest and the second greatest of the last Chebyshev coefficients, and of the
+/// From three short stretches: the greatest and the second greatest of the last Chebyshev coefficients, and of the
 /// values.
 struct Roughness {
     double most = 0, usual = 0, size = 0;

@@ -90,11 +90,10 @@ struct Problem {
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
-    std::optional<model::Motion> before = {};  ///< for a continued run: the motion so far
+    std::optional<model::Motion> before = {};  ///< motion at the end of the run that is continued
     std::size_t course_bytes = 0;              ///< memory limit of the course
-    bool more = false;                 ///< whether there are walls, controllers with a memory, or more than M in the
-                                       ///< drive
-    const Carried* carried = nullptr;  ///< for a continued run: what its integrator left
+    bool more = false;                 ///< whether there are walls, controllers with a memory, or more drive than M
+    const Carried* carried = nullptr;  ///< integrator's data from the run that is continued
 };
 
 /// Runs from the drive's initial state at window.start. Fails before the first step if the window, the grid or the

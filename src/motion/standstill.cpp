@@ -73,11 +73,11 @@ bool Standstill::creep(const Moment& now) {
 
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
-    if (phase_ != Phase::creeping && model::held_against(system_, most_M_, now.theta)) return true;
+    if (phase_ != Phase::creeping && model::cannot_break_away(system_, most_M_, now.theta)) return true;
     return constant_from_ <= now.t && pulled(now.M, now.theta) == model::Motion::stuck;
 }
 
-model::State Standstill::on_its_way(const model::State& y) const {
+model::State Standstill::on_side_of_motion(const model::State& y) const {
     const double way = model::sign_of(motion_);
     return {y.theta, way * y.velocity > 0 ? y.velocity : way * hair};
 }
@@ -90,7 +90,7 @@ bool Standstill::jumps(double t, double theta) const {
     return std::fabs(above - below) > rounding * torques;
 }
 
-double Standstill::arrived_at(const Moment& now) const {
+double Standstill::place_at_stop(const Moment& now) const {
     const double k = system_.stiffness();
     if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring()) return now.theta;
     const double rounding = rounding_of_torques * std::max(torques(now), torques_before_);
@@ -107,7 +107,7 @@ double Standstill::arrived_at(const Moment& now) const {
     return place;
 }
 
-bool Standstill::ask(const Moment& now) {
+bool Standstill::decide(const Moment& now) {
     const model::Motion before = motion_;
     torques_before_ = torques(now);
     motion_ = pulled(now.M, now.theta);
@@ -116,10 +116,10 @@ bool Standstill::ask(const Moment& now) {
     if (at_start(now.t)) {
         began_stuck_ = stuck();
     } else if (stuck()) {
-        tell(model::EventKind::stick, now);
+        record_event(model::EventKind::stick, now);
     } else if (motion_ != before && before != model::Motion::stuck) {
         // Going on in the same direction is no event, nor is an initial velocity set at rest.
-        tell(model::EventKind::turn, now);
+        record_event(model::EventKind::turn, now);
     }
     return goes_on_after(now.t);
 }
@@ -132,27 +132,27 @@ bool Standstill::release(const Moment& now, model::Motion towards) {
             came_ = motion_, M_stuck_ = now.M;
             motion_ = model::Motion::stuck;
             phase_ = Phase::stuck;
-            tell(model::EventKind::stick, now);
+            record_event(model::EventKind::stick, now);
         }
         return goes_on_after(now.t);
     }
     motion_ = towards;
     phase_ = Phase::leaving;
-    if (only_touched(now)) {
+    if (was_rounding_artefact(now)) {
         if (towards == came_) {
             events_->pop_back();
         } else {
             events_->back().kind = model::EventKind::turn;
         }
     } else {
-        tell(model::EventKind::slip, now);
+        record_event(model::EventKind::slip, now);
     }
     return goes_on_after(now.t);
 }
 
 /// Returns whether the stick that ends now is an artefact of rounding: the mass reached velocity zero right at the
 /// limit, and friction withheld an impulse below rounding before M passed it.
-bool Standstill::only_touched(const Moment& now) const {
+bool Standstill::was_rounding_artefact(const Moment& now) const {
     if (events_ == nullptr || events_->empty() || came_ == model::Motion::stuck) return false;
     const model::Event& last = events_->back();
     const double part = (now.t - last.t) / pace_;
@@ -160,8 +160,8 @@ bool Standstill::only_touched(const Moment& now) const {
     return std::fabs(now.M - M_stuck_) * (2 * std::numbers::pi * part) <= withheld * torques(now);
 }
 
-bool Standstill::never_left(const Moment& now) {
-    if (last_told() == now.t) {
+bool Standstill::failed_to_leave(const Moment& now) {
+    if (last_event_time() == now.t) {
         model::Event& last = events_->back();
         if (last.kind == model::EventKind::slip) {
             events_->pop_back();
@@ -171,7 +171,7 @@ bool Standstill::never_left(const Moment& now) {
     } else if (at_start(now.t)) {
         began_stuck_ = true;
     } else {
-        tell(model::EventKind::stick, now);  // it stopped and did not start again
+        record_event(model::EventKind::stick, now);  // it stopped and did not start again
         came_ = motion_, M_stuck_ = now.M;
     }
     motion_ = model::Motion::stuck;
@@ -186,12 +186,12 @@ void Standstill::go_on() {
 
 void Standstill::turned(const Moment& now) {
     motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
-    tell(model::EventKind::turn, now);
+    record_event(model::EventKind::turn, now);
 }
 
 bool Standstill::finish() {
     if (!stuck()) return false;
-    if (phase_ == Phase::creeping) tell(model::EventKind::stick, crept_);  // no further motion follows
+    if (phase_ == Phase::creeping) record_event(model::EventKind::stick, crept_);  // no further motion follows
     return true;
 }
 
@@ -202,7 +202,7 @@ void Standstill::forget_chatter() {
     }
 }
 
-void Standstill::tell(model::EventKind kind, const Moment& now) {
+void Standstill::record_event(model::EventKind kind, const Moment& now) {
     if (events_ != nullptr) events_->push_back({now.t, kind, now.theta, now.M});
 }
 

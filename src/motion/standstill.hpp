@@ -58,7 +58,7 @@ public:
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
     /// in the direction of motion.
-    [[nodiscard]] model::State on_its_way(const model::State& y) const;
+    [[nodiscard]] model::State on_side_of_motion(const model::State& y) const;
     /// Returns whether a feedback jumps at velocity zero. A step that evaluated it on both sides would find a
     /// compromise that does not exist.
     [[nodiscard]] bool jumps(double t, double theta) const;
@@ -70,7 +70,7 @@ public:
 
     /// The angle at which an arrived mass stands: theta, or if that exceeds the limit of sticking by no more than
     /// accumulated rounding, the angle at the limit.
-    [[nodiscard]] double arrived_at(const Moment& now) const;
+    [[nodiscard]] double place_at_stop(const Moment& now) const;
 
     /// Reports that the velocity has reached zero.
     void arrive() { phase_ = Phase::arrived; }
@@ -81,16 +81,16 @@ public:
     // These functions return false after endless standstills.
 
     /// Decides after arrive(), and records the event.
-    bool ask(const Moment& now);
+    bool decide(const Moment& now);
     /// Leaves a stick or a creep: M has passed the limit of this side.
     bool release(const Moment& now, model::Motion towards);
     /// Returns to sticking after a release without motion: M only touched the limit.
-    bool never_left(const Moment& now);
+    bool failed_to_leave(const Moment& now);
 
     /// Reports that time has passed, in motion or at rest.
     void go_on();
     /// Without dry friction: sets the direction, without an event.
-    void head(model::Motion motion) { motion_ = motion; }
+    void set_direction(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: reverses, and records the turn.
     void turned(const Moment& now);
     /// Ends the run; returns whether the mass stands.
@@ -110,20 +110,20 @@ public:
     /// Whether it was stuck from the start until something moved it.
     [[nodiscard]] bool began_stuck() const { return began_stuck_; }
     /// The time of the last event, -never if there was none.
-    [[nodiscard]] double last_told() const {
+    [[nodiscard]] double last_event_time() const {
         return events_ == nullptr || events_->empty() ? -model::never : events_->back().t;
     }
 
 private:
     [[nodiscard]] bool at_start(double t) const { return t <= start_; }
-    [[nodiscard]] bool only_touched(const Moment& now) const;
+    [[nodiscard]] bool was_rounding_artefact(const Moment& now) const;
     [[nodiscard]] double torques(const Moment& now) const {
         return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
     }
     /// The friction torque of a creeping mass.
     [[nodiscard]] double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
     [[nodiscard]] model::Motion pulled_on(double M, double theta) const;
-    void tell(model::EventKind kind, const Moment& now);
+    void record_event(model::EventKind kind, const Moment& now);
     bool goes_on_after(double t);
 
     model::Lowered system_;

@@ -49,7 +49,7 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
         return creeps ? constant < run.t_stop : stays(run, system, oscillator.walls(), loads.value(run.t_stop));
     }
     if (creeps) return false;  // a creeping mass yields to every change of M
-    if (model::held_against(system, loads.most(), run.state_at_stop.theta)) return true;
+    if (model::cannot_break_away(system, loads.most(), run.state_at_stop.theta)) return true;
     const double period = loads.has_feedback() ? 0 : model::period_from(loads, since);
     return period > 0 && run.t_stop - since >= period;
 }
@@ -126,9 +126,7 @@ double peak(const Trajectory& trajectory) {
     for (const model::Event& event : trajectory.events) {
         greatest = std::max(greatest, std::fabs(event.theta));
         if (event.kind != model::EventKind::user || !trajectory.course) continue;
-        if (const auto y = trajectory.at(event.t))
-            greatest = std::max(greatest, std::fabs(y->theta));  // the user's action may have
-                                                                 // moved it
+        if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // acts move it
     }
     if (trajectory.on_belt) {
         for (const model::Event& turn : turns_on_belt(trajectory)) greatest = std::max(greatest, std::fabs(turn.theta));

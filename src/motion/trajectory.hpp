@@ -52,7 +52,7 @@ private:
     Growing<double> table_;
 };
 
-/// The own states and other data that a continuation needs besides the motion.
+/// The run's own states and other data that a continuation needs besides the motion.
 struct Carried {
     Carried() = default;
     Carried(const Carried&) = default;
@@ -86,17 +86,17 @@ struct Trajectory {
     bool began_stuck = false;  ///< whether it was stuck until something moved it
     bool began_open = false;   ///< whether nothing pressed on the contact until it closed
     bool on_belt = false;      ///< whether turns of theta are no events, as on a belt
-    double restitution = 1;    ///< of the walls: part of the speed left after an impact
+    double restitution = 1;    ///< part of the speed left after an impact at a wall
     bool computed = true;      ///< false if it was read from a file
     double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
     double unproven = 0;                        ///< the longest stretch in which formulas may do more than was sampled
     double noise = 0;                           ///< torque by which M deviates from a smooth function on every scale
     std::size_t jumps = 0;                      ///< located jumps of a function M along the motion
     bool located = false;                       ///< whether formulas have conditions on the motion, which were located
-    std::optional<Rough> rough = {};            ///< for Outcome::unresolved, if known
+    std::optional<Rough> rough = {};            ///< cause of Outcome::unresolved, if known
     std::vector<std::string> event_names = {};  ///< names of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;        ///< for runs with states and the like
-    std::optional<model::Contradiction> contradiction = {};  ///< for Outcome::not_a_function
+    std::shared_ptr<const Carried> carried = nullptr;        ///< own states etc.; null for simple runs
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< null if declined, or if the trajectory was read from a file
     /// The run of all bodies of which this is a part or the whole; null for a plain system.
     std::shared_ptr<const engine::Run> bodies = {};
@@ -117,7 +117,7 @@ struct Trajectory {
     /// theta and velocity at t: from the integrator if available, otherwise by cubic interpolation of the rows.
     /// Fails if t is outside the run or the columns are missing.
     [[nodiscard]] text::Expected<model::State> at(double t) const;
-    /// The number of own states, which are the last columns.
+    /// The number of the run's own states, which are the last columns.
     [[nodiscard]] std::size_t state_count() const { return carried ? carried->states.size() : 0; }
     [[nodiscard]] std::size_t first_state() const { return names().size() - state_count(); }
 };

@@ -27,7 +27,7 @@ Witness::Witness(std::shared_ptr<model::UserFunction> function, std::shared_ptr<
                  const char* argument, std::size_t states)
     : function_(std::move(function)),
       testimony_(std::move(testimony)),
-      who_(std::move(who)),
+      name_(std::move(who)),
       argument_(argument),
       next_(first_again),
       states_(places * states) {}
@@ -51,7 +51,7 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
 
 /// Repeats an evaluation; returns whether the answer is the same. A failure now would also have occurred without the
 /// witness.
-bool Witness::stands_by(std::size_t place) {
+bool Witness::repeats_answer(std::size_t place) {
     const Answer& answer = answers_[place];
     const std::size_t count = states_.size() / places;
     const std::span<const double> states{states_.data() + place * count, count};
@@ -59,18 +59,18 @@ bool Witness::stands_by(std::size_t place) {
     // Equal except for the sign of zero, which does not matter.
     if (again == answer.value) return true;
     if (std::isfinite(again)) {
-        testimony_->found = model::Contradiction{who_, argument_, answer.t, answer.value, again};
+        testimony_->found = model::Contradiction{name_, argument_, answer.t, answer.value, again};
     }
     return false;
 }
 
 /// Repeats an evaluation of varying age.
-bool Witness::ask_again() {
+bool Witness::repeat_one() {
     next_ = asked_ + questions_between;
     for (std::size_t i = 0; i <= 2 * ages; ++i) {
         constexpr std::size_t stride = 7;  // coprime to the number of places, 37
         turn_ = (turn_ + stride) % (2 * ages + 1);
-        if ((known_ >> turn_ & 1U) != 0) return stands_by(turn_);
+        if ((known_ >> turn_ & 1U) != 0) return repeats_answer(turn_);
     }
     return true;
 }
@@ -89,10 +89,10 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     }
     keep(last_, answer, states);
     keep_for_later(answer, states);
-    if (!jumped) return asked_ < next_ || ask_again();
+    if (!jumped) return asked_ < next_ || repeat_one();
     ++jumps_asked_;
     // A relay in a closure no longer returns what it returned before it switched, and random numbers do not repeat.
-    return stands_by(before_jump_) && stands_by(last_);
+    return repeats_answer(before_jump_) && repeats_answer(last_);
 }
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
@@ -116,8 +116,8 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
     return 0;
 }
 
-void Witness::conclude() {
-    if (asked_ > 1 && !testimony_->found) stands_by(first_place);
+void Witness::repeat_first() {
+    if (asked_ > 1 && !testimony_->found) repeats_answer(first_place);
 }
 
 namespace {
@@ -187,7 +187,7 @@ UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
 
 std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
-        for (const auto& witness : witnesses_) witness->conclude();
+        for (const auto& witness : witnesses_) witness->repeat_first();
     }
     testimony_->over = true;
     return testimony_->found;

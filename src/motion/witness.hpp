@@ -54,7 +54,7 @@ public:
     void forget_failure() override { function_->forget_failure(); }
 
     /// Repeats the first evaluation at the end of the run.
-    void conclude();
+    void repeat_first();
 
 private:
     /// The arguments and result of an evaluation.
@@ -69,13 +69,13 @@ private:
 
     void keep(std::size_t place, const Answer& answer, std::span<const double> states);
     void keep_for_later(const Answer& answer, std::span<const double> states);
-    bool stands_by(std::size_t place);
-    bool ask_again();
+    bool repeats_answer(std::size_t place);
+    bool repeat_one();
     bool heard(const Answer& answer, std::span<const double> states);
 
     std::shared_ptr<model::UserFunction> function_;
     std::shared_ptr<Testimony> testimony_;
-    std::string who_;
+    std::string name_;
     const char* argument_;
 
     std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the next one after which one is repeated
@@ -84,7 +84,7 @@ private:
     double usual_ = 0;         ///< moving average of the change between evaluations
     std::uint64_t known_ = 0;  ///< one bit for each filled place
     std::array<Answer, places> answers_;
-    std::vector<double> states_;  ///< for each place
+    std::vector<double> states_;  ///< states of each place
 };
 
 /// Wraps each function it is given in a witness.

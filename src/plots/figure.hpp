@@ -101,7 +101,7 @@ struct Figure {
     std::vector<Curve> curves;
     std::vector<Mark> marks;
     std::vector<Interval> stuck;             ///< intervals of x, marked at its axis
-    std::optional<Interval> dead_zone = {};  ///< of x, marked on y = 0
+    std::optional<Interval> dead_zone = {};  ///< interval of x, marked on y = 0
 };
 
 /// Larger numbers would overflow in differences.

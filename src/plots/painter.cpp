@@ -413,8 +413,7 @@ private:
             (adds ? cairo_line_to : cairo_move_to)(to, point.x, point.y);
             if (last) length += std::hypot(point.x - last->x, point.y - last->y);
             last = point;
-            constexpr std::size_t batch = 20;  // corners of a dense line drawn at once: cairo's time grows with the
-                                               // square
+            constexpr std::size_t batch = 20;  // corners of a dense line: cairo's time grows with the square
             if (dense == nullptr || ++waiting % batch != 0) continue;
             if (!page_.go_on()) return {};
             stroke(to, line_width, colour_of(i));
@@ -648,7 +647,7 @@ text::Expected<std::string> paint(std::span<const Figure> given, PictureKind kin
     constexpr double usual = 8.5, box = 0.85;  // cm; ratio of height to width of the box
     const std::vector<Figure> figures = with_bands(given, box * pixels_per_cm * (size.width > 0 ? size.width : usual));
     const Sheet sheet = lay_out(figures, size);
-    constexpr double points = 0.75;    // for each pixel
+    constexpr double points = 0.75;    // points in a pixel
     constexpr double most_dots = 4e7;  // limit of a PNG: 160 MB
     Output output{go_on};
     std::optional<Image> image;
@@ -669,7 +668,7 @@ text::Expected<std::string> paint(std::span<const Figure> given, PictureKind kin
     if (kind == PictureKind::pdf) cairo_scale(to, points, points);
     set_colour(to, 0xFFFFFF);
     cairo_paint(to);
-    constexpr double most_corners = 5'500;  // of curves in an SVG, 24 bytes each
+    constexpr double most_corners = 5'500;  // corners of curves in an SVG, 24 bytes each
     Page page{to, kind == PictureKind::svg, go_on};
     for (const PaperPanel& panel : sheet.panels) {
         PanelPainter(page, panel, most_corners / static_cast<double>(sheet.panels.size())).paint();

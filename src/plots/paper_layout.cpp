@@ -118,7 +118,7 @@ int flow(std::vector<LegendEntry>& entries, double width) {
     return std::max(column_length, line + 1);
 }
 
-constexpr int most_ticks = 12;  // of an axis; a poster needs no more than a page
+constexpr int most_ticks = 12;  // ticks of an axis; a poster needs no more than a page
 
 int x_tick_count(const PaperPanel& panel, double em_each) {
     return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);

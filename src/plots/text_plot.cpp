@@ -23,7 +23,7 @@ namespace {
 /// Maps values to dots of the canvas.
 struct Projection {
     View view;
-    Box box;  // in dots between the edges
+    Box box;  // size in dots between the edges
     [[nodiscard]] double x(double value) const {
         return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan("");
     }
@@ -387,7 +387,7 @@ std::string shown_in(Charset charset, std::string_view words) {
 /// A line of the legend: a letter, sign or shade with its meaning.
 struct TextEntry {
     std::string text;
-    std::uint8_t ink;  ///< of its curve; 0: not a curve
+    std::uint8_t ink;  ///< ink of its curve; 0: not a curve
 };
 
 std::vector<TextEntry> text_legend(const Figure& figure, Charset charset) {
@@ -674,15 +674,15 @@ private:
 
     const Figure& figure_;
     const TextFormat& format_;
-    const View seen_;  // of the figure
+    const View seen_;  // the figure's
     View view_;        // on the canvas
     Frame frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;
     std::size_t label_room_;
     std::size_t label_width_ = 0;
-    int columns_ = 0, rows_ = 0;  // of the canvas
-    Box box_{1, 1};               // of the canvas in dots
+    int columns_ = 0, rows_ = 0;  // size of the canvas
+    Box box_{1, 1};               // size of the canvas in dots
 };
 
 /// Figures one below the other with aligned axes.
@@ -707,7 +707,7 @@ TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {
 }  // namespace
 
 std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
-    constexpr double dots = 2;  // for each column in braille
+    constexpr double dots = 2;  // dots of a column in braille
     const std::vector<Figure> figures = with_envelopes(with_bands(given, dots * format.columns),
                                                        (format.charset == Charset::ascii ? 1 : dots) * format.columns);
     TextFormat each = format;

@@ -11,7 +11,7 @@ namespace dinal::plots {
 
 struct TextFormat {
     int columns = 79;
-    int rows = 22;  ///< of the whole picture
+    int rows = 22;  ///< rows of the whole picture
     Charset charset = Charset::braille;
     bool colours = false;  ///< whether to use escape sequences; for a terminal only
 };

@@ -8,7 +8,7 @@
 namespace dinal::plots {
 namespace {
 
-constexpr int most_digits = 6;  // of a label; longer ones use another notation
+constexpr int most_digits = 6;  // digits of a label; longer ones use another notation
 constexpr double most_divisions = 1000;
 
 /// The decimal exponent, 3 for 1000 to 9999; from the text, because log10(1000) may round to 2.999...

@@ -15,7 +15,7 @@ enum class Request { run, help, version, manual, lab_start, lab_solutions, test_
 /// -e, -l or -W, which are executed in the order given.
 struct StartStep {
     char option;
-    const char* value;  ///< for -e and -l
+    const char* value;  ///< text for -e, module for -l
 };
 
 struct Arguments {

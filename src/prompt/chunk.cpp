@@ -185,7 +185,7 @@ Chunk compile(lua_State* L, const std::string& text) {
     return chunk;
 }
 
-bool only_looks(const Chunk& chunk) {
+bool only_reads_variable(const Chunk& chunk) {
     const std::vector<lua::Token> all = lua::tokens(chunk.expression);
     const auto code = std::count_if(all.begin(), all.end(),
                                     [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
@@ -238,7 +238,7 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
         return;
     }
     const bool single = lua_gettop(L) == base + 1;
-    if (!lua_isnil(L, base + 1) && !only_looks(chunk)) {
+    if (!lua_isnil(L, base + 1) && !only_reads_variable(chunk)) {
         set_ans(L, base + 1);
     }
     const std::string element = single && lua_isnil(L, base + 1) ? element_notice(L, chunk) : "";

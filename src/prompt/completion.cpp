@@ -74,7 +74,7 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     const Meaning owner = meaning(L, typed.owner());
     const help::Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
     if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
-        held = help::result_class(owner.member->doc.signature);
+        held = help::section_of_result(owner.member->doc.signature);
     }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
@@ -147,7 +147,7 @@ std::vector<std::string> constructors(std::string_view name) {
     std::vector<std::string> calls;
     for (const help::Section& section : help::sections()) {
         for (const lua::Member& member : section.description->members) {
-            const help::Section* made = help::result_class(member.doc.signature);
+            const help::Section* made = help::section_of_result(member.doc.signature);
             if (member.kind == lua::Kind::function && made != nullptr && made->description->name == name) {
                 calls.push_back(help::written_name(section, member) + bracket_after(member.doc.signature));
             }
@@ -560,7 +560,7 @@ public:
             const lua::Documented module = lua::documented(L_, -1);
             doc = module.owner != nullptr ? &module.owner->doc : nullptr;
         }
-        const help::Section* object = doc == nullptr ? nullptr : help::result_class(doc->signature);
+        const help::Section* object = doc == nullptr ? nullptr : help::section_of_result(doc->signature);
         forget();
         if (object != nullptr) {
             result = {Meaning::Kind::object, object, nullptr};
@@ -578,7 +578,7 @@ private:
     const lua::Class* class_here() {
         if (lua_isuserdata(L_, -1) != 0) return lua::documented(L_, -1).owner;
         const bool field = result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field;
-        const help::Section* section = field ? help::result_class(result.member->doc.signature) : result.section;
+        const help::Section* section = field ? help::section_of_result(result.member->doc.signature) : result.section;
         const bool known = lua_isnil(L_, -1) && (field || result.kind == Meaning::Kind::object);
         return known && section != nullptr ? section->description : nullptr;
     }
@@ -680,7 +680,7 @@ std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Tok
     for (const lua::Member& member : owner.kind == Meaning::Kind::object && owner.section != nullptr && names.empty()
                                          ? owner.section->description->members
                                          : std::span<const lua::Member>()) {
-        const help::Section* held = help::result_class(member.doc.signature);
+        const help::Section* held = help::section_of_result(member.doc.signature);
         if (member.kind == lua::Kind::field && held != nullptr &&
             held->description->name == std::string_view("vector")) {
             names.emplace_back(member.name);

@@ -105,7 +105,7 @@ LinesAbove::LinesAbove(std::string_view lines) {
 LinesAbove::~LinesAbove() {
     for (; count_ > 0 && history_length > 0; --count_) {
         HIST_ENTRY* const entry = remove_history(history_length - 1);
-        std::free(free_history_entry(entry));  // allocated by readline; only the entry's data remain
+        std::free(free_history_entry(entry));  // NOLINT: allocated by readline; only the entry's data remain
     }
     using_history();
 }

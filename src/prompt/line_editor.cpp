@@ -52,7 +52,7 @@ Editing editing;
 void accept(char* text) {
     editing.accepted = true;
     editing.line = text == nullptr ? TypedLine{} : TypedLine{Reading::line, text};
-    std::free(text);               // allocated by readline
+    std::free(text);               // NOLINT: allocated by readline
     rl_callback_handler_remove();  // now, before readline prints another prompt
 }
 
@@ -69,7 +69,7 @@ int finish_line(int count, int key) {
 }
 
 /// Accepts the suggestion on a right arrow at the end of the line.
-bool take_rest() {
+bool accept_suggestion() {
     if (rl_point != rl_end || editing.rest.empty() || !editing.hinting) {
         return false;
     }
@@ -77,10 +77,10 @@ bool take_rest() {
     return true;
 }
 int go_right(int count, int key) {
-    return take_rest() ? 0 : rl_forward_char(count, key);
+    return accept_suggestion() ? 0 : rl_forward_char(count, key);
 }
 int go_to_end(int count, int key) {
-    return take_rest() ? 0 : rl_end_of_line(count, key);
+    return accept_suggestion() ? 0 : rl_end_of_line(count, key);
 }
 
 /// Moves the cursor to the same column of the line above or below within an input of several lines.
@@ -364,7 +364,7 @@ const char* LineEditor::about() {
 
 LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
-// NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is not static
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): otherwise it is not static
 TypedLine LineEditor::read(const std::string& prompt, const std::string&, const std::string&) const {
     return read_plain(prompt);
 }

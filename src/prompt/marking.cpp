@@ -385,7 +385,7 @@ struct Marking {
     fs::path folder;  ///< hand-ins, absolute path
     fs::path marked;  ///< FOLDER-marked
     fs::path sheets;  ///< --sheets
-    double seconds;   ///< for each script
+    double seconds;   ///< time limit of a script
 };
 
 void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {

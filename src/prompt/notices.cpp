@@ -185,9 +185,7 @@ std::string local_notice(const std::string& text) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("local") && depth == 0) {
             for (const std::string_view name : declared(all, i)) {
-                if (script || uses(all, name) == 1)
-                    names.push_back(name);  // a used one has served its purpose in this
-                                            // line
+                if (script || uses(all, name) == 1) names.push_back(name);  // a used one did its work
             }
         }
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
@@ -308,7 +306,7 @@ int refuse_unknown(lua_State* L) {
 
 }  // namespace
 
-void tell_nil_option(lua_State* L) {
+void report_nil_option(lua_State* L) {
     const std::string notice = nil_option_now(L);
     if (!notice.empty()) say_notice(notice);
 }

@@ -37,7 +37,7 @@ std::string greatest_notice(lua_State* L, int index, const Chunk& chunk);
 void say_notice(const std::string& notice);
 
 /// For lua::look_at_options: reports an option that is nil because of a misspelt name, once for each line of a file.
-void tell_nil_option(lua_State* L);
+void report_nil_option(lua_State* L);
 
 /// --strict: makes unknown globals, also in options, errors.
 void be_strict(lua_State* L);

@@ -91,7 +91,7 @@ TypedLine read_plain(const std::string& prompt) {
     // The same FILE as io.read, so that Lua code can read the following lines.
     const ssize_t size = getline(&buffer, &capacity, stdin);
     std::string text(buffer == nullptr ? "" : buffer, size > 0 ? static_cast<std::size_t>(size) : 0);
-    std::free(buffer);  // allocated by getline
+    std::free(buffer);  // NOLINT: allocated by getline
     if (InterruptNote::interrupted()) {
         std::clearerr(stdin);
         say("\n");

@@ -30,7 +30,7 @@ enum class Place { alone, inside };
 constexpr std::size_t longest_string = 1000;
 constexpr std::size_t longest_inner_string = 60;
 constexpr std::size_t longest_text = 4000;  // a longer text of several lines is quoted
-constexpr int most_source_lines = 12;       // for a function
+constexpr int most_source_lines = 12;       // lines of a function
 
 int by_tostring(lua_State* L) {
     luaL_tolstring(L, 1, nullptr);
@@ -215,8 +215,8 @@ private:
 };
 
 constexpr std::size_t deepest = 3;            // nesting of tables; deeper ones are {...}
-constexpr std::size_t most_lines = 24;        // for one value,
-constexpr std::size_t most_joined_lines = 6;  // and for a long list of numbers
+constexpr std::size_t most_lines = 24;        // lines of a value,
+constexpr std::size_t most_joined_lines = 6;  // and of a long list of numbers
 
 bool is_fraction(lua_State* L, int index) {
     const double number = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : 0;

@@ -61,7 +61,7 @@ Aside aside(std::string_view line) {
 }
 
 /// Reminds of Ctrl-C if a line within a chunk looks like an attempt to leave.
-void tell_way_out(const Chunk& chunk, Aside found) {
+void remind_of_cancel(const Chunk& chunk, Aside found) {
     say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
                            found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
 }
@@ -88,7 +88,7 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
         const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
         const Aside found = in_text ? Aside::none : aside(more.text);
         if (found != Aside::none) {
-            tell_way_out(chunk, found);
+            remind_of_cancel(chunk, found);
             if (found != Aside::blank) {
                 continue;
             }
@@ -352,7 +352,7 @@ void Record::update() {
 }
 
 bool Record::sets_ans(const Entry& entry) {
-    return entry.result.values > 0 && !entry.result.first_nil && !only_looks(entry.chunk);
+    return entry.result.values > 0 && !entry.result.first_nil && !only_reads_variable(entry.chunk);
 }
 
 /// Returns whether ans is used before the next input sets it.
@@ -379,7 +379,7 @@ std::string Record::script(std::size_t first) const {
             const bool becomes_ans = sets_ans(entries_[i]);
             if (becomes_ans && (ans_is_used_after(i) || (chunk.silent && !is_call(expression)))) {
                 lines += "ans = " + expression + (chunk.silent ? "" : "\nprint(ans)");
-            } else if (chunk.silent && only_looks(chunk)) {
+            } else if (chunk.silent && only_reads_variable(chunk)) {
                 continue;  // it had no effect
             } else if (is_call(expression) && (chunk.silent || result.values == 0)) {
                 lines += expression;

@@ -233,7 +233,7 @@ void open(lua_State* L, const Arguments& arguments) {
     }
     arguments.safe ? lua::open_safe_libraries(L) : luaL_openlibs(L);
     help::open_library(L);
-    lua::look_at_options = tell_nil_option;
+    lua::look_at_options = report_nil_option;
     set_arg(L, arguments);
     if (arguments.strict) be_strict(L);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
@@ -305,7 +305,7 @@ void close_state(lua_State* L) {
 int run(const Arguments& arguments, Kernel kernel) {
     if (!arguments.lab_marks.empty()) {
         const char* script = arguments.has_script() ? arguments.words[arguments.script] : "-";
-        if (const auto wrong = lab::note_lab_answers(arguments.lab_marks, script)) {
+        if (const auto wrong = lab::start_answer_log(arguments.lab_marks, script)) {
             complain(wrong->sentence);
             return exit_code::script_error;
         }

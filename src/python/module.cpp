@@ -35,7 +35,7 @@ namespace {
 py::dict description_of(const lua::Member& member, std::size_t number) {
     constexpr const char* kinds[] = {"function", "method", "field", "metamethod"};
     constexpr const char* option_kinds[] = {"other", "number", "flag", "choice", "text", "numbers"};
-    const help::Section* result = help::result_class(member.doc.signature);
+    const help::Section* result = help::section_of_result(member.doc.signature);
     py::list options;
     for (const text::Call* call : help::calls_of(member.doc)) {
         const auto lines = help::option_lines(call->options);

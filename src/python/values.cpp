@@ -248,8 +248,7 @@ void text_to_lua(lua_State* L, PyObject* value) {
 
 /// Other types than Python's own numbers, texts, lists and dictionaries.
 void other_to_lua(lua_State* L, py::handle value, int depth) {
-    const bool is_array =
-        py::isinstance<py::array_t<double>>(value) && !py::hasattr(value, "filled");  // not a masked array
+    const bool is_array = py::isinstance<py::array_t<double>>(value) && !py::hasattr(value, "filled");  // not masked
     if (is_array && py::reinterpret_borrow<py::array>(value).ndim() == 1) {
         const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
         if (!array) throw py::error_already_set();

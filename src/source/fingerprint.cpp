@@ -194,7 +194,7 @@ void Fingerprint::table(int index) {
     };
     constexpr int deep_enough = std::tuple_size_v<decltype(sketches_)>;
     std::vector<Entry> entries;
-    std::uint64_t sum = 0;  // of other fields, independent of the order of lua_next
+    std::uint64_t sum = 0;  // digest of other fields, independent of the order of lua_next
     lua_pushnil(L_);
     while (lua_next(L_, index) != 0) {
         const Piece key = piece(-2), value = piece(-1);

@@ -57,9 +57,9 @@ private:
     std::uint64_t number_ = 0xcbf29ce484222325U;
     int objects_ = 0;                                          // index of a Lua table: identity -> known object
     std::unordered_map<const void*, std::uint64_t> standard_;  // values known by name
-    std::unordered_map<const void*, std::uint64_t> numbers_;   // of objects and variables, in the order of first visits
-    std::vector<const void*> order_;                           // of objects
-    std::array<std::unordered_map<const void*, std::uint64_t>, 2> sketches_;  // for each depth from 1
+    std::unordered_map<const void*, std::uint64_t> numbers_;   // numbers of objects and variables by first visit
+    std::vector<const void*> order_;                           // objects in the order of visits
+    std::array<std::unordered_map<const void*, std::uint64_t>, 2> sketches_;  // digests by depth, from 1
 };
 
 }  // namespace dinal::source

@@ -48,7 +48,7 @@ private:
     lua_State* L_;
     Aside aside_ = {};
     std::vector<std::string> globals_;
-    std::vector<std::string> names_;  // of globals finished or in progress
+    std::vector<std::string> names_;  // globals finished or in progress
     std::vector<const void*> open_;   // tables and functions in progress: a cycle has no text
     std::vector<std::string> remarks_;
     int budget_;  // number of values that may still be written

@@ -370,7 +370,7 @@ private:
 
     SweepWork& work_;
     std::vector<lua::OwnedState> states_;
-    std::deque<lua::WorkerWatch> watches_;  // of the threads
+    std::deque<lua::WorkerWatch> watches_;  // one for each thread
     std::mutex ending_;
     std::condition_variable ended_;
     std::size_t running_ = 0;
@@ -436,7 +436,7 @@ std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
 
 struct Failures {
     std::size_t count = 0;
-    std::string place, message;  ///< of the first failure: "r = 0.5, g = 1"
+    std::string place, message;  ///< the first failure: "r = 0.5, g = 1"
 };
 
 Failures failures_in(const Data& data, const PointGrid& grid) {
@@ -469,8 +469,7 @@ std::size_t most_workers(lua_State* L) {
 std::size_t worker_count(lua_State* L, const std::optional<double>& asked, std::size_t points) {
     const std::size_t cores = lua::in_worker() ? 1 : std::max(1U, std::thread::hardware_concurrency());
     const std::size_t asked_for = asked ? static_cast<std::size_t>(*asked) : cores;
-    const std::size_t wanted =
-        lua::memory_limit() > 0 ? std::min(asked_for, cores) : asked_for;  // each needs some memory
+    const std::size_t wanted = lua::memory_limit() > 0 ? std::min(asked_for, cores) : asked_for;  // each takes some
     return std::clamp<std::size_t>(std::min(wanted, most_workers(L)), 1, std::max<std::size_t>(points, 1));
 }
 

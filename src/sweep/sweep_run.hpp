@@ -82,7 +82,7 @@ private:
     std::map<std::string, std::vector<double>, std::less<>> columns_;
     std::map<std::size_t, std::string> failures_;
     std::vector<std::string> words_;
-    std::map<std::string, std::uint64_t, std::less<>> places_;  // of words, from 1
+    std::map<std::string, std::uint64_t, std::less<>> places_;  // indices of words, from 1
     std::vector<unsigned char> done_;
     std::vector<std::atomic<std::size_t>> done_in_chunk_;
 };
@@ -96,8 +96,7 @@ struct SweepTask {
     std::string file = {};                                           ///< empty: not stored
     double max_time = 0;                                             ///< time limit of a point, seconds; 0: none
     std::string mark = {};                                           ///< identifies a function of another language
-    std::optional<std::pair<std::size_t, std::size_t>> points = {};  ///< half-open range of points to be computed;
-                                                                     ///< none: all
+    std::optional<std::pair<std::size_t, std::size_t>> points = {};  ///< half-open range to compute; none: all
     std::vector<double> settings = {};                               ///< other inputs that determine the results
     /// Runs in a worker's state: replaces the copied function on the top by the function to be called.
     std::function<void(lua_State* worker)> adapt = {};

@@ -138,8 +138,7 @@ void Progress::advance(double reached) {
     const auto columns = static_cast<std::size_t>(screen.columns) - 1;
     const std::string text = progress_text(facts(), columns, screen.draws ? Letters::utf8 : Letters::ascii);
     erase();
-    write_line(text + "\r");  // the cursor returns to the start, as the terminal writes ^C there and would otherwise
-                              // wrap
+    write_line(text + "\r");  // to the start, so that the terminal's ^C does not wrap the line
     drawn = columns;
 }
 

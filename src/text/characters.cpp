@@ -38,8 +38,7 @@ Kind kind_of(utf8proc_int32_t code) {
 /// The first character of a non-empty text.
 Character first_of(std::string_view text) {
     Character first;
-    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // any bytes may be read as
-                                                                                       // unsigned
+    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: bytes are unsigned
     const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &first.code);
     if (size <= 0) {
         return {};

@@ -17,8 +17,7 @@ struct Letter {
 /// The first letter of the text.
 Letter letter_at(std::string_view text) {
     utf8proc_int32_t code = 0;
-    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // any bytes may be read as
-                                                                                       // unsigned
+    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: bytes are unsigned
     const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code);
     if (size <= 0) return {};
     const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);

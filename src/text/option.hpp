@@ -86,8 +86,7 @@ struct Option {
     std::span<const char* const> choices = {};  ///< as Lua strings, in the order of the enumerators
     bool instead_of_previous = false;           ///< exactly one of a group may be given: frequency | omega | period
     const char* object = "";                    ///< the Lua class whose constructors Tab offers: "integrator"
-    const char* wanted = "";                    ///< description for the kind `other`: "a system such as system{ I = 1,
-                                                ///< k = 39.5 }"
+    const char* wanted = "";                    ///< for `other`: "a system such as system{ I = 1, k = 39.5 }"
     Fields fields = {};
 };
 

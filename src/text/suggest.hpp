@@ -10,7 +10,7 @@ namespace dinal::text {
 /// A view of known names: any list of texts, which must outlive it.
 struct KnownNames {
     template <class List>
-    KnownNames(const List& list)  // accepts any list
+    KnownNames(const List& list)  // NOLINT(google-explicit-constructor): accepts any list
         : names(std::begin(list), std::end(list)) {}
     std::vector<std::string_view> names;
 };

@@ -59,8 +59,7 @@ double HalfCycles::until_within(double dead_zone, double X) const {
     constexpr double countable = 0x1p50;
     if (!(guess < countable)) return std::ceil(guess);
     double n = std::max(1.0, std::ceil(guess) - 1);
-    const double edge = dead_zone + 8 * std::numeric_limits<double>::epsilon() * size;  // the extremes are sums of
-                                                                                        // numbers of this size
+    const double edge = dead_zone + 8 * std::numeric_limits<double>::epsilon() * size;  // rounding of the extremes
     for (int i = 0; i < 4 && shrunk(n, size) > edge; ++i) ++n;  // the guess is off by at most a rounding
     return n;
 }

@@ -71,7 +71,7 @@ public:
 
     struct Sliding {
         theory::Motion2 motion;
-        double slope;  ///< of the velocity
+        double slope;  ///< slope of the velocity
     };
     [[nodiscard]] Sliding at(double x) const {
         const Complex load = product(forced_, phasor(sine_.r * x));
@@ -128,8 +128,8 @@ private:
     }
 
     SingleSine sine_;
-    Complex root_;                     // of the free motion, -zeta + iq
-    double step_;                      // of the search
+    Complex root_;                     // root of the free motion, -zeta + iq
+    double step_;                      // step of the search
     Complex forced_turn_, free_turn_;  // factors for one step
     Complex answer_;                   // response to the load
     double way_ = 1;

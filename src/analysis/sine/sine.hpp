@@ -19,7 +19,7 @@ struct SingleSine {
     double r = 0, zeta = 0;
     double sliding = 0, holding = 0;  ///< Rd/M0 and Re/M0
     double spare = 0;                 ///< 1 - Re/M0 without loss of digits
-    double phase = 0;                 ///< of the load when the drive starts
+    double phase = 0;                 ///< phase of the load when the drive starts
     double unit = 1, omega0 = 1;      ///< M0/k and w0
 
     [[nodiscard]] model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }

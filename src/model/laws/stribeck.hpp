@@ -20,7 +20,7 @@ struct Stribeck {
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v == 0) return breakaway;
         constexpr double farthest = 20;  // limits the exponent below speed 0, where odd powers grow
-        const double exponent = power(v);
+        const double exponent = speed_ratio_power(v);
         const bool grows = v < 0 && std::fmod(shape, 2) == 1;
         return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(exponent, farthest) : -exponent);
     }
@@ -38,7 +38,7 @@ struct Stribeck {
 
 private:
     /// (|v|/speed)^shape
-    [[nodiscard]] double power(double v) const {
+    [[nodiscard]] double speed_ratio_power(double v) const {
         const double x = std::fabs(v / speed);
         return shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
     }
@@ -62,13 +62,13 @@ inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribec
 
 inline double Stribeck::slope(double v) const {
     if (v == 0) return 0;
-    const double exponent = power(v);
+    const double exponent = speed_ratio_power(v);
     return -(breakaway - kinetic) * shape * exponent / v * std::exp(-exponent);
 }
 /// Measured: 4.5 speeds for shape 1, 1.26 for shape 2, 0.7 for shape 3; wider where less of the difference is left.
 inline double Stribeck::scale(double v) const {
     constexpr double at_zero = 4.5, narrower = 1.83, less = 20;
-    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(power(v), 4 * less) / less);
+    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(speed_ratio_power(v), 4 * less) / less);
 }
 inline std::optional<text::Error> Stribeck::complaint() const {
     if (auto wrong = wrong_torques("", kinetic, breakaway)) return wrong;

@@ -14,9 +14,8 @@
 namespace dinal::model::laws {
 
 struct UserLaw {
-    std::shared_ptr<terms::UserFunction> function;  ///< of the speed, never called below 0
-    double at_zero = 0;                             ///< its value at speed 0, cached: some callers must not run user
-                                                    ///< code
+    std::shared_ptr<terms::UserFunction> function;  ///< function of the speed, never called below 0
+    double at_zero = 0;                             ///< its value at speed 0, cached for callers without Lua
     std::optional<double> breakaway = {};           ///< Re; by default at_zero
 
     static constexpr bool depends_on_speed = true;

@@ -10,7 +10,7 @@
 namespace dinal::model::springs {
 
 struct UserSpring {
-    std::shared_ptr<terms::UserFunction> function;  ///< of theta
+    std::shared_ptr<terms::UserFunction> function;  ///< function of theta
 
     /// NaN if the function fails.
     [[nodiscard]] double torque(double theta) const { return function->value(theta, {}); }

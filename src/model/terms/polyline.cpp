@@ -8,10 +8,10 @@ namespace dinal::model::terms {
 namespace {
 
 /// The tolerance, as a part of the period, for a last point that repeats the first one.
-constexpr double comes_again = 1e-9;
+constexpr double closing_tolerance = 1e-9;
 
 bool closes_period(const Samples& s) {
-    return s.t.size() > 1 && std::fabs(s.t.back() - s.t.front() - *s.period) <= comes_again * *s.period;
+    return s.t.size() > 1 && std::fabs(s.t.back() - s.t.front() - *s.period) <= closing_tolerance * *s.period;
 }
 
 double range_of(const std::vector<double>& values) {
@@ -32,7 +32,7 @@ std::shared_ptr<const Samples> Polyline::prepared(std::shared_ptr<const Samples>
     if (!points || (!cubic && !points->period) || !points->slopes.empty() || !is_well_formed(*points)) return points;
     Samples made = *points;
     if (made.period && closes_period(made) &&
-        std::fabs(made.M.back() - made.M.front()) <= comes_again * range_of(made.M)) {
+        std::fabs(made.M.back() - made.M.front()) <= closing_tolerance * range_of(made.M)) {
         made.t.pop_back();
         made.M.pop_back();
     }

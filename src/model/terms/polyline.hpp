@@ -21,7 +21,7 @@ struct Samples {
     std::optional<double> period = {};  ///< after which the points repeat
     std::string origin = {};            ///< source in words for the user; not used by the core
     double delay = 0;                   ///< how much later `t` is than the original times
-    std::vector<double> slopes = {};    ///< of a cubic spline at the points, computed
+    std::vector<double> slopes = {};    ///< slopes of a cubic spline at the points, computed
 };
 inline constexpr text::Option between_options[] = {
     {.name = "interpolation",

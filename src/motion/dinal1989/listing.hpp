@@ -145,9 +145,11 @@ private:
     }
 
     /// B SG(Y)
-    [[nodiscard]] double dry(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
+    [[nodiscard]] double dry_friction_term(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
     // NOTE: the sum is grouped so as to shorten the chain of dependent operations.
-    [[nodiscard]] double Q2(double X, double Y, double Z) const { return K * ((Z - C * X) - (dry(Y) + A * Y)); }
+    [[nodiscard]] double Q2(double X, double Y, double Z) const {
+        return K * ((Z - C * X) - (dry_friction_term(Y) + A * Y));
+    }
 
     /// The four stages; `f(stage, X, Y)` returns F.
     template <class Force>

@@ -21,7 +21,7 @@ struct Kept {
     double h = 0;       ///< half of the solved length
     double length = 0;  ///< length used, at most 2 h
     std::vector<double> begin{};
-    std::vector<Series> series{};  ///< for each angle, velocity and state, minus `begin`
+    std::vector<Series> series{};  ///< each angle, velocity and state, minus `begin`
     /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the push of the base
     /// on the body.
     struct Acting {

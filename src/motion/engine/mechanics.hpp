@@ -39,18 +39,18 @@ struct Slipping {
 };
 
 struct Mode {
-    std::vector<Slipping> friction;  ///< for each joint
-    std::vector<int> leans;          ///< for each joint: 1 at its upper wall, -1 at its lower one, otherwise 0
+    std::vector<Slipping> friction;  ///< friction state of each joint
+    std::vector<int> leans;          ///< each joint: 1 at its upper wall, -1 at its lower one, otherwise 0
 
     [[nodiscard]] bool holds(std::size_t joint) const {
         return keeps_place(joint) || (friction[joint].way == model::Motion::stuck && rubs[joint]);
     }
     /// Returns whether the joint holds its angle, not only its velocity.
     [[nodiscard]] bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
-    std::vector<char> rubs;                   ///< for each joint: whether it has dry friction and is pressed together
-    std::vector<char> rigid;                  ///< for each joint: whether it is rigid
-    std::vector<model::Motion> sliders = {};  ///< for each slider: its direction of sliding
-    std::vector<int> presses;  ///< for each joint: 1 on its upper elastic wall, -1 on its lower one, otherwise 0
+    std::vector<char> rubs;                   ///< each joint: whether it has dry friction and is pressed together
+    std::vector<char> rigid;                  ///< each joint: whether it is rigid
+    std::vector<model::Motion> sliders = {};  ///< direction of sliding of each slider
+    std::vector<int> presses;  ///< each joint: 1 on its upper elastic wall, -1 on its lower one, otherwise 0
 };
 
 /// The degrees of freedom of the bodies while the joints that hold in a mode hold. A group is one of them: its bodies
@@ -70,11 +70,11 @@ struct Frame {
     Frame(const model::System& system, const Mode& mode);
 
     std::vector<Shape> bodies, joints;
-    std::vector<double> inertia;          ///< for each group
+    std::vector<double> inertia;          ///< inertia of each group
     std::vector<Edge> edges;              ///< ordered: the other bodies of an edge come first
     std::vector<std::size_t> closing;     ///< holding joints that close loops
     std::vector<std::size_t> redundant;   ///< those of them that follow from the others
-    Eigen::MatrixXd sharing;              ///< in loops: share of each holding joint in the torques on bodies
+    Eigen::MatrixXd sharing;              ///< with loops: share of each holding joint in the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< the joints of its rows
 
     [[nodiscard]] std::size_t groups() const { return inertia.size(); }

@@ -16,7 +16,7 @@ std::vector<model::Oscillator> modes_of(const model::System& system);
 
 struct EigenMode {
     std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
-    std::vector<std::complex<double>> shape{};  ///< for each body; the greatest is 1
+    std::vector<std::complex<double>> shape{};  ///< amplitude of each body; the greatest is 1
 };
 
 /// Returns the modes of small motions about an equilibrium, searched from theta0, or about steady sliding: contacts on

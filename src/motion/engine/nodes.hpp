@@ -36,7 +36,7 @@ enum class Side { before, at, after };
 
 /// The nodes of a stretch.
 struct NodeTimes {
-    Nodes times{}, rests{};  ///< and their rounding errors
+    Nodes times{}, rests{};  ///< times, and their rounding errors
     double h = 0;            ///< half of its length
     bool from_break = false, to_break = false;
 

@@ -80,7 +80,7 @@ bool rubs(const model::Joint& joint) {
 
 /// Returns whether every turn of the joint's angle is an event. Not on a belt, nor without own dry friction if its
 /// bodies rub elsewhere; an impact at another joint may also reverse this one.
-bool tells_turns(const model::System& system, const model::Drive& drive, std::size_t joint) {
+bool turns_are_events(const model::System& system, const model::Drive& drive, std::size_t joint) {
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
     return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
@@ -128,7 +128,7 @@ Trajectory part_of(const model::System& system, const model::Drive& drive, const
     part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
     part.began_stuck = run.begun.holds(joint);
     part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
-    part.on_belt = !tells_turns(system, drive, joint);
+    part.on_belt = !turns_are_events(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
     if (system.joints[joint].stops) part.restitution = -1;  // elastic walls have no restitution
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);

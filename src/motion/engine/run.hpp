@@ -22,10 +22,10 @@ struct Carry {
     std::vector<double> y;
     std::vector<double> low;  ///< rounding errors of the angles; may be empty
     Mode mode;
-    std::vector<std::vector<Signal::Memory>> controllers;  ///< for the loads of each body
-    std::vector<Watch> watches;                            ///< for the user's events; may be empty
+    std::vector<std::vector<Signal::Memory>> controllers;  ///< memory of the loads of each body
+    std::vector<Watch> watches;                            ///< state of the user's events; may be empty
     std::vector<std::pair<double, int>> echoes;            ///< breaks that delays repeat
-    std::vector<model::Motion> heading;                    ///< for bodies without dry friction; may be empty
+    std::vector<model::Motion> heading;                    ///< directions without dry friction; may be empty
     std::shared_ptr<const History> past;
     double born = 0;   ///< start of the first of these runs
     Floor floor = {};  ///< may be empty
@@ -40,15 +40,15 @@ struct Run {
     std::vector<double> initial = {};  ///< all angles, velocities and states at the start
     double gap = 0;                    ///< longest distance between two samples of a user's function, time units
     double unproven = 0;               ///< the longest stretch in which formulas may do more than was sampled
-    model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
+    model::Motion motion_at_stop = model::Motion::stuck;  ///< motion of the first body
     Mode begun = {};                                      ///< mode of the contacts at the start
     bool located = false;                                 ///< whether all conditions on the motion were located
     std::size_t jumps = 0;                                ///< number of jumps at these conditions
-    double noise = 0;                                     ///< of the noisiest load, torque
-    std::optional<Rough> rough = {};                      ///< for Outcome::unresolved, if known
+    double noise = 0;                                     ///< noise of the noisiest load, torque
+    std::optional<Rough> rough = {};                      ///< cause of Outcome::unresolved, if known
     std::shared_ptr<const History> history;
     std::shared_ptr<const Carry> carry;
-    std::optional<model::Contradiction> contradiction = {};  ///< for Outcome::not_a_function
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
 };
 inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
 /// t; theta, velocity, M, friction, damping and acceleration of each body; theta, velocity, torque and friction of each

@@ -19,7 +19,7 @@ constexpr double rho = 5.82842712474619, greatest_power = 6.16227766016838;  // 
 constexpr double power(double x, std::size_t n) {
     return n == 0 ? 1 : x * power(x, n - 1);
 }
-constexpr double falls(std::size_t n) {
+constexpr double decay_of_error(std::size_t n) {
     return 4 / (power(rho, n) * (rho - 1));
 }
 
@@ -35,7 +35,7 @@ constexpr Series growth = [] {
 
 /// A bound of how far a polynomial deviates in the disc from its value in the middle. Trailing terms that may be
 /// rounding are dropped, as they would grow.
-double strays(const Series& series) {
+double deviation_in_disc(const Series& series) {
     const double noise = 4 * rounding * cheb::size(series);
     std::size_t last = node_count - 1;
     while (last > 0 && std::fabs(series[last]) <= noise) --last;
@@ -61,16 +61,15 @@ Series on_part(const Series& series, double middle, double half) {
 
 bool Unseen::is_told(double allowed, double part) {
     constexpr double close = 1e-9;
-    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // other conditions change at breaks
-                                                                                    // only
+    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // others change at breaks only
     walk_.begin(*formula_, piece_, ranges);
     for (const Input& input : inputs_) {
-        walk_.set(input.place, {cheb::value(input.series, 0), strays(input.series)},
+        walk_.set(input.place, {cheb::value(input.series, 0), deviation_in_disc(input.series)},
                   ranges ? range(input.series) : Interval{});
     }
     const auto told = walk_.run();
-    return falls(cheb::degree) * told.disc.r <= std::max(allowed, part * std::fabs(told.disc.c)) &&
-           told.apart <= allowed && falls(cheb::degree) * walk_.loosest() <= close;
+    return decay_of_error(cheb::degree) * told.disc.r <= std::max(allowed, part * std::fabs(told.disc.c)) &&
+           told.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
 double Unseen::value(double x) {
@@ -86,7 +85,7 @@ void Unseen::sample() {
 }
 
 /// Returns a bound of the deviation in this part, 0 if it is allowed; sets `place` if a sample deviates by more.
-double Unseen::look(const Part& part, double allowed, std::optional<double>& place) {
+double Unseen::deviation_on(const Part& part, double allowed, std::optional<double>& place) {
     const auto strays_at = [&](double x, double found) {
         const bool strays = std::fabs(found - cheb::value(series_, x)) > allowed;
         if (strays) place = x;
@@ -94,7 +93,7 @@ double Unseen::look(const Part& part, double allowed, std::optional<double>& pla
     };
     for (const Input& input : inputs_) {
         const Series own = on_part(input.series, part.middle, part.half);
-        walk_.set(input.place, {cheb::value(own, 0), strays(own)}, range(own));
+        walk_.set(input.place, {cheb::value(own, 0), deviation_in_disc(own)}, range(own));
     }
     const auto told = walk_.run(condition_);
     const bool decided = told.disc.c == told.disc.c;
@@ -104,16 +103,16 @@ double Unseen::look(const Part& part, double allowed, std::optional<double>& pla
     const double off = std::max(told.range.hi - known.lo, known.hi - told.range.lo);
     if (off <= allowed) return 0;
     const bool whole = part.half == 1;
-    const double r = told.disc.r + (whole ? 0 : strays(own));
+    const double r = told.disc.r + (whole ? 0 : deviation_in_disc(own));
     for (const std::size_t n : {std::size_t{4}, std::size_t{8}, std::size_t{16}}) {
-        if ((whole && n < cheb::degree) || !(falls(n) * r <= allowed && told.apart <= allowed)) continue;
+        if ((whole && n < cheb::degree) || !(decay_of_error(n) * r <= allowed && told.apart <= allowed)) continue;
         for (std::size_t j = 0; j < node_count && !whole; j += cheb::degree / n) {
             const double x = part.middle + part.half * cheb::nodes[j];
             if (strays_at(x, value(x))) return model::never;
         }
         return 0;
     }
-    return std::min(off, told.apart + falls(cheb::degree) * r);
+    return std::min(off, told.apart + decay_of_error(cheb::degree) * r);
 }
 
 Unseen::Found Unseen::search(double allowed, int budget) {
@@ -125,7 +124,7 @@ Unseen::Found Unseen::search(double allowed, int budget) {
         if (found.place) return;
         Part part{middle, half, 0};
         ++looks;
-        part.off = look(part, allowed, found.place);
+        part.off = deviation_on(part, allowed, found.place);
         if (part.off > 0) open.push(part);
     };
     add(0, 1);

@@ -52,7 +52,7 @@ private:
     void sample();
     [[nodiscard]] Found search(double allowed, int budget);
     [[nodiscard]] double value(double x);
-    [[nodiscard]] double look(const Part& part, double allowed, std::optional<double>& place);
+    [[nodiscard]] double deviation_on(const Part& part, double allowed, std::optional<double>& place);
 
     model::Formula* formula_ = nullptr;
     const model::terms::Piece* piece_ = nullptr;

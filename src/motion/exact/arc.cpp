@@ -45,7 +45,7 @@ double Arc::begin(const model::ClosedForm& M, const Start& start, double length)
 bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double length) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
     velocity_.clear();
-    double theta = 0, velocity = start.velocity;  // of the free motion
+    double theta = 0, velocity = start.velocity;  // the free motion's
 
     double still = start.pull;
     for (const auto& sine : M.sines()) still -= sine.quadrature;
@@ -90,7 +90,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
                  .fourth_growing = size * to.fourth_growing,
                  .fourth_turning = size * to.fourth_turning + length_of(held) * (square * square)});
             theta -= turning.imag();
-            velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // of turning times conj lambda
+            velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // Im(turning conj lambda)
             continue;
         }
         const Complex way = times(F, to.gain);

@@ -262,8 +262,7 @@ double WalkedCurve::growing_bound(double until) const {
     }
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        const double g = length_of(now_->resonances[j][0]) + (until - place_);  // bounds |g|, as |g'| <= 1 minus a
-                                                                                // decay
+        const double g = length_of(now_->resonances[j][0]) + (until - place_);  // |g'| <= 1 minus a decay
         bound += r.fourth_growing * g + r.fourth_turning;
     }
     return bound;

@@ -97,7 +97,7 @@ public:
         next_place_ = tau;
         return there_ = turn(start_, turn_by(tau), *next_, tau);
     }
-    void go() {
+    void accept_look() {
         now_ = next_;
         next_ = next_ == &first_ ? &second_ : &first_;
         place_ = next_place_;
@@ -151,7 +151,7 @@ private:
         double tau;
         std::size_t row;
         Complex root;
-        double along, moved, kept, bent;  // of the free motion
+        double along, moved, kept, bent;  // coefficients of the free motion
     };
     static constexpr std::uint8_t none = 255;
     static constexpr std::size_t habits = 4;

@@ -47,11 +47,11 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
 }
 
 model::Outcome ExactEngine::run() {
-    ask_M();
+    update_M();
     bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
         if (cost_ >= cost_between_questions && asked_to_stop(clock_.hi)) {
-            if (standstill_.phase() == Standstill::Phase::arrived) ask();
+            if (standstill_.phase() == Standstill::Phase::arrived) decide();
             break;
         }
         alive = advance();
@@ -68,14 +68,14 @@ bool ExactEngine::asked_to_stop(double t) {
 }
 
 /// Updates the formula of M and its value.
-void ExactEngine::ask_M() {
+void ExactEngine::update_M() {
     if (clock_.hi >= piece_end_) piece_end_ = std::min(excitation_.next_break(clock_.hi), window_.end);
     model::closed_form(excitation_, clock_.hi, clock_.lo, formula_);
     M_ = formula_.value();
 }
 
 bool ExactEngine::advance() {
-    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!standstill_.stuck()) return move();
     return standstill_.for_good(moment()) ? rest_until_end() : stay();
@@ -101,7 +101,7 @@ bool ExactEngine::rest_until_end() {
 
 void ExactEngine::finish() {
     while (rows_.next_time() < model::never) put_row();
-    if (standstill_.phase() == Standstill::Phase::arrived) ask();
+    if (standstill_.phase() == Standstill::Phase::arrived) decide();
     if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
@@ -135,7 +135,7 @@ bool ExactEngine::move() {
     std::optional<double> zero;
     if (!standstill_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.never_left(moment()));
+        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.failed_to_leave(moment()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
@@ -148,7 +148,7 @@ bool ExactEngine::move() {
     const double M_before = at_break ? formula_.value(tau) : 0;  // limit from the left
     if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
     theta_rest_ = theta.lo;
-    if (crept) settle();
+    if (crept) snap_to_equilibrium();
     if (zero && standstill_.creep({clock_.hi, y_.theta, at_break ? M_before : M_})) return true;
     if (zero) {
         standstill_.arrive();
@@ -210,7 +210,7 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
 }
 
 /// Puts a mass that has crept within rounding of its equilibrium exactly there: the limit of sticking if Re = Rd.
-void ExactEngine::settle() {
+void ExactEngine::snap_to_equilibrium() {
     const double torques = std::fabs(M_) + system_.stiffness() * std::fabs(y_.theta) + system_.greatest_holding();
     const double place = (M_ - system_.braking(standstill_.motion())) / system_.stiffness();
     if (!(std::fabs(place - y_.theta) <= 64 * epsilon * torques / system_.stiffness())) return;
@@ -234,11 +234,11 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const double third = (formula_.bend() - system_.damping() * second - k * first) / I;
         const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
         if (way == model::Motion::stuck) return;
-        const bool told = standstill_.motion() == model::Motion::stuck || standstill_.last_told() == clock_.hi;
-        if (way != standstill_.motion()) told ? standstill_.head(way) : standstill_.turned(moment());
+        const bool told = standstill_.motion() == model::Motion::stuck || standstill_.last_event_time() == clock_.hi;
+        if (way != standstill_.motion()) told ? standstill_.set_direction(way) : standstill_.turned(moment());
         if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
     } else if (standstill_.motion() == model::Motion::stuck) {
-        standstill_.head(model::motion_of(y_.velocity));
+        standstill_.set_direction(model::motion_of(y_.velocity));
     }
     // Tries the previous interval between turns first, otherwise walks.
     bool behind = false;  // whether the walk is at or before the last turn
@@ -269,7 +269,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
         standstill_.turned({clock_.after(turn), theta, formula_.value(turn)});
         if (behind && !velocity.asked_ahead()) velocity.look_at(turn);
-        velocity.go();
+        velocity.accept_look();
     }
 }
 
@@ -283,7 +283,7 @@ bool ExactEngine::end_arc(double tau, model::State state, double start_pull) {
     const bool whole = clock_.after(tau) >= piece_end_;
     clock_ = whole ? Clock{piece_end_, 0} : clock_.later(tau);
     y_ = state;
-    ask_M();
+    update_M();
     return outcome_ != model::Outcome::interrupted;
 }
 

@@ -40,9 +40,10 @@ private:
     void finish();
     [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
-    bool ask() {
-        if (const double theta = standstill_.arrived_at(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
-        return standstill_.ask(moment());
+    bool decide() {
+        if (const double theta = standstill_.place_at_stop(moment()); theta != y_.theta)
+            y_.theta = theta, theta_rest_ = 0;
+        return standstill_.decide(moment());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
@@ -67,13 +68,13 @@ private:
     /// The first zero of the velocity, or the time at which a creep is detected.
     std::optional<double> stop(double start_pull, double length, bool& crept, bool& left);
     void record_turns(double start_pull, double length);
-    void settle();
+    void snap_to_equilibrium();
 
     // Advances the present to `tau` after the beginning of the arc.
     bool end_arc(double tau, model::State state, double start_pull);
     bool rows_until(double& tau, model::State& end, bool standing);
     void keep(double tau, double start_pull, bool standing);
-    void ask_M();
+    void update_M();
     void put_row() { rows_.put(y_, M_, model::friction_torque(system_, standstill_.motion(), M_, y_)); }
 
     // exact_stuck.cpp: the mass at rest.
@@ -114,7 +115,7 @@ private:
     Habit* rest_ = rests_.data();
     Creep creep_;
     double creep_hold_;
-    double bound_ = 0;  // of the fourth derivative of the velocity
+    double bound_ = 0;  // bound of the velocity's fourth derivative
     std::optional<double> pull_at_release_ = {};
     Standstill standstill_;
     model::ClosedForm formula_;

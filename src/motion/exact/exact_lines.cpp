@@ -67,7 +67,7 @@ bool ExactEngine::along_lines() {
     standing ? rest_along(until) : move_along(until);
     if (clock_.hi == began) return false;
     if (standing && arcs_ != nullptr) arcs_->add({.start = {began, 0}, .length = clock_.hi - began, .begin = y_});
-    ask_M();
+    update_M();
     return true;
 }
 

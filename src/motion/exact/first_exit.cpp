@@ -58,12 +58,12 @@ bool FirstExit::creeps_from_here(double until) {
     const double hidden = curve_.fourth_bound(until) * (h * h) * (h * h) * hermite;
     const Hull cubic = hull(here, curve_.look_at(from + h), h);
     if (!slow(std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden)) return false;
-    curve_.go();
+    curve_.accept_look();
     return crept_ = true;
 }
 
 /// The length of a look outside the table.
-double FirstExit::odd_length(double bound, int level, double left, int finer) const {
+double FirstExit::untabulated_length(double bound, int level, double left, int finer) const {
     if (bound == 0) return std::ldexp(left, -finer);  // a polynomial of low degree has no error
     constexpr int last = WalkedCurve::levels - 1;
     return std::ldexp(curve_.length(last), last - level);
@@ -93,7 +93,7 @@ std::optional<Exit> FirstExit::search(double until) {
         if (is_far) beyond = finer + 1;
         const int level = level_ + finer - beyond;
         const bool tabled = bound != 0 && !is_far && level < WalkedCurve::levels;
-        double h = tabled ? curve_.length(level) : is_far ? h_far : odd_length(bound, level, left, finer);
+        double h = tabled ? curve_.length(level) : is_far ? h_far : untabulated_length(bound, level, left, finer);
         WalkedCurve::Value there;
         if (tabled && h < left) {
             there = curve_.look(level);
@@ -106,13 +106,13 @@ std::optional<Exit> FirstExit::search(double until) {
         if (h >= creep_.shortest) {
             const double speed = std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden;
             if (speed * (creep_.damping + creep_.inertia / h) <= creep_.least) {
-                curve_.go();
+                curve_.accept_look();
                 crept_ = true;
                 return {};
             }
         }
         if (cubic.low - hidden > band_.low + rounding && cubic.high + hidden < band_.high - rounding) {
-            curve_.go();
+            curve_.accept_look();
             finer = 0;
             continue;
         }
@@ -137,10 +137,10 @@ std::optional<Exit> FirstExit::search(double until) {
             const double lowest = at_here ? here.f : there.f;
             if (margin(lowest) <= rounding) {
                 const Exit touch{at_here ? from : from + h, lowest - band_.low < band_.high - lowest ? -1 : 1, false};
-                curve_.go();
+                curve_.accept_look();
                 return touch;
             }
-            curve_.go();
+            curve_.accept_look();
             finer = 0;
             continue;
         }
@@ -267,7 +267,7 @@ void FirstExit::depart(double from, const WalkedCurve::End& start, double until)
         const double last = std::isinf(band_.high) ? 3 * b2 + there.f : -(3 * b2 + there.f);
         if (middle > bound_ * (h * h) * (h * h) * (1.0 / 72) && last > 0 && margin(there.f) > 0) break;
     }
-    curve_.go();
+    curve_.accept_look();
 }
 
 double FirstExit::step_by_step(double from, double to, double guess, double edge, int side) {
@@ -307,7 +307,7 @@ bool FirstExit::leave(double first, double second, double third, double until) {
         } else {
             curve_.look_at(s);
         }
-        curve_.go();
+        curve_.accept_look();
         return true;
     }
     return false;

@@ -95,7 +95,7 @@ public:
 
 private:
     struct Hull {
-        double low, high;   ///< of the cubic
+        double low, high;   ///< range of the cubic
         double d0, d1, d2;  ///< differences of its coefficients
         /// Their deviation from a straight line.
         [[nodiscard]] double bend() const { return std::max(std::fabs(d1 - d0), std::fabs(d2 - d1)); }
@@ -108,7 +108,7 @@ private:
                                         double edge) const;
     struct Zero {
         double tau;
-        bool exact;  ///< to rounding
+        bool exact;  ///< whether it is exact to rounding
     };
     Zero near(double guess, const WalkedCurve::Jet& y, double edge, double bound);
     struct Doubt {
@@ -123,7 +123,7 @@ private:
     void choose_level(double bound, double rounding);
     [[nodiscard]] double farthest_look(double bound, double rounding) const;
     [[nodiscard]] double far_from_edges(double rounding) const;
-    [[nodiscard]] double odd_length(double bound, int level, double left, int finer) const;
+    [[nodiscard]] double untabulated_length(double bound, int level, double left, int finer) const;
     [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 
     WalkedCurve& curve_;

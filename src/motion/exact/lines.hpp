@@ -62,7 +62,7 @@ private:
 
     double inertia_, damping_, stiffness_, per_inertia_, per_w0_, longest_;
     double length_ = 0;
-    std::array<double, 3> way_{}, velocity_{};  // for unit velocity, pull and slope
+    std::array<double, 3> way_{}, velocity_{};  // responses to unit velocity, pull and slope
 };
 
 }  // namespace dinal::motion::exact

@@ -45,7 +45,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     while (t_ < end) {
-        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
+        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
         if (standstill_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
@@ -92,10 +92,10 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
         return model::State{y_.theta + h * v, y_.velocity + h * a};
     };
     const auto M = [&](double t, const model::State& y) {
-        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_its_way(y) : y);
+        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_side_of_motion(y) : y);
     };
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_its_way(y_)) : M_);
+    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_side_of_motion(y_)) : M_);
     const model::State y2 = along(length / 2, y_.velocity, a0);
     const double a2 = acceleration_at(y2, M(half, y2));
     const model::State y3 = along(length / 2, y2.velocity, a2);
@@ -122,7 +122,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
             if (!standstill_.creep(moment())) standstill_.arrive();
             return finite();
         }
-        if (!standstill_.creep(moment()) && !go_on(standstill_.never_left(moment()))) return false;
+        if (!standstill_.creep(moment()) && !go_on(standstill_.failed_to_leave(moment()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
         standstill_.go_on();
@@ -219,14 +219,14 @@ void Rk4Engine::record_turns(double t, double h, double direction, const model::
         if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
         y = {motion(x).theta, 0};
         a = slope;
-        standstill_.head(model::motion_of(direction));
+        standstill_.set_direction(model::motion_of(direction));
         standstill_.turned({t + x, y.theta, excitation_.value(t + x, y)});
         direction = -direction;
         if (x >= h) break;
         from = x;
     }
     // The next step begins with the velocity at the end of this one, whatever zeros were found.
-    standstill_.head(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
+    standstill_.set_direction(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
 }
 
 }  // namespace dinal::motion::rk4

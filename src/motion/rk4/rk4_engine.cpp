@@ -19,7 +19,7 @@ std::size_t step_count(const Window& window, double h) {
 /// at every second one.
 // NOTE: a step too long for its system may have as many genuine events, so this applies to short steps only.
 double at_once(const Problem& problem, double h) {
-    constexpr double a_piece = 1.0 / 256;  // of a step, far below the distance of real events
+    constexpr double a_piece = 1.0 / 256;  // part of a step, far below the distance of real events
     const bool is_short = h * h * (problem.system.stiffness() / problem.system.inertia()) < 0.01;
     return problem.drive.M().has_feedback() && is_short ? 2 * h : a_piece * h;
 }
@@ -152,8 +152,7 @@ void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
 std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direction) {
     const AffineStep m = full_;
     double theta = block_.theta[i], velocity = block_.velocity[i];
-    double uphill = direction * ((block_.forcing[i] - m.c * velocity) - m.w * theta);  // acceleration in the direction
-                                                                                       // of motion
+    double uphill = direction * ((block_.forcing[i] - m.c * velocity) - m.w * theta);  // acceleration along the motion
     for (; i < stop; ++i) {
         const double theta1 = (theta + block_.push_theta[i]) + (m.r11 * theta + m.r12 * velocity);
         const double velocity1 = (velocity + block_.push_velocity[i]) + (m.r21 * theta + m.r22 * velocity);

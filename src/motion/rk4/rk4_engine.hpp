@@ -99,9 +99,9 @@ private:
     }
     [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
-    bool ask() {
-        y_.theta = standstill_.arrived_at(moment());
-        return standstill_.ask(moment());
+    bool decide() {
+        y_.theta = standstill_.place_at_stop(moment());
+        return standstill_.decide(moment());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) {

@@ -28,7 +28,7 @@ struct Scene {
     std::optional<model::Walls> walls = {};
     bool spring = true;
     bool belt = false;
-    std::string name = {};  ///< of a body among several
+    std::string name = {};  ///< name of a body among several
     std::string theta_unit = "rad", t_unit = {};
 
     [[nodiscard]] double at(double theta) const { return (theta - reach.low) / reach.length(); }
