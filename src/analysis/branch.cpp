@@ -18,7 +18,7 @@ constexpr double creeping = 1e-4;     // the walk ends after many steps this sho
 constexpr int most_creeps = 40;
 constexpr double least_slope = 1e-7;  // least |dp/ds| beside a fold
 constexpr double upright = 1e-6;      // error of dp/ds; below it the branch is vertical
-constexpr double dying = 1e-2;        // part of the greatest motion: lower limit of the units
+constexpr double dying = 1e-2;        // the smallest unit, as a part of the greatest motion
 constexpr double vanishes = 1e-3;     // a smaller cycle is a rest
 constexpr double boundless = 1e8;     // a motion grown by this factor is at a resonance without a periodic motion
 

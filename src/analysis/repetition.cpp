@@ -226,7 +226,7 @@ std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Re
             const double t = probe(repeats, i);
             const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
             const double now = value(t, y), later = value(t + repeats.period, y);
-            if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs report it
+            if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs report the error
             most = std::max({most, std::fabs(now), std::fabs(later)});
             if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t, before = now, after = later;
         }

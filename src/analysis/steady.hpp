@@ -85,7 +85,7 @@ struct SteadyMotion {
     double residual = 0;                                     ///< residual of the fixed point, in amplitudes
     model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
-    std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, if there is more than a state
+    std::shared_ptr<const motion::Trajectory> settled = {};  ///< run of one period, for motions found by returns
     std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run is `settled`; null: the end of a run
     // For motions found by returns:
     std::vector<BodyMotion> bodies = {};

@@ -263,7 +263,7 @@ int scripted(lua_State* L) {
 
 // ---- the functions
 
-/// A term's constructor in Lua: from one table of options, except for the two above.
+/// A term's constructor in Lua: from one table of options, except for samples and scripted.
 template <class T>
 struct Maker {
     static constexpr text::FixedText<96> signature{T::about.call.name, "{ OPTIONS } -> excitation"};

@@ -617,7 +617,7 @@ private:
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
             const bool of_start = name == before + "theta0" || name == before + "velocity0";
-            if (of_start && !system_.is_link(j)) return;  // fitted unless given
+            if (of_start && !system_.is_link(j)) return;  // the start is fitted unless given
             if (name == before + "offset") one.typical = 0.1 * angle_, found = true;
             change_numbers(system_, j, [&](const std::string& own, double& number, Sign sign) {
                 known.push_back(own);

@@ -483,7 +483,7 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
 
 namespace {
 
-/// Pushes the number or the function if it is only that, otherwise the excitation.
+/// Pushes a constant as a number and a lone function as itself, otherwise the excitation.
 void push_acting(lua_State* L, const model::Excitation& value) {
     const auto& parts = value.components();
     const auto* constant = parts.size() == 1 ? std::get_if<model::Constant>(&parts.front().term) : nullptr;

@@ -181,10 +181,8 @@ std::vector<std::string> suspects(const lua::LuaMessage& message) {
     return names;
 }
 
-/// "
-///   10 | x = sytem{}
-///      |     ^^^^^", with the mark below the first suspect found. Empty if the line is unavailable, or was just typed
-/// and has no suspect.
+/// "\n  10 | x = sytem{}\n     |     ^^^^^", with the mark below the first suspect found. Empty if the line is
+/// unavailable, or was just typed and has no suspect.
 std::string excerpt(const SourceText& source, int line, const std::vector<std::string>& suspects) {
     const std::string_view statement = source.statement(line);
     auto mark = marked(statement, suspects);

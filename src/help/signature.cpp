@@ -36,7 +36,7 @@ std::string option_list(std::span<const text::Option> options) {
 std::string signature(const lua::Doc& doc) {
     std::string text = doc.signature;
     for (const text::Call* call : calls_of(doc)) {
-        const bool none = call->options.empty();  // then without blanks around it
+        const bool none = call->options.empty();  // then the blanks around OPTIONS go, too
         const std::size_t place = text.find(options_mark) - (none ? 1 : 0);
         text.replace(place, options_mark.size() + (none ? 2 : 0), option_list(call->options));
     }

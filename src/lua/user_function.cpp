@@ -137,7 +137,7 @@ CallState::CallState(lua_State* L)
 
 CallState::~CallState() {
     current = outer_;
-    lua_pushnil(L_);  // an error, possibly one that a run has survived
+    lua_pushnil(L_);  // forgets the stored error
     lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     for (const int kept : {state_table_, theta_table_, velocity_table_}) luaL_unref(L_, LUA_REGISTRYINDEX, kept);
     for (const int name : names_) luaL_unref(L_, LUA_REGISTRYINDEX, name);

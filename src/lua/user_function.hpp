@@ -143,7 +143,7 @@ public:
 
 private:
     static int fill_protected(lua_State* L);
-    /// The formula for evaluating this many values, or breaks.
+    /// The formula if reading it pays for this many values (`many` for breaks), otherwise null.
     model::Formula* formula(const CallState& call, std::size_t values);
     static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);

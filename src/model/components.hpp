@@ -12,7 +12,7 @@
 
 namespace dinal::model {
 
-/// gain * term for from <= t < to, else 0
+/// gain * term for from <= t < to, otherwise 0
 struct Component {
     double gain = 1;
     Term term;

@@ -13,7 +13,7 @@ struct Contradiction {
     double first = 0, again = 0;  ///< the value returned first, and later for the same argument
 };
 
-/// "M depends on more than its arguments: at t = 3.25 it gave 0.5 and, asked again, 0.7"
+/// "M depends on more than its arguments: at t = 3.25 it returned 0.5 and, evaluated again, 0.7"
 std::string sentence(const Contradiction& found);
 /// The same, followed by the remedy.
 std::string sentence_with_cure(const Contradiction& found);

@@ -31,7 +31,7 @@ struct OscillatorParameters {
     std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; by default Rd
     std::optional<Friction> friction = {};  ///< a law that replaces Coulomb's; Rd and Re are then ignored
     double normal = 1;                      ///< constant load that multiplies the friction torques
-    Spring spring = {};                     ///< a nonlinear spring beside k theta
+    Spring spring = {};                     ///< a nonlinear spring in addition to k theta
     std::optional<Walls> walls = {};        ///< end stops
     Units units = {};                       ///< words only: no number depends on them
 };
@@ -87,7 +87,7 @@ public:
     [[nodiscard]] double stiffness() const { return stiffness_; }
     [[nodiscard]] double damping() const { return damping_; }
     [[nodiscard]] const Friction& friction() const { return friction_; }
-    /// The nonlinear spring beside k theta.
+    /// The nonlinear spring in addition to k theta.
     [[nodiscard]] const Spring& spring() const { return spring_; }
     /// The end stops, if any.
     [[nodiscard]] const std::optional<Walls>& walls() const { return walls_; }

@@ -1,4 +1,4 @@
-// A nonlinear spring beside k theta, as a value: its torque at an angle, and its stored energy.
+// A nonlinear spring in addition to k theta, as a value: its torque at an angle, and its stored energy.
 //
 // A kind of spring is a struct in model/springs that satisfies SpringLaw; a Spring holds any of them and is cheap to
 // copy.

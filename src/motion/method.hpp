@@ -35,7 +35,7 @@ struct Resolution {
 /// A release rule in place of the friction law's, in the words of run:explain().
 struct OwnRule {
     std::string setting;  ///< a sentence on the settings of the run
-    const char* release;  ///< text before the release torque: "the listing let it go at"
+    const char* release;  ///< text before the release torque: "the listing released it at"
 };
 
 /// The division of a run into stretches by the general engine.
@@ -51,8 +51,7 @@ struct Cut {
 /// for errors that ranges cannot express, and
 ///     OwnRule own_rule() const;
 ///     Cut cut() const;    it runs any system and drive (Problem::more)
-///     static constexpr bool asks_in_order = true;          it evaluates M at increasing times only, so M may have a
-/// memory
+///     static constexpr bool asks_in_order = true;    M is evaluated at increasing times only
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;

@@ -87,7 +87,7 @@ struct Trajectory {
     bool began_open = false;   ///< whether nothing pressed on the contact until it closed
     bool on_belt = false;      ///< whether turns of theta are no events, as on a belt
     double restitution = 1;    ///< part of the speed left after an impact at a wall
-    bool computed = true;      ///< false if it was read from a file
+    bool computed = true;      ///< whether it was simulated; otherwise read from a file
     double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
     double unproven = 0;                        ///< the longest stretch in which formulas may do more than was sampled
     double noise = 0;                           ///< torque by which M deviates from a smooth function on every scale

@@ -137,7 +137,7 @@ public:
             if (const std::size_t end = read_.find('\n', searched); end != std::string::npos) {
                 std::string line = read_.substr(0, end);
                 read_.erase(0, end + 1);
-                if (end > longest_request) line.clear();  // it is refused
+                if (end > longest_request) line.clear();  // too long: refused later
                 return line;
             }
             if (read_.size() > longest_request) read_.resize(longest_request + 1);

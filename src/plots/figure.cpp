@@ -169,7 +169,7 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
 
 namespace {
 
-constexpr double closest_turns = 3;  // least distance of turns, in places
+constexpr double closest_turns = 3;  // places from one turn to the next, at least
 constexpr double turns_to_a_step = 4;
 
 /// The visible points, from first to last.
@@ -290,7 +290,7 @@ std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width
     for (Figure& figure : all) {
         for (Curve& curve : figure.curves) {
             if (!is_line_over_x(curve) || figure.x.logarithmic) continue;
-            constexpr double closest = 2.5;  // distance of turns, in places
+            constexpr double closest = 2.5;  // places from one turn to the next
             const Seen seen = seen_in(figure, curve);
             const std::size_t turns = large_turns(curve, seen);
             if (static_cast<double>(turns) * closest > width) {

@@ -14,7 +14,7 @@
 namespace dinal::plots {
 namespace {
 
-constexpr std::size_t most_values = 10;  // that have their own shades
+constexpr std::size_t most_values = 10;  // values with their own shades
 
 std::vector<double> finite_values(const Shades& shades) {
     std::vector<double> values;

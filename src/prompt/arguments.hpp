@@ -35,7 +35,7 @@ struct Arguments {
     std::string student;              ///< --lab-solutions: student number; --test-sheet: file; --mark: folder
     std::vector<StartStep> steps;
     std::vector<const char*> words;  ///< the whole command line
-    std::size_t script = 0;          ///< index of the script in `words`; words.size() without one
+    std::size_t script = 0;          ///< index of the script in `words`; words.size() without a script
 
     [[nodiscard]] bool has_script() const { return script < words.size(); }
 };

@@ -139,7 +139,7 @@ std::string what_is_missing(lua_State* L, std::string_view text) {
         return open ? fmt::format("{} of line {} waits for {}", open->text, open->line, partner_of(open->text.front()))
                     : fmt::format("line {} goes on", number);
     }
-    if (parsed->opened.empty()) {  // on that line
+    if (parsed->opened.empty()) {  // the missing part is on that line
         return fmt::format("line {} waits for {}", number, parsed->expected);
     }
     return fmt::format("{} of line {} waits for {}", parsed->opened, parsed->opened_line, parsed->expected);

@@ -26,7 +26,7 @@ public:
 
 private:
     [[maybe_unused]] bool edits_;  // whether readline is used
-    std::string history_file_;     // empty without one
+    std::string history_file_;     // empty: history is not kept
 };
 
 }  // namespace dinal::prompt

@@ -65,7 +65,7 @@ private:
     Modes modes_;
     double w0_;
     double shift_;       // x_f = Rd/k
-    Extreme first_{};    // t = infinity without one
+    Extreme first_{};    // its t is infinite if there is none
     double until_rest_;  // half cycles from the first extreme to rest
 };
 

@@ -94,7 +94,7 @@ public:
         const double start = std::min(1.0, from + d);
         const auto is_beyond = [&](double x) { return half_of(exact_(x), half) != half; };
         if (!is_beyond(start)) return smooth_ ? of_series(half, start) : of_values(half, start);
-        return smooth_ ? from : first_true(is_beyond, start);  // it may have been zero for long
+        return smooth_ ? from : first_true(is_beyond, start);  // the value may have been zero for long
     }
 
     /// Returns whether it is clearly in this half somewhere before x: at a node, or halfway to x.

@@ -130,7 +130,7 @@ Trajectory part_of(const model::System& system, const model::Drive& drive, const
     part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
     part.on_belt = !turns_are_events(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
-    if (system.joints[joint].stops) part.restitution = -1;  // elastic walls have no restitution
+    if (system.joints[joint].stops) part.restitution = -1;  // at an elastic wall the velocity continues
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
     return part;
 }

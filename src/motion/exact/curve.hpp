@@ -1,5 +1,5 @@
-// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time. Advances in looks, each with
-// a bound of the deviation between its ends.
+// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time. Advances in looks: steps,
+// each with a bound of the deviation between its ends.
 //
 // It represents the velocity on an arc, or the load on a mass at rest.
 #pragma once
@@ -84,7 +84,7 @@ public:
     // The walk.
     [[nodiscard]] double place() const { return place_; }
     [[nodiscard]] const Value& here() const { return here_; }
-    /// Looks ahead by a tabulated or any other length, and moves there.
+    /// look() looks ahead by the length of a level, look_at() to any time; accept_look() moves there.
     static constexpr int levels = 40;
     [[nodiscard]] double length(int level) const { return longest_ * halved[static_cast<std::size_t>(level)]; }
     const Value& look(int level) {

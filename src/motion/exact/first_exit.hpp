@@ -21,7 +21,7 @@ struct Band {
 struct Exit {
     double tau;    ///< at a crossing, way() refers to this point
     int side;      ///< +1 through the high edge, -1 through the low one
-    bool crosses;  ///< false if it touches the edge within rounding without clearly crossing it
+    bool crosses;  ///< otherwise it touches the edge within rounding without clearly crossing it
 };
 
 /// Detects a motion slower than rounding: speed (C + I/h) is at most `least`, a torque, throughout a look of length h
