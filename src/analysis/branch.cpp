@@ -22,7 +22,7 @@ constexpr double dying = 1e-2;        // the smallest unit, as a part of the gre
 constexpr double vanishes = 1e-3;     // a smaller cycle is a rest
 constexpr double boundless = 1e8;     // a motion grown by this factor is at a resonance without a periodic motion
 
-/// Test function: zero where a multiplier is -1. Next: zero where a pair is on the unit circle.
+/// A test function that is zero where a multiplier is -1; the next one is zero where a pair is on the unit circle.
 double doubling_test(const Eigen::MatrixXd& D) {
     return algebra::determinant(D + Eigen::MatrixXd::Identity(D.rows(), D.cols()));
 }

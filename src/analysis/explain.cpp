@@ -344,19 +344,19 @@ private:
             y.theta, y.velocity);
         const bool known = has_reasons() && run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
         const bool stands = first.stuck || motion::belt_from(belt_, run_.t_start) == 0;
-        const bool told =
+        const bool has_torque =
             y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
         if (first.stuck) {
             add(" and stuck {}", is_link_ ? "together" : on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
         }
-        if (told && first.stuck && at_wall(y.theta)) {
+        if (has_torque && first.stuck && at_wall(y.theta)) {
             add(" at the wall");
-        } else if (told) {
+        } else if (has_torque) {
             const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
             add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
         }
         if (first.stuck && first.ended_by) {
-            add("{} until t = {}, when {}.", told ? "," : "", at(first.to), slip(*first.ended_by, told));
+            add("{} until t = {}, when {}.", has_torque ? "," : "", at(first.to), slip(*first.ended_by, has_torque));
         } else {
             add(".");
         }
@@ -498,8 +498,9 @@ private:
         end_paragraph();
     }
 
-    /// Why and in which direction it slipped; `told`: a sentence about |M - k theta| precedes ("this torque").
-    [[nodiscard]] std::string slip(const model::Event& event, bool told) const {
+    /// Explains why and in which direction it slipped. `has_torque`: a sentence about |M - k theta| precedes
+    /// ("this torque").
+    [[nodiscard]] std::string slip(const model::Event& event, bool has_torque) const {
         if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
         if (!has_reasons()) return "it slipped";
@@ -515,7 +516,7 @@ private:
         if (own_rule_) {
             why = fmt::format("{} {}", own_rule_->release, reason(torque));
         } else if (at_limit(torque, event)) {
-            why = fmt::format("{} exceeded Re", told ? "this torque" : fmt::format("|{}|", pull_name()));
+            why = fmt::format("{} exceeded Re", has_torque ? "this torque" : fmt::format("|{}|", pull_name()));
         }
         return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
     }

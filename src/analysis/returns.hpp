@@ -143,7 +143,7 @@ private:
 /// An event that ends a run at the section.
 model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named);
 
-/// The switch positions of M's relays. Next: M with relays that begin in these positions.
+/// The switch positions of M's relays; and M with relays that begin in these positions.
 std::vector<bool> relays_of(const model::Excitation& excitation);
 model::Excitation with_relays(const model::Excitation& excitation, const std::vector<bool>& on);
 

@@ -86,8 +86,8 @@ struct SteadyMotion {
     model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
     std::shared_ptr<const motion::Trajectory> settled = {};  ///< run of one period, for motions found by returns
-    std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run is `settled`; null: the end of a run
-    // For motions found by returns:
+    std::shared_ptr<const SteadyQuestion> asked = {};  ///< the question whose run is `settled`; null: the end of a run
+    // Set for motions found by returns.
     std::vector<BodyMotion> bodies = {};
     std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
     std::shared_ptr<const model::Drive> begun = {};        ///< drive of a run that is periodic from its start

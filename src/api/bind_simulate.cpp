@@ -153,10 +153,10 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
             const auto* function = dynamic_cast<const lua::LuaFunction*>(script->function.get());
             if (function == nullptr) continue;
             const model::Formula* read = function->formula();
-            std::string told;
+            std::string reading;
             if (read == nullptr || read->gave_up()) {
                 if (function->last_obstacle().empty()) continue;
-                told = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
+                reading = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
             } else {
                 const bool of_motion = read->has_conditions_of_motion();
                 const char* conditions =
@@ -165,10 +165,10 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
                     : located
                         ? ": the times at which its conditions change, also those on theta, velocity or states, are located"
                         : ": the times at which its conditions change are events, except for conditions on theta, velocity or states, which are sampled";
-                told =
+                reading =
                     fmt::format("{} is read as a {}{}.", name, native ? "sum of native terms" : "formula", conditions);
             }
-            if (all.find(told) == std::string::npos) all += (all.empty() ? "" : " ") + told;
+            if (all.find(reading) == std::string::npos) all += (all.empty() ? "" : " ") + reading;
         }
     };
     const auto each = [&](const char* name, const std::vector<model::Excitation>& acting, const char* of) {

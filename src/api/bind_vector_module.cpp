@@ -52,7 +52,7 @@ text::Expected<Numbers> vector_range(lua_State* L, double from, double to, std::
         return text::Error{fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)};
     }
     if (ratio >= most_numbers) return text::Error{fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)};
-    constexpr double rounding = 1e-9;  // part of a step: 0 to 0.3 by 0.1 includes its end
+    constexpr double rounding = 1e-9;  // tolerance, as a part of a step: 0 to 0.3 by 0.1 includes its end
     Numbers values = lua::new_numbers(L, static_cast<std::size_t>(std::floor(ratio + rounding)) + 1);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = from + static_cast<double>(i) * step;
     return values;

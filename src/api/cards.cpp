@@ -84,7 +84,7 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
 
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen) {
     const motion::MethodView method = *lua::test<motion::Integrator>(L, index);
-    return text::wrapped(method.lua_text(text::Defaults::told), screen.width - 1);
+    return text::wrapped(method.lua_text(text::Defaults::described), screen.width - 1);
 }
 
 std::string vector_text(const lua::Vector& v, std::size_t whole, std::size_t ends) {

@@ -274,7 +274,7 @@ public:
     [[nodiscard]] double amplitude_at(double x) const {
         return varied_value("amplitude", x).value_or(asked_.amplitude);
     }
-    /// One for each parameter.
+    /// One column for each parameter.
     [[nodiscard]] std::vector<VariedColumn> columns() const {
         const ColumnUnits in(system_->units);
         std::vector<VariedColumn> columns;

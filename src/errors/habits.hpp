@@ -14,8 +14,8 @@ namespace dinal::errors {
 /// error.
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
-/// When to look for tokens of other languages: in a chunk that does not compile, first, last if nothing else explains
-/// it, or where an expression continues; or in a running chunk.
+/// The occasion to look for tokens of other languages: in a chunk that does not compile, first, last if nothing else
+/// explains it, or where an expression continues; or in a running chunk.
 enum class Seen { first, last, between, running };
 
 /// The same for these tokens of other languages, whatever the message: v[1:3], f"{x}", lambda x.

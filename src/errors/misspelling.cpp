@@ -273,9 +273,9 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
         const bool is_nil = lua_isnil(L, -1), is_table = lua_istable(L, -1);
         const std::vector<std::string> names = field && is_table ? member_names(L) : std::vector<std::string>();
         lua_settop(L, top);
-        std::string told = "'" + std::string(name), hint;
+        std::string whole_name = "'" + std::string(name), hint;
         if (field) {
-            told.append(".").append(all[i + 2].text);
+            whole_name.append(".").append(all[i + 2].text);
             hint = text::did_you_mean(all[i + 2].text, names);
             if (hint.empty() || std::find(names.begin(), names.end(), all[i + 2].text) != names.end()) continue;
         } else {
@@ -283,7 +283,7 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
             if (!is_nil || is_declared(all, name) || std::find(local.begin(), local.end(), name) != local.end())
                 continue;
         }
-        return fmt::format("{}' is nil, so {} is not given{}", told, all[i - 2].text, hint);
+        return fmt::format("{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
     }
     return "";
 }
@@ -369,7 +369,7 @@ bool has_method(lua_State* L, int index, std::string_view name) {
     });
 }
 
-/// Returns whether an argument of the innermost calls has such a method.
+/// Returns whether an object among the arguments of the innermost calls has a method of that name.
 bool passes_its_owner(lua_State* L, std::string_view name) {
     constexpr int innermost = 4;
     lua_Debug frame{};

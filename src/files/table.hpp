@@ -25,7 +25,7 @@ struct NamedColumn {
     std::span<const std::string> words = {};
 };
 
-/// Whether nan (an empty field) and infinity may be written.
+/// The treatment of nan (an empty field) and infinity.
 enum class Gaps { refused, written };
 
 /// All columns of a matrix in order (select from the result to write some).

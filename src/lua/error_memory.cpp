@@ -97,10 +97,10 @@ const text::Error* facts_of(lua_State* L, std::string_view message) {
     if (memory == nullptr) {
         return nullptr;
     }
-    const auto told = std::find_if(memory->facts.begin(), memory->facts.end(), [message](const text::Error& error) {
+    const auto fact = std::find_if(memory->facts.begin(), memory->facts.end(), [message](const text::Error& error) {
         return message.find(error.message()) != std::string_view::npos;
     });
-    return told == memory->facts.end() ? nullptr : &*told;
+    return fact == memory->facts.end() ? nullptr : &*fact;
 }
 
 void set_witness(lua_State* L, Witness witness) {

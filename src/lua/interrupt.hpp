@@ -1,8 +1,8 @@
 // Stops a chunk from outside: Ctrl-C, and the limits of limits.hpp. It stops the running Lua code, including
 // coroutines, and through stop_requested() the C++ stepping loop.
 //
-// No hook is set until then: the signal handler sets one on the running Lua thread. That thread is known because
-// coroutine.resume, wrap and close are replaced by functions that record it (open_coroutines).
+// No hook is set until a stop is requested: then the signal handler sets one on the running Lua thread. That thread is
+// known because coroutine.resume, wrap and close are replaced by functions that record it (open_coroutines).
 #pragma once
 
 #include <pthread.h>

@@ -3,6 +3,6 @@
 #pragma once
 
 #include <lua.h>
-// after lua.h
+// must come after lua.h
 #include <lauxlib.h>
 #include <lualib.h>

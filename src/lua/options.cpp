@@ -25,7 +25,7 @@ std::string joined(const Names& names, std::string_view last_separator, std::str
     return text;
 }
 
-/// "; did you mean 'theta0' for 'theta' and 't_end' for 'tend'?", for names with a likely cure.
+/// "; did you mean 'theta0' for 'theta' and 't_end' for 'tend'?", for names that resemble known ones.
 std::string cures(const Names& unknown, const Names& known) {
     std::vector<std::string> words;
     for (const std::string_view name : unknown) {

@@ -337,7 +337,7 @@ Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) 
 
 Walk::Result Walk::run(std::optional<std::size_t> condition) {
     constexpr Result undecided{{std::numeric_limits<double>::quiet_NaN(), never}, never, anything};
-    const auto told = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
+    const auto as_result = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
     greatest_relative_radius_ = 0;
     for (std::size_t place = 0;;) {
         const Formula::Step& s = formula_->steps()[place];
@@ -347,9 +347,9 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
         if (s.op == Op::jump) {
             place = s.yes;
         } else if (s.op == Op::give) {
-            return told(a);
+            return as_result(a);
         } else if (s.op == Op::give_whole && a.constant) {
-            return told(number(static_cast<double>(to_whole(a.disc.c))));
+            return as_result(number(static_cast<double>(to_whole(a.disc.c))));
         } else if (s.op >= Op::give) {
             return undecided;
         } else if (s.op == Op::move) {
@@ -367,7 +367,7 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
             } else {
                 const bool quotient = s.op == Op::modulo || s.op == Op::fmod || s.op == Op::floor_divide;
                 const Slot decider = compares || quotient ? combined(compares ? Op::subtract : Op::divide, a, b) : a;
-                if (condition == place) return told(decider);
+                if (condition == place) return as_result(decider);
                 const double part = decider.apart > 0 ? never : decider.disc.r / std::fabs(decider.disc.c);
                 greatest_relative_radius_ = std::max(greatest_relative_radius_, part == part ? part : never);
             }

@@ -18,7 +18,7 @@ enum class EventKind {
     closed,    ///< the contact is pressed together again
     released,  ///< an elastic wall no longer pushes
     slider_sticks,
-    slider_slips,  ///< a slider of a Jenkins element, whose contact itself has no slip
+    slider_slips,  ///< slip of a slider in a Jenkins element; the contact as a whole does not slip
 };
 inline constexpr int event_kind_count = 12;
 

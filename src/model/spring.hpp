@@ -22,9 +22,9 @@ concept SpringLaw = requires(const Law& law, double theta) {
     { law.energy(theta) } -> std::same_as<double>;
     /// An error if its numbers are invalid.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
-    /// Whether it acts alike on both sides.
+    /// Returns whether it acts alike on both sides.
     { law.is_odd() } -> std::same_as<bool>;
-    /// After a torque that was not finite: whether it may be evaluated again.
+    /// After a torque that was not finite: returns whether it may be evaluated again.
     { law.may_go_on() } -> std::same_as<bool>;
     /// The Lua expression that makes it again; empty if there is none.
     { law.lua_text() } -> std::same_as<std::string>;

@@ -54,7 +54,7 @@ BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : ru
     }
 }
 
-/// False if a user's function now returns other values, as it may if it reads a variable that has changed.
+/// Returns false if a user's function now returns other values, as it may if it reads a variable that has changed.
 bool BetweenRows::agrees_with_rows(Eigen::Index column) const {
     if (!M_->has_script()) return true;
     constexpr Eigen::Index looks = 20;

@@ -61,7 +61,7 @@ public:
     /// if all are events or breaks of M.
     [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }
     /// Visits the legs in order, without gaps.
-    virtual void legs(const std::function<void(const Leg&)>& /*told*/) const {}
+    virtual void legs(const std::function<void(const Leg&)>& /*visit*/) const {}
     /// The memory used for the motion between the rows.
     [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 

@@ -107,7 +107,7 @@ public:
     [[nodiscard]] Mark mark() const { return {motion_, phase_, apart_}; }
     void return_to(const Mark& mark) { motion_ = mark.motion, phase_ = mark.phase, apart_ = mark.apart; }
 
-    /// Whether it was stuck from the start until something moved it.
+    /// Returns whether it was stuck from the start until something moved it.
     [[nodiscard]] bool began_stuck() const { return began_stuck_; }
     /// The time of the last event, -never if there was none.
     [[nodiscard]] double last_event_time() const {
@@ -138,11 +138,11 @@ private:
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
     double M_stuck_ = 0;                         // and M then
-    double torques_before_;                      // at the standstill before
+    double torques_before_;                      // sum of torques at the standstill before
     Moment crept_{};                             // when it began to creep
     double apart_ = 0;                           // tolerance of M around the balance of a creep
     bool began_stuck_ = false;
-    double last_ = -model::never;  // standstill
+    double last_ = -model::never;  // time of the last standstill
     int at_once_in_a_row_ = 0;
 };
 

@@ -80,7 +80,7 @@ struct Trajectory {
     model::Outcome outcome = model::Outcome::reached_end;
     model::State initial;  ///< at t_start
     double t_start = 0;
-    double t_stop = 0;  ///< the time reached: t_end unless the outcome says otherwise
+    double t_stop = 0;  ///< the time reached: t_end unless the run ended early
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
     bool began_stuck = false;  ///< whether it was stuck until something moved it

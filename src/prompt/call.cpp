@@ -187,7 +187,7 @@ int call(lua_State* L, int arguments, int results) {
     return status;
 }
 
-std::string told_error(lua_State* L, const char* file) {
+std::string load_error_text(lua_State* L, const char* file) {
     const lua::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);
     // Lua's words suit except for bytecode, which Lua's own program would refuse as well.

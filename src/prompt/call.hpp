@@ -13,7 +13,7 @@ int call(lua_State* L, int arguments, int results);
 
 /// Pops the message about a chunk that could not be loaded from `file` (nullptr: not from a file) or ran out of memory;
 /// returns the text for the user, with the line.
-std::string told_error(lua_State* L, const char* file);
+std::string load_error_text(lua_State* L, const char* file);
 
 /// Pops the text from the top of the stack.
 std::string take_text(lua_State* L);

@@ -80,7 +80,7 @@ void load(Session& session, const std::string& file) {
     lua_State* L = session.L;
     lua_settop(L, 0);
     if (load_file(L, file.c_str()) != LUA_OK) {
-        say_error(told_error(L, file.c_str()));
+        say_error(load_error_text(L, file.c_str()));
     } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine) {
         if (!session.record.writes(file)) {
             session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));

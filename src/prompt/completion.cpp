@@ -540,7 +540,7 @@ public:
         }
     }
 
-    /// list[1] for plain tables and our objects: run.events[1].
+    /// Follows an index with a number, in plain tables and our objects: run.events[1].
     void index(lua_Integer number) {
         if (lua_istable(L_, -1)) {
             lua_rawgeti(L_, -1, number);

@@ -46,7 +46,7 @@ constexpr int deepest_folder = 3;
 struct Answer {
     bool right = false;
     int tries = 0;
-    std::string said;  ///< about the first wrong value
+    std::string said;  ///< the remark on the first wrong value
 };
 
 struct HandIn {

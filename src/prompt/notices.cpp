@@ -109,8 +109,8 @@ std::string element_notice(lua_State* L, const Chunk& chunk) {
     if (all.size() < 3) return "";
     if (all.back().is("]")) {
         const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
-        const std::string told = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
-        return told.empty() ? "" : told.substr(2);
+        const std::string remark = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
+        return remark.empty() ? "" : remark.substr(2);
     }
     if (all.back().kind != lua::TokenKind::name || !all[all.size() - 2].is(".")) return "";
     const int top = lua_gettop(L);
@@ -185,7 +185,8 @@ std::string local_notice(const std::string& text) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("local") && depth == 0) {
             for (const std::string_view name : declared(all, i)) {
-                if (script || uses(all, name) == 1) names.push_back(name);  // a used one did its work
+                if (script || uses(all, name) == 1)
+                    names.push_back(name);  // a variable used on the same line is not lost
             }
         }
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;

@@ -38,7 +38,7 @@ int by_tostring(lua_State* L) {
 }
 
 /// The result of tostring, or its failure.
-std::string told(lua_State* L, int index) {
+std::string tostring_text(lua_State* L, int index) {
     lua_pushvalue(L, index);
     lua_pushcfunction(L, by_tostring);
     lua_insert(L, -2);
@@ -106,7 +106,7 @@ bool is_plain_table(lua_State* L, int index) {
 std::string scalar_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
     switch (lua_type(L, index)) {
         case LUA_TNUMBER:
-            return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
+            return std::isnan(lua_tonumber(L, index)) ? "nan" : tostring_text(L, index);
         case LUA_TSTRING:
             return string_text(L, index, place, screen);
         case LUA_TFUNCTION:
@@ -116,12 +116,12 @@ std::string scalar_text(lua_State* L, int index, Place place, const terminal::Di
     }
     const lua::Documented found = lua::documented(L, index);
     if (place == Place::inside) {
-        return terminal::spelled(in_one_line(told(L, index)), screen);
+        return terminal::spelled(in_one_line(tostring_text(L, index)), screen);
     }
     if (found.owner != nullptr && found.owner->card != nullptr) {
         return found.owner->card(L, lua_absindex(L, index), screen);
     }
-    std::string text = told(L, index);
+    std::string text = tostring_text(L, index);
     return found.owner != nullptr ? text::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
 }
 

@@ -40,7 +40,7 @@ std::string prompt_text(lua_State* L, const char* global, const char* ours) {
 /// Reports the syntax error on the top of the stack.
 void reject(Session& session, const std::string& text) {
     source::keep_source(session.L, prompt_chunk, text);  // the message shows the line
-    say_error(told_error(session.L, nullptr));
+    say_error(load_error_text(session.L, nullptr));
 }
 
 /// Meanings of lines within a chunk that are not Lua.
@@ -177,7 +177,7 @@ void run_init_file(lua_State* L) {
         return;
     }
     if (luaL_loadfilex(L, file.c_str(), lua::load_mode()) != LUA_OK) {
-        say_error(told_error(L, file.c_str()));
+        say_error(load_error_text(L, file.c_str()));
     } else if (call(L, 0, 0) != LUA_OK) {
         say_error(take_text(L));
     }
@@ -380,7 +380,7 @@ std::string Record::script(std::size_t first) const {
             if (becomes_ans && (ans_is_used_after(i) || (chunk.silent && !is_call(expression)))) {
                 lines += "ans = " + expression + (chunk.silent ? "" : "\nprint(ans)");
             } else if (chunk.silent && only_reads_variable(chunk)) {
-                continue;  // it had no effect
+                continue;  // reading a variable has no effect
             } else if (is_call(expression) && (chunk.silent || result.values == 0)) {
                 lines += expression;
             } else {

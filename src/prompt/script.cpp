@@ -66,7 +66,8 @@ void hand_over_partial(lua_State* L) {
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     const bool interrupted = lua::stop_requested() == lua::Stop::interrupted;
     if (status != LUA_OK) {
-        const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
+        const std::string text =
+            status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? load_error_text(L, file) : take_text(L);
         // A run-time error text already reports the interruption and its place.
         const bool untold = interrupted && status != LUA_ERRRUN;
         complain(untold ? "interrupted" : text);

@@ -50,17 +50,17 @@ py::dict description_of(const lua::Member& member, std::size_t number) {
                                           option.wanted));
         }
     }
-    py::dict told;
-    told["number"] = number;
-    told["name"] = std::string(member.name);
-    told["kind"] = kinds[static_cast<std::size_t>(member.kind)];
-    told["form"] = member.doc.signature;
-    told["signature"] = help::signature(member.doc);
-    told["summary"] = member.doc.summary;
-    told["example"] = member.doc.example;
-    told["result"] = result == nullptr ? "" : result->description->name;
-    told["options"] = options;
-    return told;
+    py::dict described;
+    described["number"] = number;
+    described["name"] = std::string(member.name);
+    described["kind"] = kinds[static_cast<std::size_t>(member.kind)];
+    described["form"] = member.doc.signature;
+    described["signature"] = help::signature(member.doc);
+    described["summary"] = member.doc.summary;
+    described["example"] = member.doc.example;
+    described["result"] = result == nullptr ? "" : result->description->name;
+    described["options"] = options;
+    return described;
 }
 
 struct Numbered {

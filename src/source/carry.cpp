@@ -95,7 +95,7 @@ void Carrier::carry_additions() {
         lua::push_standard_globals(from_);
         lua_getfield(from_, -1, place.module.c_str());
         lua_getfield(from_, -1, place.name.c_str());
-        way_ = {place.name};
+        path_ = {place.name};
         if (value(-1)) {
             push_place({place.module, ""});
             lua_insert(to_, -2);
@@ -112,7 +112,7 @@ std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
     lua_rawgetp(to_, LUA_REGISTRYINDEX, &memory_key);
     memory_ = lua_gettop(to_);
     carry_additions();
-    way_ = {name};
+    path_ = {name};
     error_.reset();
     const bool good = value(index);
     lua_remove(to_, memory_);
@@ -120,12 +120,12 @@ std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
 }
 
 /// The path to the value: "run > helper > cfg.last"; a long one is shortened in the middle.
-std::string Carrier::way() const {
+std::string Carrier::path() const {
     constexpr std::size_t most = 12;
     std::string text;
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-        const bool left_out = way_.size() > most && i >= most / 2 && i + most / 2 < way_.size();
-        if (!left_out) text += way_[i];
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        const bool left_out = path_.size() > most && i >= most / 2 && i + most / 2 < path_.size();
+        if (!left_out) text += path_[i];
         if (left_out && i == most / 2) text += "...";
     }
     return text;
@@ -135,12 +135,12 @@ bool Carrier::fail(int index, std::string_view cure) {
     const std::string what = lua_iscfunction(from_, index) != 0      ? "a function that is written in C"
                              : lua_type(from_, index) == LUA_TTHREAD ? "a coroutine"
                                                                      : lua::describe(from_, index);
-    std::string culprit = way_.back();
+    std::string culprit = path_.back();
     culprit.erase(0, culprit.find_first_not_of(" >."));
-    const std::string whole = way();
-    const std::string_view first = way_.front();
+    const std::string whole = path();
+    const std::string_view first = path_.front();
     error_ =
-        way_.size() == 1
+        path_.size() == 1
             ? text::Error{.sentence = fmt::format("{} is {}, which cannot be in another thread{}", whole, what, cure)}
             : text::Error{.sentence = fmt::format("{} uses {}, {}, which cannot be in another thread{}", first,
                                                   whole.substr(first.size() + (whole[first.size()] == ' ' ? 3 : 0)),
@@ -156,7 +156,7 @@ void Carrier::remember(const void* identity) {
 }
 
 /// Pushes the counterpart if the value was carried before or belongs to a library.
-bool Carrier::known(int index) {
+bool Carrier::push_counterpart(int index) {
     const void* identity = lua_topointer(from_, index);
     if (lua_rawgetp(to_, memory_, identity) != LUA_TNIL) return true;
     lua_pop(to_, 1);
@@ -189,11 +189,12 @@ bool Carrier::value(int index) {
             lua_pushlightuserdata(to_, lua_touserdata(from_, index));
             return true;
         case LUA_TTABLE:
-            return known(index) || table(index);
+            return push_counterpart(index) || table(index);
         case LUA_TFUNCTION:
-            return known(index) || (lua_iscfunction(from_, index) != 0 ? c_function(index) : function(index));
+            return push_counterpart(index) ||
+                   (lua_iscfunction(from_, index) != 0 ? c_function(index) : function(index));
         case LUA_TUSERDATA:
-            return known(index) || object(index);
+            return push_counterpart(index) || object(index);
         default:
             return fail(index);
     }
@@ -209,23 +210,23 @@ bool Carrier::table(int index) {
     lua_pushnil(from_);
     while (good && lua_next(from_, index) != 0) {
         const bool named = lua_type(from_, -2) == LUA_TSTRING && lua::is_name(lua::text_at(from_, -2));
-        way_.push_back(named ? fmt::format(".{}", lua_tostring(from_, -2))
-                             : fmt::format("[{}]", lua_isinteger(from_, -2) != 0
-                                                       ? std::to_string(lua_tointeger(from_, -2))
-                                                       : lua::describe(from_, -2)));
+        path_.push_back(named ? fmt::format(".{}", lua_tostring(from_, -2))
+                              : fmt::format("[{}]", lua_isinteger(from_, -2) != 0
+                                                        ? std::to_string(lua_tointeger(from_, -2))
+                                                        : lua::describe(from_, -2)));
         good = value(-2) && value(-1);
         if (good) {
             lua_rawset(to_, top_there + 1);
-            way_.pop_back();
+            path_.pop_back();
             lua_pop(from_, 1);
         }
     }
     if (good && lua_getmetatable(from_, index) != 0) {
-        way_.emplace_back(" > its metatable");
+        path_.emplace_back(" > its metatable");
         good = value(-1);
         if (good) {
             lua_setmetatable(to_, top_there + 1);
-            way_.pop_back();
+            path_.pop_back();
         }
     }
     lua_settop(from_, top);
@@ -259,10 +260,10 @@ bool Carrier::function(int index) {
     bool good = variables(index, lua_gettop(to_));
     if (const auto facts = facts_of_code(dumped, environment); good && facts && environment >= 0) {
         for (const std::string& name : facts->globals) good = good && global(name);
-        const std::vector<std::string> here = way_;
+        const std::vector<std::string> here = path_;
         for (const std::string& name : facts->perhaps) {
             if (!good || global(name)) continue;
-            way_ = here;  // it may not be needed
+            path_ = here;  // it may not be needed
             error_.reset();
         }
     }
@@ -283,13 +284,13 @@ bool Carrier::variables(int index, int copy) {
             lua_pop(from_, 1);
             continue;
         }
-        way_.push_back(fmt::format(" > {}", *name == '\0' ? "a variable" : name));
+        path_.push_back(fmt::format(" > {}", *name == '\0' ? "a variable" : name));
         if (!value(-1)) {
             lua_pop(from_, 1);
             return false;
         }
         lua_setupvalue(to_, copy, i);
-        way_.pop_back();
+        path_.pop_back();
         lua_pop(from_, 1);
     }
     return true;
@@ -309,10 +310,10 @@ bool Carrier::global(const std::string& name) {
     lua_pop(from_, 2);
     bool good = true;
     if (!standard) {
-        way_.push_back(fmt::format(" > {}", name));
+        path_.push_back(fmt::format(" > {}", name));
         good = value(-1);
         if (good) {
-            way_.pop_back();
+            path_.pop_back();
             lua_pushglobaltable(to_);
             lua_insert(to_, -2);
             lua::push_text(to_, name);
@@ -364,20 +365,20 @@ Carrier::Function Carrier::user_function(const Function& function) {
     if (error_ || function == nullptr) return function;
     const auto* own = dynamic_cast<const lua::LuaFunction*>(function.get());
     if (own == nullptr) return controller(dynamic_cast<const model::Controller&>(*function));
-    way_.emplace_back(" > its function");
+    path_.emplace_back(" > its function");
     own->push(from_);
     const bool good = value(-1);
     lua_pop(from_, 1);
     if (!good) return function;
-    way_.pop_back();
+    path_.pop_back();
     auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
     lua_pop(to_, 1);
     if (!own->push_start(from_)) return copy;
-    way_.emplace_back(" > start");
+    path_.emplace_back(" > start");
     const bool starts = value(-1);
     lua_pop(from_, 1);
     if (!starts) return function;
-    way_.pop_back();
+    path_.pop_back();
     copy->remember_from(to_, -1);
     lua_pop(to_, 1);
     return copy;

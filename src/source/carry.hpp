@@ -48,7 +48,7 @@ private:
     void carry_additions();
 
     bool value(int index);
-    bool known(int index);
+    bool push_counterpart(int index);
     bool table(int index);
     bool function(int index);
     bool variables(int index, int copy);
@@ -57,7 +57,7 @@ private:
     bool object(int index);
     bool fail(int index, std::string_view cure = "");
     void remember(const void* identity);
-    [[nodiscard]] std::string way() const;
+    [[nodiscard]] std::string path() const;
 
     using Function = std::shared_ptr<model::terms::UserFunction>;
     Function user_function(const Function& function);
@@ -72,7 +72,7 @@ private:
     std::vector<Place> additions_;  // functions that a user added to libraries
     std::unordered_map<const void*, Variable> variables_;
     std::unordered_set<std::string> globals_;
-    std::vector<std::string> way_;
+    std::vector<std::string> path_;
     int depth_ = 0;
     std::optional<text::Error> error_;
 };

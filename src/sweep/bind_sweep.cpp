@@ -243,18 +243,19 @@ int bifurcation(lua_State* L) {
         lua_pushinteger(worker, static_cast<lua_Integer>(asked.keep));
         lua_pushcclosure(worker, lua::guarded<looks_of_point>, 4);
     };
-    return push_data(L, swept(L, {.call = bifurcation_call.name,
-                                  .grid = grid,
-                                  .function = function,
-                                  .workers = of_workers.workers,
-                                  .file = of_workers.file,
-                                  .max_time = of_workers.max_time.value_or(0),
-                                  .settings = {period, asked.skip, asked.keep},
-                                  .adapt = adapt,
-                                  .form = {.columns = {}, .points_of = "theta"},
-                                  .told = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
-                                      return looks_as_rows(grid, results, points, keep);
-                                  }}));
+    return push_data(
+        L, swept(L, {.call = bifurcation_call.name,
+                     .grid = grid,
+                     .function = function,
+                     .workers = of_workers.workers,
+                     .file = of_workers.file,
+                     .max_time = of_workers.max_time.value_or(0),
+                     .settings = {period, asked.skip, asked.keep},
+                     .adapt = adapt,
+                     .form = {.columns = {}, .points_of = "theta"},
+                     .make_columns = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
+                         return looks_as_rows(grid, results, points, keep);
+                     }}));
 }
 
 /// Makes a task from the options of sweep.

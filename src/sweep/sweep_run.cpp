@@ -486,7 +486,7 @@ public:
     }
 
     Data run() {
-        if (journal_ && journal_->result()) return told(*journal_->result());
+        if (journal_ && journal_->result()) return with_heading(*journal_->result());
         work();
         if (lua::interrupt_requested()) stop();
         if (trouble_) fail();
@@ -516,12 +516,12 @@ public:
     void keep(lua_State* L) {
         L_ = L;
         if (!journal_) keep_unfinished(L_, print_, results_);
-        push_data(L_, told());
+        push_data(L_, finished_data());
         set_partial(L_);
     }
     Data finish(lua_State* L) {
         L_ = L;
-        return journal_ && journal_->result() ? told(*journal_->result()) : finished();
+        return journal_ && journal_->result() ? with_heading(*journal_->result()) : finished();
     }
 
 private:
@@ -568,7 +568,7 @@ private:
     }
 
     /// Adds a heading that reports failed points, as nobody checks a column that should be empty.
-    [[nodiscard]] Data told(std::vector<DataColumn> columns) const {
+    [[nodiscard]] Data with_heading(std::vector<DataColumn> columns) const {
         Data data = task_.form;
         data.columns = std::move(columns);
         if (const Failures failed = failures_in(data, task_.grid); failed.count > 0) {
@@ -579,14 +579,14 @@ private:
     }
 
     /// The data of the finished points.
-    [[nodiscard]] Data told() const {
+    [[nodiscard]] Data finished_data() const {
         const std::vector<std::size_t> points = results_->done_points();
-        if (task_.told) return told(task_.told(*results_, points));
+        if (task_.make_columns) return with_heading(task_.make_columns(*results_, points));
         std::vector<std::size_t> places = points;
         for (std::size_t& place : places) place += first();
         std::vector<DataColumn> columns = task_.grid.columns(places);
         for (DataColumn& column : results_->columns(points)) columns.push_back(std::move(column));
-        return told(std::move(columns));
+        return with_heading(std::move(columns));
     }
 
     [[noreturn]] void stop() {
@@ -599,7 +599,7 @@ private:
     }
 
     [[noreturn]] void fail() {
-        push_data(L_, told());
+        push_data(L_, finished_data());
         set_partial(L_);
         trouble_->sentence += fmt::format(
             "; finished points are kept in '{}' and dinal.partial, and the same call continues", journal_->path());
@@ -619,9 +619,9 @@ private:
     }
 
     Data finished() {
-        if (task_.points) return told();
+        if (task_.points) return finished_data();
         if (!journal_) keep_unfinished(L_, 0, nullptr);
-        Data data = told();
+        Data data = finished_data();
         raise_if_all_failed(data);
         if (journal_) trouble_ = journal_->finish(data);
         if (trouble_) fail();

@@ -103,8 +103,8 @@ struct SweepTask {
     /// The properties of the resulting data besides columns.
     Data form = {};
     /// Makes the columns of these points, if they differ from parameters and results.
-    std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)> told =
-        {};
+    std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)>
+        make_columns = {};
 };
 
 /// Raises an error if the file name is invalid.

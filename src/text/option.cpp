@@ -107,7 +107,7 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
         const OptionValue value = option.filled.get(object);
         const bool same = option.otherwise != needed && value == option.filled.initial();
         std::string text = defaults == Defaults::left_out && same ? "" : literal(option, value);
-        if (text.empty() && defaults == Defaults::told) text = default_text(option);
+        if (text.empty() && defaults == Defaults::described) text = default_text(option);
         if (!text.empty()) {
             list += fmt::format("{}{} = {}", list.empty() ? "" : ", ", option.name, text);
         }

@@ -136,7 +136,7 @@ std::string list_literal(std::span<const double> numbers);
 enum class Defaults {
     left_out,
     written,
-    told,  ///< infinite ones too, in the words of their row, which need not be Lua: "max_panel = 0.6 T0"
+    described,  ///< infinite ones, too, in the words of their row, which need not be Lua: "max_panel = 0.6 T0"
 };
 
 namespace detail {
@@ -189,10 +189,10 @@ Value taken(OptionValue value) {
 }
 
 template <class Value>
-OptionValue told(const Value& value) {
+OptionValue as_option_value(const Value& value) {
     constexpr auto place = static_cast<std::size_t>(kind_of<Value>());
     if constexpr (!std::is_same_v<Value, typename Inner<Value>::Type>) {
-        return value ? told(*value) : OptionValue();
+        return value ? as_option_value(*value) : OptionValue();
     } else if constexpr (std::is_enum_v<Value>) {
         return OptionValue(std::in_place_index<place>, static_cast<std::size_t>(value));
     } else {
@@ -209,8 +209,8 @@ constexpr OptionTarget member_target() {
     return {
         kind_of<Value>(), &owner_tag<Owner>,
         [](void* object, OptionValue value) { static_cast<Owner*>(object)->*member = taken<Value>(std::move(value)); },
-        [](const void* object) { return told(static_cast<const Owner*>(object)->*member); },
-        [] { return told(Owner{}.*member); }};
+        [](const void* object) { return as_option_value(static_cast<const Owner*>(object)->*member); },
+        [] { return as_option_value(Owner{}.*member); }};
 }
 
 template <auto function>

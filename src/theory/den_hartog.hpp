@@ -1,7 +1,7 @@
 // Den Hartog's exact steady motion with dry friction under M0 sin wt, and its boundary to motions with stops.
 //
 // J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
-// Without stops, friction is a square wave that jumps at the turns. The steady motion is antisymmetric after half a
+// stops, friction is a square wave that jumps at the turns. The steady motion is antisymmetric after half a
 // period, so its response to that square wave at a turn depends on r and zeta only; zero velocity at the turn yields
 // the amplitude. docs/theory.md, section 12, has the derivation.
 #pragma once

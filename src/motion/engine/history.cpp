@@ -141,16 +141,16 @@ std::vector<double> History::ends() const {
     return times;
 }
 
-void History::legs_since(double start, const std::function<void(const JointLeg&)>& told) const {
-    if (before_ != nullptr && start < t_start_) before_->legs_since(start, told);
-    legs(told);
+void History::legs_since(double start, const std::function<void(const JointLeg&)>& visit) const {
+    if (before_ != nullptr && start < t_start_) before_->legs_since(start, visit);
+    legs(visit);
 }
 
-void History::legs(const std::function<void(const JointLeg&)>& told) const {
+void History::legs(const std::function<void(const JointLeg&)>& visit) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= for_good_; ++i) {
-        for (; jump != jumps_.end() && jump->stretch == i; ++jump) told(JumpLeg(jump->t, jump->joint, jump->work));
-        if (i < for_good_) told(StretchLeg(joints_, bodies_, list_[i]));
+        for (; jump != jumps_.end() && jump->stretch == i; ++jump) visit(JumpLeg(jump->t, jump->joint, jump->work));
+        if (i < for_good_) visit(StretchLeg(joints_, bodies_, list_[i]));
     }
 }
 

@@ -84,9 +84,9 @@ public:
     /// The end times of the stored stretches.
     [[nodiscard]] std::vector<double> ends() const;
     /// Visits all legs in order without gaps. Requires a run that keeps torques.
-    void legs(const std::function<void(const JointLeg&)>& told) const;
+    void legs(const std::function<void(const JointLeg&)>& visit) const;
     /// The same, including earlier runs if this one began after `start`.
-    void legs_since(double start, const std::function<void(const JointLeg&)>& told) const;
+    void legs_since(double start, const std::function<void(const JointLeg&)>& visit) const;
 
 private:
     struct Jump {

@@ -57,8 +57,8 @@ public:
     }
     [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
-    void legs(const std::function<void(const Leg&)>& told) const override {
-        history_->legs_since(t_start_, [&](const JointLeg& leg) { told(PartLeg(leg, place_.joint)); });
+    void legs(const std::function<void(const Leg&)>& visit) const override {
+        history_->legs_since(t_start_, [&](const JointLeg& leg) { visit(PartLeg(leg, place_.joint)); });
     }
     [[nodiscard]] std::size_t bytes() const override { return history_->bytes(); }
 

@@ -67,9 +67,9 @@ bool Unseen::is_told(double allowed, double part) {
         walk_.set(input.place, {cheb::value(input.series, 0), deviation_in_disc(input.series)},
                   ranges ? range(input.series) : Interval{});
     }
-    const auto told = walk_.run();
-    return decay_of_error(cheb::degree) * told.disc.r <= std::max(allowed, part * std::fabs(told.disc.c)) &&
-           told.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
+    const auto enclosure = walk_.run();
+    return decay_of_error(cheb::degree) * enclosure.disc.r <= std::max(allowed, part * std::fabs(enclosure.disc.c)) &&
+           enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
 double Unseen::value(double x) {
@@ -86,33 +86,33 @@ void Unseen::sample() {
 
 /// Returns a bound of the deviation in this part, 0 if it is allowed; sets `place` if a sample deviates by more.
 double Unseen::deviation_on(const Part& part, double allowed, std::optional<double>& place) {
-    const auto strays_at = [&](double x, double found) {
-        const bool strays = std::fabs(found - cheb::value(series_, x)) > allowed;
-        if (strays) place = x;
-        return strays;
+    const auto deviates_at = [&](double x, double found) {
+        const bool deviates = std::fabs(found - cheb::value(series_, x)) > allowed;
+        if (deviates) place = x;
+        return deviates;
     };
     for (const Input& input : inputs_) {
         const Series own = on_part(input.series, part.middle, part.half);
         walk_.set(input.place, {cheb::value(own, 0), deviation_in_disc(own)}, range(own));
     }
-    const auto told = walk_.run(condition_);
-    const bool decided = told.disc.c == told.disc.c;
-    if (strays_at(part.middle, decided ? told.disc.c : value(part.middle))) return model::never;
+    const auto enclosure = walk_.run(condition_);
+    const bool decided = enclosure.disc.c == enclosure.disc.c;
+    if (deviates_at(part.middle, decided ? enclosure.disc.c : value(part.middle))) return model::never;
     const Series own = on_part(series_, part.middle, part.half);
     const Interval known = range(own);
-    const double off = std::max(told.range.hi - known.lo, known.hi - told.range.lo);
+    const double off = std::max(enclosure.range.hi - known.lo, known.hi - enclosure.range.lo);
     if (off <= allowed) return 0;
     const bool whole = part.half == 1;
-    const double r = told.disc.r + (whole ? 0 : deviation_in_disc(own));
+    const double r = enclosure.disc.r + (whole ? 0 : deviation_in_disc(own));
     for (const std::size_t n : {std::size_t{4}, std::size_t{8}, std::size_t{16}}) {
-        if ((whole && n < cheb::degree) || !(decay_of_error(n) * r <= allowed && told.apart <= allowed)) continue;
+        if ((whole && n < cheb::degree) || !(decay_of_error(n) * r <= allowed && enclosure.apart <= allowed)) continue;
         for (std::size_t j = 0; j < node_count && !whole; j += cheb::degree / n) {
             const double x = part.middle + part.half * cheb::nodes[j];
-            if (strays_at(x, value(x))) return model::never;
+            if (deviates_at(x, value(x))) return model::never;
         }
         return 0;
     }
-    return std::min(off, told.apart + decay_of_error(cheb::degree) * r);
+    return std::min(off, enclosure.apart + decay_of_error(cheb::degree) * r);
 }
 
 Unseen::Found Unseen::search(double allowed, int budget) {

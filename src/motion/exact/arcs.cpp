@@ -108,9 +108,9 @@ text::Expected<model::State> Arcs::at(double t) const {
     return model::State{Clock{kept.begin.theta, kept.theta_rest}.later(y.way).hi, y.velocity};
 }
 
-void Arcs::legs(const std::function<void(const Leg&)>& told) const {
+void Arcs::legs(const std::function<void(const Leg&)>& visit) const {
     const model::Lowered lowered(system());
-    for (const KeptArc& arc : arcs_) told(ArcLeg(lowered, excitation_, arc));
+    for (const KeptArc& arc : arcs_) visit(ArcLeg(lowered, excitation_, arc));
 }
 
 }  // namespace dinal::motion::exact

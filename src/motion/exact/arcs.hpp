@@ -38,7 +38,7 @@ public:
 
     [[nodiscard]] text::Expected<model::State> at(double t) const override;
     [[nodiscard]] double whole_until() const override;
-    void legs(const std::function<void(const Leg&)>& told) const override;
+    void legs(const std::function<void(const Leg&)>& visit) const override;
     [[nodiscard]] std::size_t bytes() const override { return arcs_.size() * sizeof(KeptArc); }
 
 private:

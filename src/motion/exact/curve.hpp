@@ -240,7 +240,7 @@ private:
     Moment* next_ = &first_;
     const Moment* asked_ = &other_;  // the point of jet() and way()
     double place_ = 0, next_place_ = 0, asked_place_ = 0;
-    Jet jet_{};  // at asked_, as far as it was computed
+    Jet jet_{};  // derivatives at asked_, as far as they were computed
     std::size_t jet_size_ = 0;
     double aside_ = 0;
     Value here_, there_;

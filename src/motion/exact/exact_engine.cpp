@@ -234,8 +234,9 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const double third = (formula_.bend() - system_.damping() * second - k * first) / I;
         const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
         if (way == model::Motion::stuck) return;
-        const bool told = standstill_.motion() == model::Motion::stuck || standstill_.last_event_time() == clock_.hi;
-        if (way != standstill_.motion()) told ? standstill_.set_direction(way) : standstill_.turned(moment());
+        const bool recorded =
+            standstill_.motion() == model::Motion::stuck || standstill_.last_event_time() == clock_.hi;
+        if (way != standstill_.motion()) recorded ? standstill_.set_direction(way) : standstill_.turned(moment());
         if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
     } else if (standstill_.motion() == model::Motion::stuck) {
         standstill_.set_direction(model::motion_of(y_.velocity));

@@ -13,7 +13,7 @@ constexpr double hermite = 1.0 / 384;  // factor of max|f''''| h^4 in the error 
 /// The accuracy of the cubic's zero, as a part of a look: one more step of Newton's method squares it, and the cubic is
 /// only near the curve.
 constexpr double near_enough = 0.01;
-/// A departure must be this many times faster than a creep.
+/// A motion counts as a departure only if it is this many times faster than a Creep.
 constexpr double slowest_apart = 16;
 constexpr double of_slope = 0.0081;  // sqrt(3)/216, factor of max|f''''| h^3 in the error of the cubic's slope
 

@@ -42,7 +42,7 @@ text::Expected<model::State> Replay::at(double t) const {
     while (step > 0 && engine.time(step) > t) --step;
     while (step < engine.steps() && engine.time(step + 1) <= t) ++step;
     const Rk4Checkpoint* next = checkpoints.after(step);
-    // If the run broke off before another checkpoint, only to the end of the step.
+    // If no later checkpoint exists, the replay goes only to the end of the step.
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
     engine.run(checkpoints.before(step), last);
     if (trajectory.size() > 0 && rows.next_row() == 0) {

@@ -50,7 +50,7 @@ struct RigScene {
         Scene scene;  ///< the angle between its bodies
         std::size_t first = 0, second = 0;
     };
-    std::vector<Scene> bodies;  ///< with a common reach
+    std::vector<Scene> bodies;  ///< all have the same reach
     std::vector<Link> links;
     bool discs = false;
 };
