@@ -43,7 +43,7 @@ struct MapStep {
     double low = 0, high = 0;      ///< the extremes of theta
     double t_low = 0, t_high = 0;  ///< times of the extremes
     std::size_t stops = 0;
-    double stuck = 0;  ///< time
+    double stuck = 0;  ///< total time at rest, time units
     model::Outcome outcome = model::Outcome::reached_end;
 };
 

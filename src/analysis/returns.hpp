@@ -76,7 +76,7 @@ public:
     [[nodiscard]] bool any_goes_round() const;
     /// The measured numbers of all of y; 0 for angles that are not measured.
     [[nodiscard]] Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
-    /// The reverse; `there` provides the angles that are not measured.
+    /// The reverse of measured(); `there` provides the angles that are not measured.
     [[nodiscard]] Eigen::VectorXd state(const Eigen::VectorXd& x, const Eigen::VectorXd& there) const;
     [[nodiscard]] double value(Eigen::Index k, std::span<const double> y) const;
 

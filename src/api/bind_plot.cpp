@@ -78,7 +78,7 @@ plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::
 
 plots::Curve curve_with_options(lua_State* L, int item, lua_Integer listed, const std::string& call) {
     lua::push_copy(L, item, listed);
-    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // the call names the curve
+    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // errors name the curve
     const lua::Options options(L, lua_gettop(L), named);
     plots::Curve curve;
     options.fill(curve);

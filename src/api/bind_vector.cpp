@@ -204,7 +204,7 @@ int masked(lua_State* L) {
                                 "brackets; for more use v[v:find(function(x) return x > 0 and x < 1 end)]",
                     .call = "v"});
     }
-    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // v[not (v > 0)]
+    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // false in v[not (v > 0)]
     lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (std::size_t i = 0; i < v.size(); ++i) {

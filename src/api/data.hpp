@@ -56,7 +56,7 @@ struct Data {
     std::vector<DataColumn> columns;
     std::string heading = {};                  ///< first line of its text; by default the numbers of rows and columns
     std::string points_of = {};                ///< column that d:plot() draws as points by default
-    std::string points_over = {};              ///< their default x, otherwise the first column
+    std::string points_over = {};              ///< default x of these points; empty: the first column
     std::string pieces_of = {};                ///< column whose changes interrupt lines in d:plot()
     std::string dotted_of = {};                ///< column whose zeros make lines dotted
     bool is_spectrum = false;                  ///< whether d:plot() has a logarithmic axis

@@ -886,7 +886,8 @@ double* SweepResults::column(std::string_view name) {
 }
 
 namespace {
-constexpr std::uint64_t nan_of_words = 0xFFF8'0000'0000'0000U;  ///< plus the index of the word
+constexpr std::uint64_t nan_of_words =
+    0xFFF8'0000'0000'0000U;  ///< bits of a nan that stands for a word; its index is added
 }
 
 double SweepResults::word(std::string_view text) {
