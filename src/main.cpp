@@ -1,4 +1,4 @@
-// dinal: arguments in, a script or the prompt, an exit code out.
+// The program dinal: parses arguments, runs a script or the prompt, returns an exit code.
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,7 @@ int print(const dinal::text::Expected<std::string>& text) {
     return print(text.value());
 }
 
-/// --sheets, or DINAL_SHEETS.
+/// Adds the sheets of --sheets or DINAL_SHEETS.
 std::optional<dinal::text::Error> add_sheets(const dinal::prompt::Arguments& arguments) {
     const char* variable = arguments.ignore_environment ? nullptr : std::getenv("DINAL_SHEETS");
     const std::string folder = arguments.sheets.empty() && variable != nullptr ? variable : arguments.sheets;

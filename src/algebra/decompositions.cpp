@@ -13,7 +13,8 @@ class FactoredSparse final : public Factored {
 public:
     explicit FactoredSparse(const Eigen::SparseMatrix<double>& A) {
         decomposition_.compute(A);
-        // Eigen catches what it could not allocate, and says so in capitals; a singular matrix fails likewise.
+        // Eigen catches a failed allocation and reports it with "MEMORY" in the message; a singular matrix fails
+        // likewise.
         const bool lacks_memory = decomposition_.lastErrorMessage().find("MEMORY") != std::string::npos;
         if (decomposition_.info() != Eigen::Success && lacks_memory) throw std::bad_alloc();
     }
@@ -29,7 +30,7 @@ private:
     Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition_;
 };
 
-/// A square matrix needs no decomposition before that of its singular values.
+/// A square matrix needs no QR step before its singular value decomposition.
 using SingularValues = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>;
 
 }  // namespace

@@ -8,21 +8,21 @@
 namespace dinal::analysis {
 namespace {
 
-// Lengths along the curve are measured in amplitudes of the motion and in ranges of the parameter.
+// Lengths along the curve: the unknowns are scaled by the motion's size, the parameter by its range.
 constexpr double first_step = 0.01, longest_step = 0.08, shortest_step = 1e-9;
-constexpr double closes = 1e-11;  // of the motion: what a point of the branch may miss
+constexpr double closes = 1e-11;  // residual of a branch point, relative to the motion
 constexpr double nearly_closes = 1e-9;
-constexpr double straight = 0.9;      // the cosine of how far the branch may turn in a step
-constexpr double corner_step = 1e-3;  // so short a step has found a corner, as where the motion begins to stop
-constexpr double creeping = 1e-4;     // with so short steps for so long it comes to an end
+constexpr double straight = 0.9;      // least cosine of the angle between tangents of one step
+constexpr double corner_step = 1e-3;  // a step this short indicates a corner, such as the onset of stops
+constexpr double creeping = 1e-4;     // the walk ends after many steps this short
 constexpr int most_creeps = 40;
-constexpr double least_slope = 1e-7;  // of a fold: dp/ds
-constexpr double upright = 1e-6;      // no more than what returns are wrong by
-constexpr double dying = 1e-2;        // of the greatest motion: one that is smaller is not looked at more closely
-constexpr double vanishes = 1e-3;     // a cycle so small is a rest
-constexpr double boundless = 1e8;     // a motion so many times as large comes to a resonance, where there is none
+constexpr double least_slope = 1e-7;  // least |dp/ds| beside a fold
+constexpr double upright = 1e-6;      // error of dp/ds; below it the branch is vertical
+constexpr double dying = 1e-2;        // the smallest unit, as a part of the greatest motion
+constexpr double vanishes = 1e-3;     // a smaller cycle is a rest
+constexpr double boundless = 1e8;     // a motion grown by this factor is at a resonance without a periodic motion
 
-/// Zero where a multiplier is -1, and where a pair of them is on the unit circle.
+/// A test function that is zero where a multiplier is -1; the next one is zero where a pair is on the unit circle.
 double doubling_test(const Eigen::MatrixXd& D) {
     return algebra::determinant(D + Eigen::MatrixXd::Identity(D.rows(), D.cols()));
 }
@@ -36,7 +36,7 @@ double pair_test(const Eigen::MatrixXd& D) {
     return product.real();
 }
 
-/// The pair whose product is nearest to 1 is complex: two real ones change nothing.
+/// Returns whether the pair with the product nearest to 1 is complex; a real pair is no bifurcation.
 bool has_complex_pair(const Eigen::MatrixXd& D) {
     const Eigen::VectorXcd m = algebra::eigenvalues(D);
     double least = 0.1;
@@ -50,7 +50,8 @@ bool has_complex_pair(const Eigen::MatrixXd& D) {
     return complex;
 }
 
-/// At such a corner three branches meet, and the one of symmetric motions goes both ways.
+/// Returns whether a branch becomes symmetric: three branches meet at such a corner, and the symmetric one continues
+/// both ways.
 bool becomes_symmetric(const SteadyMotion& from, const SteadyMotion& to) {
     const auto is_even = [](const SteadyMotion& motion) {
         return std::fabs(motion.high + motion.low) < 1e-6 * (motion.high - motion.low);
@@ -75,7 +76,7 @@ public:
         lap.to = sign() * lap.step.to;
         lap.finished = lap.step.finished;
         if (lap.step.differentiable) lap.derivative = sign() * lap.step.derivative;
-        see(lap.step.outcome, map.contradiction());
+        note_outcome(lap.step.outcome, map.contradiction());
         return lap;
     }
 
@@ -109,40 +110,40 @@ private:
 
 class BranchWalk {
 public:
-    /// `values` of the parameter increase, two at least; all must outlive it.
+    /// `values` of the parameter, increasing, two at least; all arguments must outlive the walk.
     BranchWalk(Circuit& circuit, std::span<const double> values)
         : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
 
-    /// From the first place of the circuit at this parameter towards greater ones (way = 1) or smaller ones (-1).
+    /// Walks from the circuit's first place at this parameter towards greater (way = 1) or smaller (-1) values.
     BranchPath walk(double parameter, double way) {
         const auto first = begun(parameter);
         if (!first) return path_;
         return followed(*first, tangent(*first, way * across()));
     }
 
-    /// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
+    /// Switches to the branch that begins there, as at a doubling with a circuit of twice the periods.
     BranchPath walk_aside(double parameter) {
         const auto first = begun(parameter);
         if (!first) return path_;
-        // A disturbance that comes back to itself.
+        // The disturbance that repeats itself.
         const Eigen::Index n = units_.size();
         const Slopes slopes = scaled(first->slopes).leftCols(n);
         Vector aside = Vector::Zero(n + 1);
         aside.head(n) = algebra::most_shortened(slopes);
         constexpr double away = 1e-2;
         const Vector guess = scaled(*first) + away * aside;
-        const auto there = spot_at(guess);  // of the branch itself the slopes say nothing of the other one
+        const auto there = spot_at(guess);  // on the old branch the slopes do not determine the new one
         auto next = there ? correct(guess, aside, there->slopes) : std::nullopt;
         if (!next) {
             path_.end = WalkEnd::lost;
             return path_;
         }
-        tell(*next);
+        find_motion(*next);
         add(*next, BranchKind::point);
         return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
     }
 
-    /// From a limit cycle on to greater ones.
+    /// Walks from a limit cycle towards larger ones.
     BranchPath walk_up(double parameter) {
         const auto first = begun(parameter);
         if (!first) return path_;
@@ -153,9 +154,9 @@ public:
 
 private:
     using Vector = Eigen::VectorXd;
-    using Slopes = Eigen::MatrixXd;  // of what a fixed point misses, by x and p
+    using Slopes = Eigen::MatrixXd;  // derivatives of the residual by x and p
 
-    /// A fixed point with the slopes there.
+    /// A fixed point, with the derivatives of the residual.
     struct Spot {
         Vector x = {};
         double p = 0;
@@ -173,10 +174,10 @@ private:
     };
     /// A point before the present one.
     struct Passed {
-        Vector x = {}, slope = {};  // by p
+        Vector x = {}, slope = {};  // slope by p
         double p = 0;
     };
-    /// The last point at which a test function was more than rounding.
+    /// The last point at which a test function exceeded its rounding.
     struct Anchor {
         Spot spot;
         double value = 0;
@@ -187,20 +188,20 @@ private:
         y << spot.x.cwiseQuotient(units_), spot.p / range_;
         return y;
     }
-    /// Slopes as the scaled unknowns and the scaled miss have them.
+    /// The derivatives of the scaled residual by the scaled unknowns.
     [[nodiscard]] Slopes scaled(const Slopes& slopes) const {
         Vector columns(units_.size() + 1);
         columns << units_, range_;
         return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
     }
 
-    /// The way on along the curve, of length 1, not against `before`.
+    /// The unit tangent of the curve in the direction of `before`.
     [[nodiscard]] Vector tangent(const Spot& spot, const Vector& before) const {
         Slopes slopes = scaled(spot.slopes);
         for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
         const algebra::FreeDirection free = algebra::free_direction(slopes);
         const Eigen::Index n = slopes.rows();
-        // Where the mass may rest anywhere there is a surface of fixed points: stay where it is.
+        // If the mass may rest anywhere, fixed points form a surface: keep the place.
         if (!(std::fabs(free.last_pivot) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
         const Vector& t = free.direction;
         return t * (t.dot(before) < 0 ? -1 : 1);
@@ -217,7 +218,7 @@ private:
         bool recentred = false;
         std::optional<Passed> passed;
         orientation_ = orientation(now.slopes, ahead);
-        specials_before(now, ahead);  // anchors
+        specials_before(now, ahead);  // sets the anchors
         const std::size_t most_points = 2000 + 20 * values_.size();
         path_.end = WalkEnd::lost;
         const Eigen::Index n = now.x.size();
@@ -266,10 +267,10 @@ private:
             if (step > corner_step) orientation_ = orientation(spot->slopes, on);
             creeps = step < creeping ? creeps + 1 : 0;
             longest = std::min(longest_step, 1.5 * longest);
-            tell(*spot);
+            find_motion(*spot);
             if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
             std::vector<Special> specials = specials_before(*spot, ahead);
-            // Where a branch begins at a Hopf point it is upright, and its slope is rounding.
+            // At a Hopf point the branch is vertical, and the sign of its slope is rounding.
             if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright) {
                 const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
                 if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
@@ -282,7 +283,7 @@ private:
             bool inside = true;
             const Spot* from = &now;
             for (const Special& special : specials) {
-                if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // it is at the present point, to rounding
+                if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // at the present point, to rounding
                     add(special.spot, special.kind);
                     continue;
                 }
@@ -331,7 +332,7 @@ private:
         return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
     }
 
-    /// A better guess at this parameter: on the cubic through two points and their slopes, unless it bends away.
+    /// Improves the guess at this parameter by the cubic through two points and their slopes, unless it bends away.
     void curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead, double target) const {
         const double length = now.p - before.p, t = 1 + (target - now.p) / length;
         constexpr double farthest = 3, bent = 0.3;
@@ -359,7 +360,7 @@ private:
             if ((spot.lap.to - spot.x).cwiseQuotient(units_).norm() < astray) differentiate(spot);
         }
         if (spot.slopes.size() > 0 && !circuit_.stopped()) {
-            tell(spot);
+            find_motion(spot);
             return spot;
         }
         path_.end = circuit_.stopped() ? WalkEnd::stopped : WalkEnd::lost;
@@ -391,7 +392,7 @@ private:
                 });
             }
         }
-        // At an end of the range the question is asked inside only.
+        // At the ends of the range, differences stay inside.
         const double h = std::clamp(reach_ / 4, 1e-8, 1e-6) * range_,
                      p = std::clamp(spot.p, values_.front() + h, values_.back() - h);
         if (rough_) {
@@ -407,7 +408,7 @@ private:
         if (!good) spot.slopes.resize(0, 0);
     }
 
-    /// The point of the curve nearest to a guess, in the plane through the guess across `normal`.
+    /// Corrects a guess to the nearest point of the curve in the plane normal to `normal`.
     std::optional<Spot> correct(const Vector& guess, const Vector& normal, Slopes slopes) {
         constexpr int most_steps = 12;
         const Eigen::Index n = units_.size();
@@ -421,7 +422,7 @@ private:
             spot.lap = circuit_.lap(spot.x, spot.p);
             if (!spot.lap.finished || circuit_.stopped()) return {};
             const Vector off = (spot.lap.to - spot.x).cwiseQuotient(units_);
-            // Broyden's update: the slopes that explain what the last step has left.
+            // Broyden's update with the residual of the last step.
             if (i > 0 && !renewed) slopes += off * last.transpose() / std::max(last.squaredNorm(), 1e-300);
             renewed = false;
             if (off.norm() <= closes || (i > 3 && off.norm() <= nearly_closes)) {
@@ -445,17 +446,17 @@ private:
         return {};
     }
 
-    void tell(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
+    void find_motion(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
     std::optional<Spot> at_value(const Spot& a, const Spot& b, double p) {
         const double part = (p - a.p) / (b.p - a.p);
         Vector guess = (1 - part) * scaled(a) + part * scaled(b);
         guess[units_.size()] = p / range_;
         auto spot = correct(guess, across(), part < 0.5 ? a.slopes : b.slopes);
-        if (spot) tell(*spot);
+        if (spot) find_motion(*spot);
         return spot;
     }
 
-    /// Between two points with a function of other signs: where it is zero.
+    /// The zero of f between two points at which it has opposite signs.
     std::optional<Spot> zero_between(const Spot& a, const Spot& b, double f_a, double f_b, const Test& f) {
         const Vector begin = scaled(a), way = scaled(b) - begin;
         double low = 0, high = 1, f_low = f_a, f_high = f_b;
@@ -468,7 +469,7 @@ private:
             const double value = f(*spot);
             best = std::move(spot);
             if (std::fabs(value) < least_slope * std::max({std::fabs(f_a), std::fabs(f_b), 1e-3})) break;
-            // Illinois: an end that stays counts half.
+            // Illinois: halve the value at an end that stays.
             if (value * f_high > 0) {
                 high = at, f_high = value;
                 if (side == 1) f_low /= 2;
@@ -479,11 +480,11 @@ private:
                 side = -1;
             }
         }
-        if (best) tell(*best);
+        if (best) find_motion(*best);
         return best;
     }
 
-    /// On which side of the branch a tangent is, which stays the same along it, also round corners.
+    /// The orientation of a tangent relative to the branch; constant along it, also across corners.
     [[nodiscard]] double orientation(const Slopes& slopes, const Vector& tangent) const {
         const Eigen::Index n = units_.size();
         Slopes all(n + 1, n + 1);
@@ -491,7 +492,7 @@ private:
         return algebra::determinant(all);
     }
 
-    /// Near a corner of the branch, as where the motion begins to stop: the point on its other side.
+    /// The first point behind a corner of the branch, such as the onset of stops.
     std::optional<Spot> beyond_corner(const Spot& now, const Vector& ahead) {
         constexpr double beyond = 1e-3, near = 1e-5;
         reach_ = beyond;
@@ -506,7 +507,7 @@ private:
         return spot;
     }
 
-    /// Goes there, from a point that is not much farther away than this.
+    /// Continues behind a corner that is about `distance` away; returns false if that fails.
     bool round_corner(Spot& now, Vector& ahead, double distance) {
         Spot before = now;
         reach_ = distance / 10;
@@ -515,7 +516,7 @@ private:
         const Vector here = tangent(before, ahead);
         auto beyond = beyond_corner(before, here);
         if (!beyond) return false;
-        tell(*beyond);
+        find_motion(*beyond);
         if (becomes_symmetric(now.motion, beyond->motion)) return false;
         const Vector beside = tangent(*beyond, scaled(*beyond) - scaled(before));
         const Eigen::Index n = units_.size();
@@ -530,17 +531,17 @@ private:
         return true;
     }
 
-    /// Where the tangents at two points meet, one on either side of a corner.
+    /// The intersection of the tangents on both sides of a corner.
     std::optional<Spot> corner_between(const Spot& a, const Vector& on_a, const Spot& b, const Vector& on_b) {
         Slopes ways(units_.size() + 1, 2);
         ways << on_a, on_b;
         const Vector parts = algebra::solve_least_squares(ways, scaled(b) - scaled(a));
         auto corner = spot_at(scaled(a) + parts[0] * on_a);
-        if (corner) tell(*corner);
+        if (corner) find_motion(*corner);
         return corner;
     }
 
-    /// A place that need not be on the branch, with its slopes.
+    /// A place, not necessarily on the branch, with its derivatives; none outside of the range.
     std::optional<Spot> spot_at(const Vector& y) {
         const Eigen::Index n = units_.size();
         Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = y[n] * range_};
@@ -550,7 +551,7 @@ private:
         return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
     }
 
-    /// The zeros of the test functions before this point, in their order.
+    /// The zeros of the test functions between their anchors and this point, in order.
     std::vector<Special> specials_before(const Spot& spot, const Vector& ahead) {
         struct Kind {
             double (*test)(const Eigen::MatrixXd&);
@@ -572,7 +573,7 @@ private:
             sharp_ = true;
             auto zero = zero_between(from->spot, spot, from->value, value, f);
             sharp_ = false;
-            // At a corner it jumps from one sign to the other.
+            // At a corner f jumps across zero.
             if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(value), std::fabs(from->value))) continue;
             if (i == 1 && !has_complex_pair(zero->derivative())) continue;
             found.push_back({std::move(*zero), kind.kind});
@@ -584,7 +585,7 @@ private:
         return found;
     }
 
-    /// The next one asked for, or the end of the range.
+    /// Next requested parameter value after p towards `way`, otherwise the range's end.
     [[nodiscard]] double next_value(double p, double way) const {
         if (way > 0) {
             const auto next = std::upper_bound(values_.begin(), values_.end(), p + slack_);
@@ -594,8 +595,8 @@ private:
         return next == values_.begin() ? values_.front() : *(next - 1);
     }
 
-    /// Adds the points at the values between two points and, unless it lies beyond the range, the second one; whether
-    /// the branch goes on inside it.
+    /// Adds the points at requested values between two points, then the second point unless it is outside of the range.
+    /// Returns whether the branch continues inside the range.
     bool add_way(const Spot& a, const Spot& b, BranchKind kind) {
         const double way = b.p - a.p;
         double p = next_value(a.p, way);
@@ -609,8 +610,8 @@ private:
         return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
     }
 
-    /// The walk has met a point of its own, as behind a fold where it did not find the other side: what it has met
-    /// since the fold is taken back.
+    /// Handles a walk that met one of its own points. Behind a fold it went back the same way: the points since the
+    /// fold are removed.
     bool goes_back() {
         if (!met_again_) return false;
         std::vector<BranchPoint>& points = path_.points;
@@ -631,7 +632,7 @@ private:
             met_again_ = met_again_ || std::any_of(seen_.begin(), seen_.end(), is_here);
             seen_.emplace_back(spot.p, spot.x);
         }
-        // The points between are for the eye: few do.
+        // Points between requested values serve plots only: keep few.
         std::vector<BranchPoint>& points = path_.points;
         const auto is_between = [](const BranchPoint& point) {
             return !point.asked && point.kind == BranchKind::point;
@@ -645,7 +646,7 @@ private:
         points.push_back({spot.p, spot.motion, asked, kind});
     }
 
-    /// Units follow the motion, but not to where it dies.
+    /// Adapts the units to the motion, down to a part of its greatest size.
     void rescale(const Spot& spot, Vector& ahead) {
         Vector units = circuit_.units(spot.x, spot.lap, spot.motion);
         if (greatest_.size() == 0) greatest_ = units;
@@ -659,7 +660,7 @@ private:
         ahead = tangent(spot, ahead);
     }
 
-    /// The one asked for that this is, but for rounding; else itself.
+    /// The requested value that equals p to rounding, otherwise p.
     [[nodiscard]] double value_near(double p) const {
         const auto near = std::lower_bound(values_.begin(), values_.end(), p - slack_);
         return near != values_.end() && *near <= p + slack_ ? *near : p;
@@ -669,13 +670,13 @@ private:
     std::span<const double> values_;
     double range_, slack_;
     Vector units_, greatest_;
-    bool sharp_ = false;      // differences of a higher order
-    bool rough_ = false;      // a one-sided difference by p will do: it only says where the next guess is
-    double orientation_ = 0;  // of the walk
-    double reach_ = 1;        // of the present step: differences stay on its side of a corner
+    bool sharp_ = false;      // whether differences are of higher order
+    bool rough_ = false;      // whether a one-sided difference by p is enough, as for a guess
+    double orientation_ = 0;  // orientation of the walk's tangents
+    double reach_ = 1;        // the present step: differences must not cross a corner beyond it
     std::vector<std::optional<Anchor>> anchors_;
-    std::vector<std::pair<double, Vector>> seen_;  // points at the values asked for: parameter and place
-    bool met_again_ = false;                       // a point of the walk is one of them
+    std::vector<std::pair<double, Vector>> seen_;  // parameter and place of points at requested values
+    bool met_again_ = false;                       // whether a point of the walk was visited before
     BranchPath path_;
 };
 

@@ -13,7 +13,7 @@ namespace dinal::analysis {
 
 namespace {
 
-/// A sum of many terms that does not collect their roundings (Neumaier).
+/// A compensated sum of many terms (Neumaier).
 class Sum {
 public:
     void add(double x) {
@@ -62,7 +62,7 @@ Stored operator+(const Stored& a, const Stored& b) {
     return {a.kinetic + b.kinetic, a.spring + b.spring};
 }
 
-/// What stores energy: a link has no mass.
+/// The stored energy of a joint; a link has no inertia.
 class Store {
 public:
     Store(const model::Oscillator& oscillator, Whose whose)
@@ -73,7 +73,7 @@ public:
                 system_.stiffness() * y.theta * y.theta / 2 + system_.spring_energy(y.theta)};
     }
     [[nodiscard]] Stored change(const model::State& from, const model::State& to) const {
-        // As products: the difference of two large energies would keep their rounding.
+        // Products, as the difference of two large energies would keep their rounding.
         return {inertia_ * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
                 system_.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2 +
                     (system_.spring_energy(to.theta) - system_.spring_energy(from.theta))};
@@ -84,7 +84,7 @@ private:
     double inertia_;
 };
 
-/// Adds up legs into half cycles as the stretches of the run cut them.
+/// Sums legs into half cycles, delimited by the stretches of the run.
 class Bookkeeper {
 public:
     Bookkeeper(const Store& store, const std::vector<Stretch>& stretches)
@@ -92,7 +92,7 @@ public:
 
     void add(const motion::Leg& leg) {
         Work done;
-        // Without friction a turn may lie within the leg; else it is where one begins, to rounding.
+        // Without friction a turn may lie inside the leg; otherwise stretches end with legs, to rounding.
         while (stretch_ != last_ && ends_within(leg)) {
             const Work here = leg.work(leg.since_start(stretch_->to));
             present_.add(here - done);
@@ -111,7 +111,8 @@ public:
     }
 
 private:
-    /// Not where another leg begins, to rounding: an impact lies between two, and belongs to the stretch that it ended.
+    /// Returns whether the stretch ends inside the leg. An end at the next leg's beginning does not count: an impact
+    /// lies between, and belongs to the stretch it ended.
     [[nodiscard]] bool ends_within(const motion::Leg& leg) const {
         const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::fabs(stretch_->to);
         return leg.since_start(stretch_->to) + rounding < leg.length();
@@ -121,12 +122,12 @@ private:
         total_.add(work);
         present_ = {};
         if (!stretch_->stuck && stretch_->lasts() > 0) {
-            // To the other side of an impact, whose loss is in the work.
+            // The end state is behind an impact, as the work includes its loss.
             const model::State &begin = stretch_->begin,
                                &end = stretch_ != last_ ? (stretch_ + 1)->begin : stretch_->end;
             const Balance balance{work, store_.change(begin, end)};
             energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
-            // On its way through theta = 0 the spring gives all that it has.
+            // Passing theta = 0, the spring releases all of its energy.
             const bool through = (begin.theta < 0) != (end.theta < 0);
             const double spring = through ? store_.at(begin).spring : std::max(-balance.change.spring, 0.0);
             for (const double given : {work.input, spring, -balance.change.kinetic, work.belt, work.base, work.acts}) {
@@ -228,7 +229,7 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose
 
 std::string text(const Energy& energy, const model::Units& units) {
     const auto& [work, change] = energy.total;
-    // What is smaller than the rounding of the whole is no number.
+    // Values below the rounding of the whole are shown as 0.
     const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * energy.flow ? 0.0 : x; };
     const auto stored_line = [&](const char* name, double difference, double start, double finish) {
         return fmt::format("  {:<8}{:>13.6g}   from {:.6g} to {:.6g}\n", name, shown(difference), shown(start),

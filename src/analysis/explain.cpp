@@ -20,7 +20,7 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr std::size_t most_stops = 5;  // told one by one; of more, these:
+constexpr std::size_t most_stops = 5;  // stops reported one by one; of more, these:
 constexpr std::size_t first_stops = 2, last_stops = 2;
 constexpr std::size_t most_turns = 4;
 
@@ -39,7 +39,7 @@ const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
     return whole.drive.loads[joint];
 }
 
-/// The natural period of a joint that others do not disturb, or else the shortest in the system, as a measure of times.
+/// A time scale: the natural period of an undisturbed joint, otherwise the shortest of the system.
 double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool undisturbed) {
     if (undisturbed) return seen.has_spring() ? seen.natural_period() : 1;
     const double shortest = whole.system.shortest_natural_period();
@@ -47,10 +47,10 @@ double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool un
     return std::isfinite(shortest) ? shortest : run.t_stop - run.t_start;
 }
 
-/// The story of one body or link while it is being told, sentence by sentence, paragraph by paragraph.
+/// Builds the text on one body or link, in sentences and paragraphs.
 class Story : protected Prose {
 public:
-    /// All of it must outlive the story. `seen` is the joint by itself.
+    /// The arguments must outlive the story. `seen` is the joint as a one-body system.
     Story(const RunToTell& whole, std::size_t joint, const model::Oscillator& seen)
         : whole_(whole),
           joint_(whole.system.joints[joint]),
@@ -76,19 +76,19 @@ public:
             if (s.stuck && s.begun_by) stops_.push_back(&s);
         }
         if ((stretches_.size() == 1 && stuck_ > 0) || (run_.on_belt && run_.course == nullptr))
-            return;  // no turns are known
+            return;  // its turns are unknown
         const auto before = [](const model::Event& event, double t) { return event.t < t; };
         for (const Stretch& s : swings_) {
             half_cycles_ += s.stuck ? 0 : 1;
             if (!run_.on_belt || !s.ended_by) continue;
             const double near = 1e-9 * T0_;
             const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
-            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // else that is it
+            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // otherwise it is that event
         }
         std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
     }
 
-    std::string told() {
+    std::string build_text() {
         if (joint_.rigid) return tell_rigid();
         if (!is_link_ && whole_.system.bodies[joint_.first()].moved) return tell_moved();
         tell_setting();
@@ -104,14 +104,14 @@ public:
 private:
     [[nodiscard]] bool named() const { return whole_.system.named; }
     [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
-    /// All torques on a standing mass and the limit of its friction are known.
+    /// Returns whether all torques on a standing mass and its friction limit are known.
     [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
     [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
-    /// Where a stretch ended.
+    /// The angle at the end of a stretch.
     [[nodiscard]] static std::string place(const Stretch& s) {
         return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
-    /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
+    /// Returns whether a torque on a mass at rest equals the limit, within the accuracy of M, k theta and the time.
     [[nodiscard]] bool at_limit(double torque, const model::Event& event) const {
         const double Re = limit(torque);
         const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta) +
@@ -120,13 +120,12 @@ private:
         return std::fabs(std::fabs(torque) - Re) <= (1e-9 + 64 * late) * known;
     }
 
-    /// M - k theta, less what another spring pulls back with, and with what the support and a belt do to a mass at
-    /// rest.
+    /// M - k theta minus the torque of other springs, plus the effect of support and belt on a mass at rest.
     [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
     [[nodiscard]] double pull_at(double theta, double M, double t) const {
         return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
-    /// -I a - I vb' - C vb, from the right.
+    /// -I a - I vb' - C vb, limits from the right.
     [[nodiscard]] double around(double t) const {
         double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;
@@ -135,7 +134,7 @@ private:
         return torque;
     }
 
-    /// Re, against a pull this way.
+    /// Re against a pull in this direction.
     [[nodiscard]] double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
     }
@@ -151,7 +150,7 @@ private:
         if (system_.spring().none() || system_.has_spring()) name += " - k theta";
         return name + (system_.spring().none() ? "" : " - spring");
     }
-    /// At a wall, which carries what pulls against it.
+    /// Returns whether a wall carries the pull at this angle.
     [[nodiscard]] bool at_wall(double theta) const {
         const auto& walls = system_.walls();
         return walls && (theta == walls->lower || theta == walls->upper);
@@ -234,10 +233,10 @@ private:
                            system_.friction().holding(*way == 'b' ? model::Motion::backward : model::Motion::forward));
     }
 
-    /// M never changes.
+    /// Returns whether M is constant throughout the run.
     [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
 
-    // ---- how it began and went on
+    // ---- beginning and course
 
     void tell_setting() {
         const std::string who = name_or("The system");
@@ -264,7 +263,7 @@ private:
         end_paragraph();
     }
 
-    /// A link, and a body that links pull at, have no T0 and zeta of their own.
+    /// Describes T0 and zeta; links and linked bodies have none of their own.
     void tell_numbers() {
         std::string numbers;
         const auto number = [&](const char* name, double value) {
@@ -345,19 +344,19 @@ private:
             y.theta, y.velocity);
         const bool known = has_reasons() && run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
         const bool stands = first.stuck || motion::belt_from(belt_, run_.t_start) == 0;
-        const bool told =
+        const bool has_torque =
             y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
         if (first.stuck) {
             add(" and stuck {}", is_link_ ? "together" : on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
         }
-        if (told && first.stuck && at_wall(y.theta)) {
+        if (has_torque && first.stuck && at_wall(y.theta)) {
             add(" at the wall");
-        } else if (told) {
+        } else if (has_torque) {
             const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
             add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
         }
         if (first.stuck && first.ended_by) {
-            add("{} until t = {}, when {}.", told ? "," : "", at(first.to), slip(*first.ended_by, told));
+            add("{} until t = {}, when {}.", has_torque ? "," : "", at(first.to), slip(*first.ended_by, has_torque));
         } else {
             add(".");
         }
@@ -392,7 +391,7 @@ private:
         tell_impacts();
     }
 
-    /// Nothing presses on an open contact.
+    /// Describes open contacts.
     void tell_open() {
         const double open = time_open(run_), all = run_.t_stop - run_.t_start;
         if (open >= all && all > 0) {
@@ -421,7 +420,7 @@ private:
         end_paragraph();
     }
 
-    /// Turns that links disturb have no rule, so only their range is told.
+    /// Describes only the range if links disturb the turns.
     void tell_reach() {
         double low = run_.initial.theta, high = low;
         for (const Stretch& swing : swings_) {
@@ -434,7 +433,7 @@ private:
         end_paragraph();
     }
 
-    /// What the closed forms say about a free motion, as far as it has turned.
+    /// Compares a free motion with its closed form, as far as it has turned.
     void tell_decay() {
         const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
         const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
@@ -499,8 +498,9 @@ private:
         end_paragraph();
     }
 
-    /// Why it slipped and which way; after a sentence about |M - k theta| it is "this torque".
-    [[nodiscard]] std::string slip(const model::Event& event, bool told) const {
+    /// Explains why and in which direction it slipped. `has_torque`: a sentence about |M - k theta| precedes
+    /// ("this torque").
+    [[nodiscard]] std::string slip(const model::Event& event, bool has_torque) const {
         if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
         if (!has_reasons()) return "it slipped";
@@ -516,12 +516,12 @@ private:
         if (own_rule_) {
             why = fmt::format("{} {}", own_rule_->release, reason(torque));
         } else if (at_limit(torque, event)) {
-            why = fmt::format("{} exceeded Re", told ? "this torque" : fmt::format("|{}|", pull_name()));
+            why = fmt::format("{} exceeded Re", has_torque ? "this torque" : fmt::format("|{}|", pull_name()));
         }
         return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
     }
 
-    // ---- what became of it
+    // ---- the end
 
     void tell_end() {
         const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
@@ -540,7 +540,7 @@ private:
         end_paragraph();
     }
 
-    /// Stuck at the end: why it stays, if that is known.
+    /// Explains why a mass stuck at the end stays, if known.
     void tell_stillness() {
         still_ = run_.outcome == model::Outcome::at_rest;
         if (!still_) return;
@@ -559,7 +559,7 @@ private:
     }
 
     [[nodiscard]] bool held_at_most() const {
-        return model::held_against(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
+        return model::cannot_break_away(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
     }
 
     void tell_recurrence(const Recurrence& motion) {
@@ -570,7 +570,7 @@ private:
             say("The amplitude is {:.5g} about theta = {}.", motion.amplitude,
                 text::number_text(motion.centre, 1e7 * motion.amplitude));
         }
-        // A motion that repeats itself under an M of unknown period tells that period.
+        // If the period of M is unknown, the period of the motion serves as one.
         const double known = model::period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
         if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
             if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
@@ -621,7 +621,7 @@ private:
             return;
         }
         const auto& [a, b, c] = last.amplitudes;
-        // The period of a base is not known here, so a beat may look like growth.
+        // The period of a base is unknown here, so a beat may look like growth.
         const bool grows = last.trend == Trend::growing && !on_base_, shrinks = last.trend == Trend::shrinking;
         say("The motion {}: amplitudes of {:.5g}, {:.5g} and {:.5g} in the last three {}",
             grows     ? "grows"
@@ -633,7 +633,7 @@ private:
         end_paragraph();
     }
 
-    /// By how much the amplitude changes each time, when that has a rule.
+    /// Describes a regular change of the amplitude.
     void tell_step(const Swings& last) {
         if (last.trend == Trend::irregular) return;
         const auto& [a, b, c] = last.amplitudes;
@@ -649,37 +649,37 @@ private:
     const RunToTell& whole_;
     const model::Joint& joint_;
     bool is_link_;
-    bool undisturbed_;  // by links
+    bool undisturbed_;  // whether no link disturbs it
     const motion::Trajectory& run_;
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
     const model::Excitation& belt_;
-    std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
-    std::vector<Stretch> stretches_, swings_;  // the same but on a belt: against the belt, and of theta
-    std::vector<model::Event> events_;         // with the extremes of theta on a belt
+    std::optional<motion::OwnRule> own_rule_;  // a release rule other than the law's
+    std::vector<Stretch> stretches_, swings_;  // alike except on a belt: relative to the belt, and of theta
+    std::vector<model::Event> events_;         // including the extremes of theta on a belt
     std::vector<const Stretch*> stops_;
     bool on_base_, on_belt_, steady_belt_;
     double T0_, constant_from_;
     double stuck_ = 0;
     std::size_t half_cycles_ = 0;
-    bool decay_told_ = false;  // by its closed form
-    bool still_ = false;       // for good, under a periodic M
+    bool decay_told_ = false;  // whether the closed form has described it
+    bool still_ = false;       // whether it rests for good under a periodic M
 };
 
-/// The story of all: what stands before and behind those of its bodies and links.
+/// Builds the text on the whole system around those on its bodies and links.
 class WholeStory : protected Prose {
 public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
-    std::string told(const std::vector<Energy>& energies) {
+    std::string build_text(const std::vector<Energy>& energies) {
         const bool all = tells_all(whole_);
         if (all) tell_setting();
         end_paragraph();
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             if (whole_.joint && *whole_.joint != j) continue;
-            // A joint whose numbers are beyond all bounds has no story.
+            // Joints with numbers out of range are skipped.
             const auto seen = model::oscillator_at(system_, j);
-            if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).told();
+            if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).build_text();
         }
         if (all) text_ += "\n";
         if (all && !energies.empty()) tell_energy(energies);
@@ -706,7 +706,7 @@ private:
         if (!system_.units.usual()) say("Units: {}.", system_.units.in_words());
     }
 
-    /// These sentences say what the run may have missed, and what made it long.
+    /// Describes events that the run may have missed, and causes of a long computation.
     void tell_doubts() {
         const double shortest = system_.shortest_natural_period(), scale = std::isfinite(shortest) ? shortest : 1;
         if (run_.gap > 0) {
@@ -781,7 +781,7 @@ private:
 }  // namespace
 
 std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
-    return WholeStory(run).told(energies);
+    return WholeStory(run).build_text(energies);
 }
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,

@@ -1,4 +1,4 @@
-// A run told in sentences: what happened, when, where and why, and what kind of motion it became.
+// Describes a run in sentences: events with time, place and reason, and the kind of motion.
 #pragma once
 
 #include <optional>
@@ -18,20 +18,20 @@ namespace dinal::analysis {
 struct RunToTell {
     const model::System& system;
     const model::Drive& drive;
-    std::vector<const motion::Trajectory*> parts;  ///< the run as seen from each body and link
+    std::vector<const motion::Trajectory*> parts;  ///< the run seen from each body and link
     motion::MethodView method;
-    std::optional<std::size_t> joint = {};  ///< whose story alone is told
+    std::optional<std::size_t> joint = {};  ///< limits the text to this joint
 };
 
-/// Each body and link is told by the same sentences. `energies` are those of the joints, and may be missing.
+/// Describes the whole run. `energies` of the joints may be missing.
 std::string explain(const RunToTell& run, const std::vector<Energy>& energies = {});
 
-/// The story of one body. Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are
-/// told one by one. No user function is called, but for a spring, a belt and a base.
+/// Describes one body, in paragraphs that fit 80 columns. In a long run only the first and last stops are listed. Calls
+/// no user function except those of spring, belt and base.
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
                     motion::MethodView method);
 
-/// What rows alone tell, of a trajectory that was read from a file.
+/// Describes the rows of a trajectory read from a file.
 std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units = {});
 
 }  // namespace dinal::analysis

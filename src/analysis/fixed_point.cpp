@@ -8,10 +8,10 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr double closed = 1e-12;  // of the size of the motion: what a fixed point may miss
+constexpr double closed = 1e-12;  // residual of a fixed point relative to the motion
 constexpr double as_closed_as_can_be = 2e-15;
-constexpr double as_near_as_need_be = 1e-14;  // of the size: a step that is not worth a period
-constexpr double nearly_closed = 1e-9;        // where rounding lets no more be had
+constexpr double as_near_as_need_be = 1e-14;  // relative to the motion: smaller steps are not worth a period
+constexpr double nearly_closed = 1e-9;        // accepted residual if rounding prevents a smaller one
 
 }  // namespace
 

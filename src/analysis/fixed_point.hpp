@@ -1,4 +1,4 @@
-// A fixed point of the period map, or of its opposite: Newton's method with damped steps, and waiting where it is lost.
+// Finds a fixed point of the period map, or of its opposite: damped Newton steps, with waiting if they fail.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ public:
         Place x = Place::Zero(), off = Place::Zero();
         MapStep step;
         double size = 0;
-        double rounding = 0;  ///< of a place: a motion may be so small that this is more than its own digits
+        double rounding = 0;  ///< rounding of a place; may exceed a tiny motion's own digits
         [[nodiscard]] double residual() const { return length_of(off); }
         [[nodiscard]] bool at(double tolerance) const {
             return step.finished && residual() <= std::max(tolerance * size, rounding);
@@ -26,14 +26,14 @@ public:
 
     [[nodiscard]] Try at(const Place& x, double size) const;
 
-    /// Newton's method with damped steps, and one period of waiting where none of them leads on.
+    /// Newton's method with damped steps; runs one period if no step helps.
     [[nodiscard]] std::optional<Try> search(const Place& from, int most) const;
 
-    /// From a place that should be the fixed point but for rounding; none when it is not.
+    /// Confirms a place that should be the fixed point to rounding; none if it is not.
     [[nodiscard]] std::optional<Try> confirmed(const Place& from) const;
 
 private:
-    /// The shortest step to where the linearised map stands still: where I - D has a null space, none is made in it.
+    /// The shortest Newton step; it has no component in the null space of I - D.
     [[nodiscard]] Place step(const Try& now) const;
     [[nodiscard]] std::optional<Try> newton(const Try& now) const;
     [[nodiscard]] Try polished(Try now) const;

@@ -11,7 +11,7 @@
 namespace dinal::analysis {
 namespace {
 
-/// Rows of a swing turn on from the one before, where the times are even; so many at most, for what that rounds.
+/// The most rows computed by rotation from the row before, if times are even; limits its rounding.
 constexpr int turned_on = 32;
 
 class DecayRows {
@@ -30,10 +30,10 @@ public:
     }
 
     [[nodiscard]] bool done() const { return next_ >= times_.size(); }
-    /// The time of the next row since the first one.
+    /// The time of the next row relative to the first.
     [[nodiscard]] double next_time() const { return times_[next_] - times_[0]; }
 
-    /// All rows before `until` swing about `centre` from this state at the time `from`.
+    /// Computes the rows before `until` as a swing about `centre` from this state at the time `from`.
     void swing(double centre, double from, const model::State& start, double until) {
         const double y = start.theta - centre;
         const std::complex<double> begin{y, -(start.velocity + decay_ * y) / omega_};
@@ -78,7 +78,7 @@ Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& 
     Eigen::VectorXd theta(static_cast<Eigen::Index>(times.size()));
     const theory::FreeMotion motion(system, initial);
     const double zeta = system.damping_ratio();
-    constexpr double slow = 1e-3;  // of w0, below which a swing is no longer told by its sine and cosine
+    constexpr double slow = 1e-3;  // relative to w0: slower swings need other forms than sine and cosine
     if (!theory::Modes(zeta).swings() || theory::Modes(zeta).rate() < slow) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             theta[static_cast<Eigen::Index>(i)] = motion.at(times[i] - times[0]).theta;
@@ -100,7 +100,7 @@ Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& 
         const theory::Extreme last = motion.extreme(n);
         const double end = first.t + (n + 1) * half;
         const bool from_below = (first.theta < 0) != (std::fmod(n, 2) != 0);
-        // A row that rounding puts before its swing belongs to it all the same.
+        // A row put before its swing by rounding still belongs to it.
         rows.swing(from_below ? -shift : shift, last.t, {last.theta, 0},
                    std::max(end, std::nextafter(rows.next_time(), 1e300)));
     }

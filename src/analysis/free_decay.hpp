@@ -1,5 +1,5 @@
-// A free decay at the times of a record, by the closed form of each swing (theory/theory_free.hpp): a thousand samples
-// in the time of a few hundred sines.
+// A free decay at the times of a record, from the closed form of each swing (theory/theory_free.hpp): a thousand
+// samples cost a few hundred sines.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,9 @@
 
 namespace dinal::analysis {
 
-/// theta at each of these increasing times, from `initial` at the first one. A linear spring and friction of Coulomb.
-/// With `rests_at` the mass rests at that one of its extremes (0: the first) whatever friction can hold; underdamped.
+/// theta at these increasing times, from `initial` at the first. Requires a linear spring, Coulomb friction and less
+/// than critical damping. With `rests_at` the mass rests at that extreme (0: the first) regardless of the friction
+/// limit.
 Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
                            std::optional<double> rests_at = {});
 

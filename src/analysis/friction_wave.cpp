@@ -25,7 +25,7 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
     for (const Stretch& s : stretches(run)) {
         if (!(s.lasts() > 0)) continue;
         const std::complex<double> between =
-            (wave(s.to) - wave(s.from)) * std::complex<double>(0, 1 / omega);  // of e^(-i omega t)
+            (wave(s.to) - wave(s.from)) * std::complex<double>(0, 1 / omega);  // integral of e^(-i omega t)
         if (s.stuck) {
             const double held = -system.stiffness() * s.begin.theta;
             const double piece = std::min(repeats.period / 64, s.lasts() / 12);
@@ -42,7 +42,7 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
         }
     }
     const std::complex<double> left = M_wave - sum_wave * (2 / length);
-    constexpr double least_left = 0.02;  // of M, where a part in 1e14 of that is still one in 1e12 of theta
+    constexpr double least_left = 0.02;  // part of M: keeps an error of 1e-14 of M below 1e-12 of theta
     if (!(std::abs(left) > least_left * std::abs(M_wave))) return {};
     Fundamental found;
     found.wave =

@@ -1,6 +1,6 @@
-// The mean and the fundamental of a steady motion of a linear system by what its friction does: as k theta + C theta' +
-// I theta'' is M less the friction, these two follow from the same integrals of M and of the friction, which is a
-// constant while the mass slides, and M - k theta while it stands. No motion between the events is asked for.
+// The mean and the fundamental of a steady motion from its friction. As k theta + C theta' + I theta'' is M minus
+// friction, both follow from the integrals of M and of friction, which is constant during a slide and M - k theta
+// during a stick. The motion between events is not needed.
 #pragma once
 
 #include <complex>
@@ -11,16 +11,16 @@
 namespace dinal::analysis {
 
 struct Fundamental {
-    double mean = 0;            ///< of theta
-    std::complex<double> wave;  ///< (2/T) times the integral of theta e^(-i omega t), counted from the drive's start
+    double mean = 0;            ///< mean of theta
+    std::complex<double> wave;  ///< (2/T) times the integral of theta e^(-i omega t), with t from the drive's start
 };
 
-/// From a run of half a period of a symmetric motion, or of all of it. `M_wave` is the fundamental of M. None where the
-/// system is another one, and where friction and M nearly cancel, as near resonance.
+/// Mean and fundamental of theta from a run of one period, or of half a period if symmetric. `M_wave` is the
+/// fundamental of M. Requires is_linear_but_for_friction(); none if friction nearly cancels M.
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
                                        const motion::Trajectory& run, std::complex<double> M_wave);
 
-/// It is a system that this can take: the run may do without the motion between its events.
+/// Returns whether the system is linear except for Coulomb friction, so that by_friction() applies.
 bool is_linear_but_for_friction(const SteadyQuestion& question);
 
 }  // namespace dinal::analysis

@@ -1,4 +1,4 @@
-// A steady motion of one body or of several as seen from one of its joints.
+// A steady motion as seen from one joint.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -79,7 +79,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
         tell_of_run(question, *run, facts);
         double size = 0;
         for (const BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
-        // The difference of two angles that are held together is their rounding.
+        // The difference of two angles held together is rounding.
         if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
             facts.status = SteadyStatus::adheres;
             facts.amplitude = 0;
@@ -97,7 +97,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
         if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
         if (whole.begun) facts.asked = begun_at(question, *whole.begun, question.repeats.start);
     }
-    // Of a body that goes round the angle never comes back.
+    // The angle of a rotating body never returns.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
     if (!alone && facts.is_found() && std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();

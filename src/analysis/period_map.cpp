@@ -40,7 +40,7 @@ double PeriodMap::rounding() const {
 
 motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
     motion::Limits limits;
-    limits.dense = dense;  // a series is read between its nodes more quickly than a closed form
+    limits.dense = dense;  // a stored series is faster to evaluate than a closed form
     drive_.start_at(state(from));
     auto result = motion::simulate(system_, drive_, {start_, start_ + length}, motion::Grid::none(),
                                    dense ? motion::Integrator(motion::Spectral{}) : integrator_, monitor_, limits);
@@ -53,11 +53,11 @@ motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) 
 
 MapStep PeriodMap::operator()(const Place& from) const {
     MapStep step;
-    constexpr double most = 1e100;  // where powers of the motion would soon be no numbers
+    constexpr double most = 1e100;  // powers of larger motions would overflow
     const bool powers = lowered_.has_remainder() || drive_.M().has_feedback();
     const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
     const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
-    // Springs may have no number for what goes beyond all bounds. (Were it M, the user's function has told it.)
+    // A nonlinear spring may overflow in a diverging motion. (An overflow of M has been reported by its function.)
     const bool flew_away =
         run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !drive_.M().has_feedback();
     step.outcome = finite && !flew_away ? run.outcome : model::Outcome::state_not_finite;
@@ -68,12 +68,12 @@ MapStep PeriodMap::operator()(const Place& from) const {
         return step;
     }
     const std::vector<Stretch> parts = stretches(run);
-    step = told(run, parts);
+    step = step_of_run(run, parts);
     differentiate(parts, step);
     return step;
 }
 
-MapStep PeriodMap::told(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
+MapStep PeriodMap::step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
     MapStep step;
     step.outcome = run.outcome;
     const double begins = run.t_start, ends = run.t_stop, first = run.initial.theta;
@@ -97,8 +97,8 @@ MapStep PeriodMap::told(const motion::Trajectory& run, const std::vector<Stretch
             step.t_high = event.t;
         }
     }
-    // What stands when the period begins came to stand before it did, as it does at the end; also where M jumps just
-    // then and frees it.
+    // A mass that stands at the beginning came to a stop before, as it does at the end; also if M jumps just then and
+    // releases it.
     const bool stands_on = run.motion_at_stop == model::Motion::stuck && !run.events.empty();
     if (stands_on) {
         const double since = run.events.back().t;
@@ -129,7 +129,7 @@ Eigen::Matrix2d PeriodMap::free_motion(double length) const {
     return matrix;
 }
 
-/// M' from the left, which is where a breakaway comes from.
+/// M' as the limit from the left, where the breakaway comes from.
 double PeriodMap::slope_before(double t) const {
     const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
     const double now = drive_.M().value_before(t), one = drive_.M().value(t - h), two = drive_.M().value(t - 2 * h);
@@ -183,7 +183,7 @@ void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) 
                 break;
             }
             default:
-                step.differentiable = false;  // what has no matrix here
+                step.differentiable = false;  // other kinds have no jump matrix here
         }
     }
     step.derivative = total;

@@ -10,11 +10,11 @@ namespace dinal::analysis {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr int samples = 4096;         // of a period, for its Fourier integral
-constexpr int least_rows = 100;       // in a period, to read a motion off rows
-constexpr double least_share = 1e-6;  // of a fundamental in the whole, below which it is rounding
+constexpr int samples = 4096;         // samples of a period, for its Fourier integral
+constexpr int least_rows = 100;       // rows in a period, if only rows are available
+constexpr double least_share = 1e-6;  // a smaller part of a fundamental in the whole is rounding
 
-/// M between rows, on a straight line.
+/// M between rows, by linear interpolation.
 double M_between_rows(const motion::Trajectory& trajectory, double t) {
     const auto times = trajectory.column(motion::Column::t), M = trajectory.column(motion::Column::M);
     const double* begin = times.data();

@@ -1,4 +1,4 @@
-// By how much a steady motion lags behind the M that drives it.
+// The phase lag of a steady motion behind M.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace dinal::analysis {
 
-/// The lag of the fundamental of theta behind that of M in the period of M before `until`, rad, from -pi/2 to 3 pi/2.
-/// None when M has no fundamental or depends on the motion, or the rows are too few where they are needed. User
-/// functions are not asked again: their M is read off the rows.
+/// The lag of theta's fundamental behind that of M over the period of M before `until`, rad, from -pi/2 to 3 pi/2. None
+/// if M has no fundamental or depends on the motion, or if there are too few rows. User functions are not called again:
+/// their M is read from the rows.
 std::optional<double> phase_lag(const motion::Trajectory& trajectory, const model::Excitation& excitation,
                                 double period, double until);
 

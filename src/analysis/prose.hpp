@@ -1,4 +1,4 @@
-// Text made sentence by sentence.
+// Builds text from sentences.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ protected:
         sentences_ += sentences_.empty() ? "" : " ";
         add(format, std::forward<Values>(values)...);
     }
-    /// Goes on with the last sentence.
+    /// Continues the last sentence.
     template <class... Values>
     void add(fmt::format_string<Values...> format, Values&&... values) {
         sentences_ += fmt::format(format, std::forward<Values>(values)...);
@@ -29,7 +29,7 @@ protected:
         sentences_.clear();
     }
 
-    std::string text_, sentences_;  // whole paragraphs, and the present one
+    std::string text_, sentences_;  // finished paragraphs, and the present one
 };
 
 }  // namespace dinal::analysis

@@ -7,17 +7,17 @@ namespace dinal::analysis {
 
 namespace {
 
-constexpr std::size_t most_events = 400;  // in a period; more, and nobody calls it one
-constexpr double same = 1e-7;             // amplitudes: above the rounding of events, below all that matters
-constexpr double near_enough = 1e-4;      // amplitudes that a steady motion may still be from its limit
-constexpr double settling = 0.1;          // amplitudes that a settling one may
+constexpr std::size_t most_events = 400;  // events in a period; more are not accepted as periodic
+constexpr double same = 1e-7;             // amplitudes: above the rounding of events, below any real change
+constexpr double near_enough = 1e-4;      // amplitudes: distance of a steady motion from its limit
+constexpr double settling = 0.1;          // amplitudes: distance of a settling motion from its limit
 
 model::EventKind kind_of(const model::Event& event) {
-    // A stick that the end of the run did not let end is no other stick.
+    // A rest is a stick that the end of the run cut off.
     return event.kind == model::EventKind::rest ? model::EventKind::stick : event.kind;
 }
 
-/// A period of m events, tried on the last three of them.
+/// Tests a period of m events on the last three of them.
 class Attempt {
 public:
     Attempt(std::span<const model::Event> events, std::size_t m, bool drifting) : events_(events), m_(m) {
@@ -31,14 +31,14 @@ public:
         amplitude_ = (high->theta - low->theta) / 2;
         centre_ = low->theta + amplitude_;
     }
-    /// How far event i is from where the event a period before it says; `never` when it is another kind of event.
+    /// The deviation of event i from the event a period before; `never` if the kinds differ.
     [[nodiscard]] double off(std::size_t i) const {
         const model::Event &now = events_[i], &then = events_[i - m_];
         if (kind_of(now) != kind_of(then) || !(amplitude_ > 0) || !(period_ > 0)) return never;
         return std::max(std::fabs(now.theta - then.theta - drift_) / amplitude_,
                         std::fabs(now.t - then.t - period_) / period_);
     }
-    /// The worst of m events, the last of them events_[last - 1].
+    /// The worst deviation among the m events before events_[last].
     [[nodiscard]] double worst(std::size_t last, double limit) const {
         double worst = 0;
         for (std::size_t i = last; i > last - m_ && worst <= limit; --i) worst = std::max(worst, off(i - 1));
@@ -49,7 +49,7 @@ public:
         const double change = worst(n, allowed);
         if (change > allowed) return {};
         const double before = worst(n - m_, never);
-        // Differences that shrink by change/before each period add up to this.
+        // The geometric series of differences that shrink by change/before each period.
         const double left = change < before ? change / (1 - change / before) : never;
         if (change > same && left > allowed) return {};
         if (drift_ != 0 && (change > same || before > same || std::fabs(drift_) <= near_enough * amplitude_)) return {};

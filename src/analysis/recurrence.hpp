@@ -1,4 +1,4 @@
-// Does the motion repeat itself? Told from its events, which are all its velocity zeros and so its extremes, too.
+// Detects a periodic motion from its events, which include all zeros of the velocity and so all extremes.
 #pragma once
 
 #include <array>
@@ -11,30 +11,30 @@
 
 namespace dinal::analysis {
 
-/// The last period of a motion that repeats itself, or is about to.
+/// The last period of a motion that repeats itself, or soon will.
 struct Recurrence {
-    bool steady = false;  ///< else it still settles
+    bool steady = false;  ///< whether it repeats; otherwise it still settles
     double period = 0;
-    double drift = 0;  ///< how far theta gets in one period: 0 but for a stick-slip motion that is drawn along
-    double amplitude = 0, centre = 0;  ///< half of the way between the extremes, and the middle between them
-    double change = 0;                 ///< from the period before, in amplitudes
-    double since = 0, until = 0;  ///< the motion has repeated itself (to a thousandth of its amplitude) from then on
-    std::size_t stops = 0;        ///< in a period
-    double stuck = 0;             ///< part of a period
+    double drift = 0;  ///< change of theta in a period: nonzero only for a stick-slip motion that advances
+    double amplitude = 0, centre = 0;  ///< half the distance between the extremes, and their middle
+    double change = 0;                 ///< change from the period before, in amplitudes
+    double since = 0, until = 0;       ///< interval in which the motion repeats to a thousandth of its amplitude
+    std::size_t stops = 0;             ///< stops in a period
+    double stuck = 0;                  ///< part of a period
 };
 
-/// The events of a run without those of the user that have no act, as these change nothing of the motion.
+/// The events of a run except user events without an action, which do not affect the motion.
 std::vector<model::Event> events_of_motion(const motion::Trajectory& run,
                                            const std::vector<model::WantedEvent>& wanted);
 
 std::optional<Recurrence> recurrence(std::span<const model::Event> events);
 
-/// How the amplitude of the last half cycles goes on, when the motion does not repeat itself.
+/// The trend of the last half cycles of a motion that does not repeat.
 enum class Trend { unknown, growing, shrinking, irregular };
 struct Swings {
-    Trend trend = Trend::unknown;        ///< unknown: too few
-    std::array<double, 3> amplitudes{};  ///< the largest of three spans of time, the last one last
-    double span = 0;                     ///< their length, time units
+    Trend trend = Trend::unknown;        ///< unknown: too few half cycles
+    std::array<double, 3> amplitudes{};  ///< greatest amplitude in each of three successive spans
+    double span = 0;                     ///< length of a span, time units
 };
 
 /// `period` of M, or 0.

@@ -16,16 +16,16 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr double golden = 0.6180339887498949;  // multiples of it, less their whole parts, fill a period evenly
+constexpr double golden = 0.6180339887498949;  // its multiples modulo 1 fill a period evenly
 
-/// The i-th of times that are spread over the period.
+/// The i-th of times spread over the period.
 double probe(const Repetition& repeats, int i) {
     const double place = (i + 0.5) * golden;
     return repeats.start + repeats.period * (place - std::floor(place));
 }
 
-/// Times all over the period, and some within each piece of half a period in which neither M nor what it is half a
-/// period later breaks: a difference as short as that piece is seen. None where there are too many pieces to look at.
+/// Times across the period, and some in each piece of half a period without a break of M in either half, so that a
+/// difference on a short piece is detected. None if there are too many pieces.
 std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Repetition& repeats) {
     constexpr int spread = 24;
     constexpr std::size_t most_breaks = 20000;
@@ -51,7 +51,7 @@ std::optional<std::vector<double>> probes_of_halves(const model::Excitation& exc
     return times;
 }
 
-/// The extreme of sign * M near the middle one of three times, which has the greatest value of them.
+/// The extreme of sign * M, bracketed by three times with the greatest value in the middle.
 double refined(const model::Excitation& excitation, double sign, double a, double b) {
     for (int i = 0; i < 60 && b - a > 1e-9 * (std::fabs(a) + b - a); ++i) {
         const double x = b - golden * (b - a), y = a + golden * (b - a);
@@ -60,7 +60,7 @@ double refined(const model::Excitation& excitation, double sign, double a, doubl
     return sign * excitation.value((a + b) / 2);
 }
 
-/// The number of the harmonic of the period that a component is, where it is one sine for all times.
+/// The harmonic number of a component that is one sine for all times; none for others.
 std::optional<double> harmonic_number(const model::Component& component, const Repetition& repeats) {
     const auto* sine = std::get_if<model::Harmonic>(&component.term);
     if (sine == nullptr || std::isfinite(component.from) || std::isfinite(component.to)) return {};
@@ -73,7 +73,7 @@ bool is_odd(double whole) {
     return std::fmod(whole, 2) != 0;
 }
 
-/// Of one sine and nothing else.
+/// The extremes if M is a single sine.
 std::optional<TorqueRange> extremes_of_sine(const model::Excitation& excitation, const Repetition& repeats) {
     double swing = 0;
     int sines = 0;
@@ -104,7 +104,7 @@ std::optional<Repetition> repetition_of(const model::Excitation& excitation, dou
 
 namespace {
 
-/// What functions are given as states: of bodies with names all angles and velocities, and then the states of the run.
+/// The states passed to functions: for named bodies all angles and velocities, followed by the run's own states.
 std::vector<double> states_of(const SteadyQuestion& question) {
     const model::Drive& drive = question.drive;
     std::vector<double> states;
@@ -116,7 +116,7 @@ std::vector<double> states_of(const SteadyQuestion& question) {
     return states;
 }
 
-/// The function that a term asks at any time; none of one that samples, which is asked at its instants.
+/// The function that a term evaluates at arbitrary times; null for sampled controllers.
 std::shared_ptr<model::UserFunction> function_of(const model::Scripted& script) {
     if (const auto* controller = dynamic_cast<const model::Controller*>(script.function.get())) {
         const bool sampled = dynamic_cast<const model::SampledController*>(controller) != nullptr;
@@ -129,7 +129,7 @@ bool same_value(double a, double b) {
     return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// The same values, to the last bit, at times that have nothing in common.
+/// Returns whether the function gives the same bits at unrelated times.
 bool is_timeless(model::UserFunction& function, const model::State& initial, const std::vector<double>& states) {
     constexpr int probes = 40;
     double now = 0.1234567;
@@ -143,7 +143,7 @@ bool is_timeless(model::UserFunction& function, const model::State& initial, con
     return true;
 }
 
-/// From when on this component does not depend on the time itself.
+/// The time from which this component does not depend on time itself.
 double timeless_from(const model::Component& c, const model::State& initial, const std::vector<double>& states) {
     const auto* script = std::get_if<model::Scripted>(&c.term);
     if (script == nullptr) return model::constant_from(c);
@@ -154,7 +154,7 @@ double timeless_from(const model::Component& c, const model::State& initial, con
     return std::isfinite(c.from) ? c.from : 0;
 }
 
-/// The component alone.
+/// An excitation of this component only.
 model::Excitation alone(const model::Component& c) {
     auto made = model::Excitation::make(c.term);
     if (!made) return {};
@@ -162,7 +162,7 @@ model::Excitation alone(const model::Component& c) {
     return (whole ? made.value() : made.value().windowed(c.from, c.to)).scaled(c.gain);
 }
 
-/// The value of what has states, but for controllers.
+/// The value of an excitation with own states, without controllers.
 double value_of(const model::Excitation& excitation, double t, const model::State& y, const std::vector<double>& z) {
     double sum = 0;
     for (const model::Component& c : excitation.components()) {
@@ -226,7 +226,7 @@ std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Re
             const double t = probe(repeats, i);
             const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
             const double now = value(t, y), later = value(t + repeats.period, y);
-            if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
+            if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs report the error
             most = std::max({most, std::fabs(now), std::fabs(later)});
             if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t, before = now, after = later;
         }
@@ -271,7 +271,7 @@ bool is_antisymmetric(const model::Excitation& excitation, const Repetition& rep
         greatest = std::max(greatest, size);
         worst = std::max(worst, std::fabs(now + half) - 1e-12 * size);
     }
-    // Terms that cancel leave the rounding of the greatest; of a function only its values are known.
+    // Cancelling terms leave the rounding of the greatest; a function has only its values.
     const double most = excitation.most();
     return worst <= 1e-13 * (std::isfinite(most) ? most : greatest);
 }
@@ -279,7 +279,7 @@ bool is_antisymmetric(const model::Excitation& excitation, const Repetition& rep
 std::complex<double> harmonic_of(const model::Excitation& excitation, const Repetition& repeats, double n) {
     const double omega = 2 * std::numbers::pi * n / repeats.period;
     const auto components = excitation.components();
-    // a sin(w t + p) = a cos(w t + p - pi/2): the sum of those of this number.
+    // a sin(w t + p) = a cos(w t + p - pi/2), summed over sines of this harmonic.
     std::complex<double> known;
     const bool sines = std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
         const auto number = harmonic_number(c, repeats);
@@ -306,7 +306,7 @@ TorqueRange extremes(const model::Excitation& excitation, const Repetition& repe
         range.high = std::max(range.high, value);
     };
     double jump = excitation.next_break(repeats.start);
-    const double behind_end = end + 1e-12 * (std::fabs(end) + repeats.period);  // where a period ends it may jump, too
+    const double behind_end = end + 1e-12 * (std::fabs(end) + repeats.period);  // a jump at the end counts
     while (jump < behind_end) {
         see(excitation.value(jump));
         see(excitation.value_before(jump));

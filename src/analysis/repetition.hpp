@@ -11,18 +11,18 @@
 
 namespace dinal::analysis {
 
-/// From `start` on M repeats itself every `period`; 0: nothing depends on the time.
+/// M repeats with `period` from `start` on; period 0: nothing depends on time.
 struct Repetition {
     double start = 0, period = 0;
 };
 
-/// What is known of M without asking it: none when no period is. A constant M has any: `otherwise`.
+/// The repetition as declared by the terms; none if unknown. A constant M gets the period `otherwise`.
 std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise);
 
-/// M half a period later is the opposite (of the opposite state, where it depends on that).
+/// Returns whether M changes sign half a period later (at the opposite state, if it depends on the state).
 bool is_antisymmetric(const model::Excitation& excitation, const Repetition& repeats);
 
-/// (2/T) times the integral of M e^(-i 2 pi n t/T), counted from `start`: n = 0 has twice the mean.
+/// (2/T) times the integral of M e^(-i 2 pi n t/T), counted from `start`; for n = 0 twice the mean.
 std::complex<double> harmonic_of(const model::Excitation& excitation, const Repetition& repeats, double n);
 
 struct TorqueRange {
@@ -37,7 +37,7 @@ inline double size_of(const std::complex<double>& value) {
     return std::abs(value);
 }
 
-/// Gauss with five points; where M is a function whose jumps nobody knows, in halves until these agree with the whole.
+/// Gauss's rule with five points; if M is a function with unknown jumps, adaptive by halving.
 template <class F>
 class Quadrature {
 public:
@@ -73,7 +73,7 @@ private:
     double largest_ = 0;
 };
 
-/// The integral of f over [from, to], cut where M jumps and into pieces of at most `longest`.
+/// The integral of f over [from, to], divided at jumps of M and into pieces of at most `longest`.
 template <class F>
 auto integral(const model::Excitation& excitation, double from, double to, double longest, F&& f) {
     Quadrature<std::remove_reference_t<F>> piece(f, !std::isfinite(excitation.most()));

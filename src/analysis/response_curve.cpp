@@ -40,17 +40,17 @@ private:
 
     [[nodiscard]] bool stopped() const { return stopped_; }
 
-    /// From where the motion before begins, or from the start that is asked for.
+    /// Searches from the beginning of the motion before, or from the requested start.
     SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
         SteadyQuestion question = question_.family(p);
-        // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
+        // The start of a limit cycle is arbitrary and useless for another one: each search uses the requested start.
         if (question.is_timeless()) return motion_of(question, near);
         if (!before && question.is_plain()) question.drive.start_at(question_.start);
         if (before) question = from_motion(std::move(question), *before, false);
         return motion_of(question, near);
     }
 
-    /// Where what moves so at another value leads at this one.
+    /// The motion at p, started from a motion at another value.
     SteadyMotion motion_after(double p, const SteadyMotion& before, bool near) {
         return motion_of(from_motion(question_.family(p), before, true), near);
     }
@@ -81,11 +81,11 @@ private:
         return motion;
     }
 
-    /// Of a motion that need not be the only one.
+    /// The circuit of a motion that may not be the only one; null if it has none.
     [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
         const bool slides = motion.status == SteadyStatus::rest && motion.asked && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
-        if (std::isnan(motion.amplitude)) return {};  // it goes round: its size tells nothing
+        if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
         const SteadyQuestion question = question_.family(p);
         const bool plain = question.is_plain() && !question.is_timeless() && !question.drive.has_more();
         if (!question.is_plain() && (question.settles >= 0 || contracts(question))) return {};
@@ -95,7 +95,7 @@ private:
         return circuit_of_periods(question_.family, p, motion, periods, monitor_);
     }
 
-    void see(const Circuit& circuit) {
+    void note_outcome(const Circuit& circuit) {
         if (circuit.contradiction()) curve_.contradiction = circuit.contradiction();
         stopped_ = stopped_ || circuit.stopped();
     }
@@ -139,7 +139,7 @@ private:
         if (!row.empty()) curve_.branches.push_back(std::move(row));
     }
 
-    /// The branches that begin at points of others: limit cycles, and where these are asked for doublings.
+    /// Follows the branches that begin at points of others: limit cycles and, if requested, doublings.
     void follow_births() {
         for (; seen_ < std::min(curve_.branches.size(), most_born); ++seen_) {
             const std::vector<BranchPoint> points = curve_.branches[seen_];
@@ -158,9 +158,9 @@ private:
         }
     }
     void add_born(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
-        see(circuit);
+        note_outcome(circuit);
         if (path.points.size() < 2) return;
-        // The smallest cycles turn about the Hopf point itself.
+        // The smallest cycles are about the Hopf point itself.
         BranchPoint& first = path.points.front();
         constexpr double small = 1e-2;
         if (first.kind == BranchKind::fold && point.kind == BranchKind::hopf) {
@@ -175,7 +175,7 @@ private:
         note_folds(path.points);
         curve_.branches.push_back(std::move(path.points));
     }
-    /// A branch of limit cycles has come to its end at this Hopf point.
+    /// Returns whether a branch of limit cycles ended at this Hopf point.
     [[nodiscard]] bool ends_at(const BranchPoint& hopf) const {
         constexpr double near = 1e-3, small = 1e-2;
         return std::any_of(curve_.branches.begin(), curve_.branches.end(), [&](const auto& branch) {
@@ -192,21 +192,21 @@ private:
         return a.parameter == b.parameter && std::fabs(a.motion.amplitude - b.motion.amplitude) <= 1e-6 * size;
     }
 
-    /// The branch through this motion, both ways unless it begins here.
+    /// Adds the branch through this motion, in both directions unless it begins here.
     std::vector<BranchPoint>& add_branch(Circuit& circuit, double p, const SteadyMotion& motion, bool both) {
         walked_ = true;
         std::vector<BranchPoint> branch;
         WalkEnd back_end = WalkEnd::range;
         if (both) {
             BranchPath back = walk(circuit, sorted_, p, -way_);
-            see(circuit);
+            note_outcome(circuit);
             back_end = back.end;
             branch.assign(back.points.rbegin(), back.points.rend());
         }
         branch.push_back({p, motion, true});
         if (back_end != WalkEnd::closed && !stopped()) {
             BranchPath on = walk(circuit, sorted_, p, way_);
-            see(circuit);
+            note_outcome(circuit);
             branch.insert(branch.end(), on.points.begin(), on.points.end());
             if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
         }
@@ -225,7 +225,7 @@ private:
         }
     }
 
-    /// The branch has an end, as where a motion begins to stick and Re is greater than Rd.
+    /// Records the end of a branch, such as the onset of sticking with Re > Rd.
     void note_end(const std::vector<BranchPoint>& branch, std::size_t i, int inwards) {
         if (stopped() || branch.size() < 2) return;
         const BranchPoint& end = branch[i];
@@ -233,7 +233,7 @@ private:
         if (inside.motion.stable) add_jump(end, end.parameter > inside.parameter);
     }
 
-    /// What becomes of the motion at this point when the parameter goes on.
+    /// Finds the motion beyond this point of the branch.
     void add_jump(const BranchPoint& end, bool rising) {
         const double beyond =
             std::clamp(end.parameter + (rising ? 1e-3 : -1e-3) * range_, sorted_.front(), sorted_.back());
@@ -246,18 +246,18 @@ private:
             if (here.status == SteadyStatus::steady && alike) jump.landed = here;
         }
         jump.to = jump.landed.status == SteadyStatus::none ? std::nan("") : jump.landed.amplitude;
-        // A branch that ends in the sky has come to resonance, where no motion is.
+        // A branch that grows without bound has reached a resonance without a motion.
         constexpr double sky = 1e6;
         if (jump.landed.status == SteadyStatus::steady && jump.from > sky * jump.to) return;
         const double least = 1e-3 * std::max(jump.from, std::isnan(jump.to) ? 0 : jump.to);
         if (!stopped() && !(std::fabs(jump.from - jump.to) <= least)) curve_.jumps.push_back(jump);
     }
 
-    /// From one value to the next a mass at rest has broken away.
+    /// Records a jump between two values if a resting mass has broken away.
     void note_leap(BranchPoint before, BranchPoint after) {
         if (before.motion.status != SteadyStatus::adheres) return;
         const bool rising = after.parameter > before.parameter;
-        const double least = 0.05 * after.motion.amplitude;  // else it begins to move little by little
+        const double least = 0.05 * after.motion.amplitude;  // a smaller motion sets in gradually
         while (std::fabs(after.parameter - before.parameter) > 1e-10 * range_ && !stopped()) {
             const double middle = before.parameter + (after.parameter - before.parameter) / 2;
             BranchPoint point{middle, motion_at(middle, before.motion, true)};
@@ -284,7 +284,7 @@ private:
         return false;
     }
 
-    /// A jump that lands on a branch not yet seen leads to it.
+    /// Follows the branch on which a jump lands, if it is new.
     void go_on_from(std::size_t i) {
         const MotionJump jump = curve_.jumps[i];
         const auto next = std::lower_bound(sorted_.begin(), sorted_.end(), jump.parameter);
@@ -308,7 +308,7 @@ private:
     const motion::Monitor& monitor_;
     std::vector<double> sorted_;
     double way_, range_ = 0;
-    std::size_t seen_ = 0;  // branches whose births were followed
+    std::size_t seen_ = 0;  // number of branches whose births were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
     ResponseCurve curve_;
 };

@@ -1,4 +1,4 @@
-// All that a sweep of a parameter and its way back meet: branches of steady motions, and the jumps between them.
+// The steady motions met by a parameter sweep in both directions: branches, and jumps between them.
 #pragma once
 
 #include "analysis/branch.hpp"
@@ -7,28 +7,28 @@ namespace dinal::analysis {
 
 struct CurveQuestion {
     Family family;
-    std::vector<double> values;  ///< of the parameter, in the order of the sweep
-    model::State start = {};     ///< of the first search
-    bool doubled = false;        ///< also follows the motions of twice the period that begin at doublings
+    std::vector<double> values;  ///< parameter values in the order of the sweep
+    model::State start = {};     ///< start of the first search
+    bool doubled = false;        ///< whether to follow motions of twice the period from doublings
 };
 
-/// Where the motion that a sweep follows ends, and what becomes of it.
+/// The end of the motion that a sweep follows, and the motion that replaces it.
 struct MotionJump {
     double parameter = 0;
-    bool rising = true;        ///< the parameter, in the sweep that meets it
+    bool rising = true;        ///< direction of the sweep that meets it
     double from = 0, to = 0;   ///< amplitudes
-    SteadyMotion landed = {};  ///< status none: on nothing periodic
+    SteadyMotion landed = {};  ///< status none: no periodic motion
 };
 
 struct ResponseCurve {
-    std::vector<std::vector<BranchPoint>> branches;  ///< each in its order; where none was found status says so
-    std::vector<MotionJump> jumps;                   ///< by parameter
+    std::vector<std::vector<BranchPoint>> branches;  ///< each in its order; the status marks values without a motion
+    std::vector<MotionJump> jumps;                   ///< sorted by parameter
     std::optional<model::Contradiction> contradiction = {};
 };
 
-/// Where no two motions can be at one value they are found one from the other; else branches are walked, round their
-/// folds, from the first value, from where a jump lands, and from the last value.
-// NOTE: a branch that none of these meets, as an island, is not seen; another start may lie on it.
+/// If the motion at each value is unique, each search starts from the one before. Otherwise walks branches round their
+/// folds from the first value, from the landing of each jump, and from the last value.
+// NOTE: an isolated branch that none of these reaches is missed; use another start for it.
 ResponseCurve response_curve(const CurveQuestion& question, const motion::Monitor& monitor = {});
 
 }  // namespace dinal::analysis

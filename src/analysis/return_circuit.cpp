@@ -1,5 +1,5 @@
-// The return map of one body or several as the map of a branch: of runs with states, events, a belt or a base, of an M
-// with a memory, and of limit cycles, whose period nothing prescribes.
+// The return map as the map of a branch: for several bodies, for runs with states, events, belts or a base, for an M
+// with a memory, and for limit cycles of unknown period.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// The return map of a branch: its places are angles, velocities and states from period to period, or all but one of
-/// them from passage to passage.
+/// A return map on a branch. A place has angles, velocities and states from period to period, or all but one of them
+/// from passage to passage.
 class ReturnCircuit final : public Circuit {
 public:
     ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
@@ -34,7 +34,7 @@ public:
         period_ = motion.period;
         Moment begin = Runs(asked, monitor).first();
         if (motion.of_bodies) begin.y = vector_of(motion.of_bodies->run.history->at(motion.of_bodies->run.t_start));
-        begin.y = there_ = chart_->measured(begin.y);  // what goes round begins at 0, where angles are exact
+        begin.y = there_ = chart_->measured(begin.y);  // rotating bodies begin at 0, where angles are exact
         if (!cycles_) {
             first_ = returns(here, section_).place(there_);
             return;
@@ -42,7 +42,7 @@ public:
         const auto found = section ? section : section_of(motion);
         if (!found) return;
         section_ = *found;
-        // A passage against the way of the belt slides.
+        // A passage against the belt's direction slides.
         const auto n = here.runs.bodies();
         const model::Excitation& belt = here.question.drive.belts[static_cast<std::size_t>(section_.measured % n)];
         if (!belt.components().empty() && belt.value(here.question.repeats.start) > 0) section_.way = -1;
@@ -50,12 +50,12 @@ public:
         Returns::Return arrival = map.arrival(begin);
         if (!arrival.finished) return;
         first_ = arrival.to;
-        // It may pass more than once in its period.
+        // A cycle may pass the section several times in its period.
         int passages = 0;
         for (double left = (1 - 1e-6) * period_; left > 0 && arrival.finished; ++passages) {
             arrival = map(arrival.to, {});
             left -= arrival.time;
-            if (arrival.time < 1e-6 * period_) arrival.finished = false;  // rounding passes the section at once
+            if (arrival.time < 1e-6 * period_) arrival.finished = false;  // rounding caused a passage at the start
         }
         if (!arrival.finished) first_.resize(0);
         passages_ = passages * periods;
@@ -67,13 +67,13 @@ public:
         Lap lap{.to = back.to, .finished = back.finished};
         lap.time = back.time;
         if (back.mode) lap.mode = std::make_shared<const HeldMode>(*back.mode);
-        see(back.outcome, here.runs.contradiction());
+        note_outcome(back.outcome, here.runs.contradiction());
         return lap;
     }
 
     SteadyMotion motion(const VectorXd& x, double p, const Lap& lap, const Eigen::MatrixXd& derivative) override {
         Here& here = at(p);
-        // What holds when it comes back, holds from the beginning.
+        // The mode at the return is that at the beginning.
         Moment begin = moment(x, p);
         if (!stands_ && lap.mode) begin.mode = *lap.mode;
         const model::System& system = here.runs.system();
@@ -94,7 +94,7 @@ public:
         motion.periods = periods_;
         motion.period = period_ = lap.time;
         note_family(motion);
-        constexpr int rows = 64;  // they tell how far it goes, and turns are looked for between them
+        constexpr int rows = 64;  // the range is read from them, and turns are searched between them
         auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.begun, {}});
         period->run = here.runs.run(begin, start(here), start(here) + motion.period,
                                     motion::Grid::every(motion.period / rows), true);
@@ -157,9 +157,9 @@ public:
     }
 
     [[nodiscard]] VectorXd growth() const override { return growth_; }
-    /// The cycle began as a disturbance of this rest.
+    /// Marks a cycle that began as a disturbance of this rest.
     void begins_at(const VectorXd& rest) { growth_ = first_ - returns(*here_, section_).place(rest); }
-    /// Where the motion through this place is.
+    /// The moment that corresponds to a place.
     [[nodiscard]] Moment moment(const VectorXd& x, double p) { return returns(at(p), section_).moment(x, {}); }
     [[nodiscard]] std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
     [[nodiscard]] std::shared_ptr<const SteadyQuestion> question_from(const VectorXd& x, double p) {
@@ -180,7 +180,7 @@ private:
         }
     };
 
-    /// From where to where a measured number goes.
+    /// The range of a measured number.
     [[nodiscard]] std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
         if (chart_->bodies() == 1 && measured == 0) return {motion.low, motion.high};
         const Reach reach = reach_of(motion.of_bodies->run, *chart_, 64);
@@ -196,14 +196,14 @@ private:
         const auto [low, high] = range_of(motion, measured);
         return Returns::Section{.measured = measured, .place = low + section_at * (high - low)};
     }
-    /// The question at this parameter.
+    /// The question at this parameter, cached.
     Here& at(double p) {
         if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), relays_, monitor_);
         return *here_;
     }
     [[nodiscard]] double start(const Here& here) const { return here.question.repeats.start + offset_; }
     [[nodiscard]] Returns returns(Here& here, const Returns::Section& section) const {
-        // Of a rest a quarter of the fastest natural period, in which no disturbance turns too far to see how fast.
+        // For a rest a quarter of the fastest natural period: short enough to see each disturbance's rotation.
         const double natural = here.runs.system().shortest_natural_period();
         const double length = cycles_                  ? 3 * period_
                               : !timeless_             ? periods_ * here.question.repeats.period
@@ -225,7 +225,7 @@ private:
     double offset_ = 0, period_ = 0;
     std::optional<Chart> chart_;
     Returns::Section section_;
-    std::vector<std::vector<bool>> relays_;  // of each load
+    std::vector<std::vector<bool>> relays_;  // switch positions for each load
     VectorXd there_, growth_;
     std::unique_ptr<Here> here_;
 };
@@ -242,14 +242,14 @@ std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, cons
 
 std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
                                                  const motion::Monitor& monitor) {
-    // NOTE: the least cycles of several bodies are not followed: their section moves away from them as the bodies turn.
+    // NOTE: the smallest cycles of several bodies are not followed: as the bodies turn, the section moves away.
     if (!rest.asked || !rest.asked->is_plain()) return {};
     ReturnCircuit still(family, p, rest, 1, monitor);
     const VectorXd x = still.first();
     const Circuit::Lap lap = still.lap(x, p);
     const VectorXd units = still.units(x, lap, rest);
     const Eigen::Index n = x.size();
-    Eigen::MatrixXd D(n, n);  // of the scaled places
+    Eigen::MatrixXd D(n, n);  // derivative by scaled places
     constexpr double h = 1e-4;
     for (Eigen::Index i = 0; i < n; ++i) {
         const VectorXd step = h * units[i] * VectorXd::Unit(n, i);
@@ -264,9 +264,9 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     }
     const double turn = std::fabs(std::arg(values[best]));
     if (!(turn > 1e-6)) return {};
-    constexpr double small = 1e-3;  // of the units: the cycle differs from the linearised motion by its square
+    constexpr double small = 1e-3;  // size in units: the cycle deviates from linear motion by its square
     const Eigen::VectorXcd mode = small * vectors.col(best).normalized().cwiseProduct(units);
-    // Of the angles, or of the velocities where no angle is measured, the one that swings most.
+    // The angle, or velocity if no angle is measured, with the largest swing.
     const std::vector<Eigen::Index> own = still.own();
     const auto bodies = static_cast<Eigen::Index>(rest.bodies.size());
     const Eigen::Index until = !own.empty() && own.front() < bodies ? bodies : 2 * bodies;

@@ -1,5 +1,4 @@
-// Where a motion settles: searches for the motion that a run of one body or of several leads to, among the fixed points
-// of its returns. docs/theory.md, section 10.
+// Finds the steady motion that a run leads to as a fixed point of its return map. docs/theory.md, section 10.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,7 +23,8 @@ bool has_acts(const model::Drive& drive) {
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
-/// Linear but for dry friction under torques that do not depend on the motion: far away, too, a return costs little.
+/// Returns whether the system is linear except for dry friction, under torques independent of the motion: returns are
+/// cheap even far away.
 bool is_linear(const model::System& system, const model::Drive& drive) {
     const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
     const auto bends = [](const model::Joint& joint) {
@@ -34,7 +34,7 @@ bool is_linear(const model::System& system, const model::Drive& drive) {
            std::none_of(system.joints.begin(), system.joints.end(), bends);
 }
 
-/// The longest dead time of a controller.
+/// The longest delay of a controller.
 double longest_delay(const model::Excitation& excitation) {
     double most = 0;
     for (const model::Component& c : excitation.components()) {
@@ -52,12 +52,12 @@ double shortest_sampling(const model::Excitation& excitation) {
     return least;
 }
 
-/// The sizes of the greatest angle or velocity.
+/// The greatest range among the first `count` numbers.
 double greatest(const Reach& reach, Index count) {
     return reach.range().head(count).cwiseAbs().maxCoeff();
 }
 
-/// Searches for the motion that a run from the start of the question leads to.
+/// Finds the motion that a run from the start of the question leads to.
 class ReturnSearch {
 public:
     ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
@@ -66,18 +66,18 @@ public:
     SteadyMotion found();
 
 private:
-    /// A motion of facts_.period begins at this moment. Its state in the middle; none if it can not be run, and the
-    /// search goes on.
-    std::optional<VectorXd> tells(const Moment& moment, double start);
-    /// A run that has settled has gone on to here; facts_.period later it will be here again. The same.
-    std::optional<VectorXd> tell_settled(const Runs::Run& so_far);
-    std::optional<VectorXd> tell_period(const Moment& from, Runs::Run run, double period);
-    /// The bodies come to rest or go round evenly; stands: friction holds all.
-    void tell_rest(const Runs::Run& run, bool stands);
+    /// Completes the answer for a motion of facts_.period that begins at this moment, and returns its state half a
+    /// period later; none if it cannot be run, and the search continues.
+    std::optional<VectorXd> complete(const Moment& moment, double start);
+    /// The same for a run that has settled up to its end and repeats after facts_.period.
+    std::optional<VectorXd> complete_settled(const Runs::Run& so_far);
+    std::optional<VectorXd> complete_period(const Moment& from, Runs::Run run, double period);
+    /// Completes the answer for bodies that rest or rotate steadily; `stands`: friction holds all.
+    void complete_rest(const Runs::Run& run, bool stands);
 
     [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
     [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
-    /// The period of M, or the slowest natural one.
+    /// The period of M, or the slowest natural period.
     [[nodiscard]] double pace() const;
 
     std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
@@ -93,16 +93,16 @@ private:
     void note_rest(const Runs::Run& run, bool stands);
     struct Closed;
     class ClosedSearch;
-    bool tells_closed(Returns& map, const Closed& found);
+    bool complete_closed(Returns& map, const Closed& found);
     void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
 
     Runs runs_;
     Chart chart_;
     SteadyMotion facts_;
-    double largest_ = 0;  // how far any angle or velocity went, where a run settles
+    double largest_ = 0;  // greatest angle or velocity of a settling run
 };
 
-/// A motion that comes back after some returns.
+/// A motion that closes after some returns.
 struct ReturnSearch::Closed {
     VectorXd x;
     HeldMode mode;
@@ -110,13 +110,13 @@ struct ReturnSearch::Closed {
     double period = 0, residual = 0;
 };
 
-/// Finds it from the returns that it makes, by Newton's method where these lead near.
+/// Finds a closed motion from successive returns, with Newton's method near it.
 class ReturnSearch::ClosedSearch {
 public:
     using Return = Returns::Return;
     ClosedSearch(Returns& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
 
-    /// What one return after the other leads to.
+    /// Makes returns until the motion closes; checks after each of `counts`.
     std::optional<Closed> follow(Return first, const std::vector<int>& counts) {
         seen_ = {std::move(first)};
         for (const int until : counts) {
@@ -136,7 +136,7 @@ public:
         return {};
     }
 
-    /// By Newton's method from here.
+    /// Tries Newton's method from here at once.
     std::optional<Closed> at_once(const Return& from) { return newton(from, 1, 1e6); }
     [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
     [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
@@ -146,7 +146,7 @@ private:
 
     std::optional<Closed> closes(double near) {
         const std::size_t last = seen_.size() - 1;
-        int tries = 0;  // chaos comes near to itself again and again
+        int tries = 0;  // chaotic motions come near to themselves repeatedly
         for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
             if (seen_[last].mode != seen_[last - m].mode) continue;
             const double off = size_of_step(seen_[last].to - seen_[last - m].to);
@@ -160,7 +160,7 @@ private:
         return {};
     }
 
-    /// It may have come back before: what dies out slowly is nearer to itself after more returns.
+    /// The smallest number of returns: slow decay makes more returns look closer.
     Closed shortest(Closed found) {
         for (int m = 1; m < found.returns; ++m) {
             if (found.returns % m != 0) continue;
@@ -175,7 +175,7 @@ private:
         return found;
     }
 
-    /// The run comes nearer to it all the time, and is there soon.
+    /// Returns whether the run keeps approaching x and will soon be there.
     [[nodiscard]] bool approaches(const VectorXd& x, std::size_t m) const {
         const std::size_t last = seen_.size() - 1;
         const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
@@ -183,7 +183,7 @@ private:
         return now <= there || (now <= close && now < 0.98 * before);
     }
 
-    /// It has come back to rounding, and differences do not tell more.
+    /// Accepts a return within rounding, where differences are useless.
     std::optional<Closed> itself(const Return& from, int m) {
         const Return back = map_(from.to, from.mode, m);
         maps_ += m;
@@ -237,12 +237,12 @@ double ReturnSearch::pace() const {
     return natural > 0 ? natural : 1;
 }
 
-/// A stretch of the run; none when it failed, and the answer says how.
+/// Runs a stretch; none if it failed, with the reason in the answer.
 std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
     Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
     facts_.outcome = run.outcome;
     reach = reach_of(run, chart_);
-    constexpr double beyond = 1e100, no_number = 1e50;  // there M may have none
+    constexpr double beyond = 1e100, no_number = 1e50;  // above no_number the motion is blamed for a NaN in M
     const double greatest = analysis::greatest(reach, 2 * n());
     const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
     if (whole && greatest < beyond) return run;
@@ -253,7 +253,7 @@ std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start,
     return {};
 }
 
-/// Units of places: never zero.
+/// Scales of the numbers of a place, never zero.
 VectorXd ReturnSearch::units_of(const Reach& reach) const {
     VectorXd units = reach.range();
     const VectorXd most = reach.high.cwiseAbs().cwiseMax(reach.low.cwiseAbs());
@@ -271,7 +271,7 @@ VectorXd ReturnSearch::units_of(const Reach& reach) const {
 
 void ReturnSearch::forced() {
     const double period = question().repeats.period;
-    // An act at the very beginning of a run would not happen: returns are looked at where nothing does.
+    // An action at the very beginning of a run would be lost, so returns begin at a quiet phase.
     constexpr double nowhere = 0.3819660112501051;
     Moment now = runs_.first();
     double start = question().repeats.start;
@@ -289,18 +289,18 @@ void ReturnSearch::forced() {
         Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
         ClosedSearch search(map, facts_.maps, 1);
         const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
-        if (found && tells_closed(map, *found)) return;
+        if (found && complete_closed(map, *found)) return;
     }
-    std::vector<double> ranges{greatest(reach, n())};  // of single periods
-    std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one,
-    std::size_t between = 1;    // whose ends are so many returns apart
+    std::vector<double> ranges{greatest(reach, n())};  // ranges in single periods
+    std::vector<double> sizes;  // sizes of the first batch of returns and both halves of the second,
+    std::size_t between = 1;    // whose ends are this many returns apart
     const double natural = runs_.natural_period();
     const int longest = question().periods > 0 ? question().periods : 32;
     for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
         Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
         ClosedSearch search(map, facts_.maps, longest);
         const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
-        if (found && tells_closed(map, *found)) return;
+        if (found && complete_closed(map, *found)) return;
         if (search.failed()) {
             facts_.outcome = *search.failed();
             if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
@@ -311,7 +311,7 @@ void ReturnSearch::forced() {
             double size = 0;
             for (std::size_t i = from; i < until; ++i) {
                 const VectorXd y = chart_.measured(map.moment(seen[i].to, seen[i].mode).y).cwiseAbs();
-                // Bodies that nothing pulls back may drift without an end.
+                // free bodies may drift for ever
                 if (natural > 0) size = std::max(size, y.head(n()).maxCoeff());
                 const double pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
                 size = std::max(size, y.segment(n(), n()).maxCoeff() * pace);
@@ -325,7 +325,7 @@ void ReturnSearch::forced() {
         if (!stretch(now, start, period, reach)) return;
         ranges.push_back(greatest(reach, n()));
     }
-    // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
+    // A beating motion has equal maxima in both halves, a creeping one equal ranges.
     const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
     if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
         facts_.status = SteadyStatus::grows;
@@ -333,10 +333,10 @@ void ReturnSearch::forced() {
     }
 }
 
-// ---- with controllers that sample or wait
+// ---- with sampled or delayed controllers
 
-/// The run itself goes on until it repeats itself: from period to period of what drives it and samples, or behind a
-/// dead time, where nothing prescribes a period, from passage to passage.
+/// Continues the run until it repeats: from period to period of drive and sampling, or with a delay but no period from
+/// passage to passage.
 class ReturnSearch::Settling {
 public:
     explicit Settling(ReturnSearch& search)
@@ -368,21 +368,21 @@ public:
                 s_.note_rest(run_, false);
                 return;
             }
-            constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
+            constexpr double settled = 1e-10;  // relative distance from the limit
             std::size_t m = comes_back(settled);
             if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
             if (m == 0) continue;
-            tell(m);
+            finish(m);
             return;
         }
         judge_growth();
     }
 
 private:
-    static constexpr double alike = 1e-7;    // sizes: what is no nearer after all returns is not told as periodic
-    static constexpr double finest = 1e-12;  // sizes: of rounding in runs
+    static constexpr double alike = 1e-7;    // relative: at the end of the search, a larger difference is not periodic
+    static constexpr double finest = 1e-12;  // relative rounding of runs
 
-    /// One return more; false when that is the end.
+    /// Makes one more return; returns false at the end of the search.
     bool goes_on() {
         const double start = t_;
         t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
@@ -403,7 +403,7 @@ private:
         }
         s_.largest_ = std::max(s_.largest_, size);
         sizes_.push_back(size);
-        constexpr double dead = 1e-11;  // of the largest motion: it creeps or swings towards a rest
+        constexpr double dead = 1e-11;  // part of the greatest motion: it dies out
         small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
         if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
         t_ = run_.t_stop;
@@ -411,15 +411,15 @@ private:
         seen_.push_back(seen(t_ - start));
         const VectorXd units = s_.units_of(reach);
         size_ = seen_.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
-        constexpr double nothing = 1e-12;  // of what it was: it dies out
+        constexpr double nothing = 1e-12;  // lower limit of the scale of a motion that dies out
         size_.head(units.size()) = units.cwiseMax(nothing * s_.largest_);
-        // What a controller gives may be its rounding at each return; it is nothing beside what moves the bodies.
+        // A controller's output may be mere rounding: scale it by the torque that moves the bodies.
         const auto others = size_.segment(units.size(), size_.size() - units.size() - 1);
         size_.segment(units.size(), others.size()) = others.cwiseMax(torque_of(reach));
         return true;
     }
 
-    /// The torque that moves a body so.
+    /// The size of the torque needed for this motion.
     [[nodiscard]] double torque_of(const Reach& reach) const {
         double torque = 0;
         const auto& bodies = s_.runs_.system().bodies;
@@ -430,7 +430,8 @@ private:
         return torque;
     }
 
-    /// No passage has come: the motion has moved away from the section, or stands. False when that is the end.
+    /// Chooses another section after a stretch without a passage; returns false if the motion rests or the tries are
+    /// used up.
     bool looks_elsewhere(const Reach& reach) {
         constexpr int most_looks = 40, most_longer = 24;
         const bool rests = small_ > 0 && s_.question().drive.states.empty();
@@ -444,8 +445,8 @@ private:
         return true;
     }
 
-    /// Angles and velocities as they are measured, states, what the controllers give, and how long the return took.
-    /// What controllers remember besides is not seen, so a motion must return more than once.
+    /// The observed numbers: measured angles and velocities, states, outputs of controllers, and the duration of the
+    /// return. Other memory of controllers is not observed, so more than one return must agree.
     [[nodiscard]] VectorXd seen(double time) const {
         const VectorXd y = s_.chart_.measured(vector_of(run_.carry->y));
         std::vector<double> all(y.begin(), y.end());
@@ -456,9 +457,9 @@ private:
         return vector_of(all);
     }
 
-    /// How far all that is remembered is from what it was m returns before, looked at from `back` before the end.
+    /// The difference between all observed numbers and those m returns before, evaluated `back` returns before the end.
     [[nodiscard]] double off(std::size_t m, std::size_t back) const {
-        std::size_t past = 1;  // returns that the dead time reaches back to
+        std::size_t past = 1;  // number of returns within the delay
         while (past < times_.size() && times_.back() - times_[times_.size() - 1 - past] < delay_) ++past;
         const std::size_t span = std::max(m, past + 1) + 1;
         if (seen_.size() < back + m + span) return model::never;
@@ -470,7 +471,7 @@ private:
         return worst;
     }
 
-    /// The fewest returns after which it comes back to this part of its size; 0: it does not.
+    /// The smallest number of returns after which it repeats to this tolerance; 0: none.
     [[nodiscard]] std::size_t comes_back(double within) const {
         const auto periods = static_cast<std::size_t>(s_.question().periods);
         const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
@@ -479,10 +480,10 @@ private:
         for (std::size_t m = first; m <= (periods > 0 ? first : longest); ++m) {
             const double now = off(m, 0);
             if (!(now <= alike)) continue;
-            // Differences that shrink by so much in a period of the motion add up to this.
+            // The geometric series of differences that shrink at this rate.
             const double kept = std::pow(now / off(m, 4 * m), 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
             if (now > finest && left > within) continue;
-            // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
+            // A slowly rotating approach repeats sooner after several periods than after one.
             for (std::size_t fewer = first; fewer < m; ++fewer) {
                 if (off(fewer, 0) <= alike) return fewer;
             }
@@ -491,16 +492,16 @@ private:
         return 0;
     }
 
-    void tell(std::size_t m) {
+    void finish(std::size_t m) {
         SteadyMotion& facts = s_.facts_;
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
         if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
-        if (const auto middle = s_.tell_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
+        if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
-    /// A motion that beats is as large in the first half as in the second.
+    /// Detects growth; a beating motion has equal maxima in both halves.
     void judge_growth() {
         const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
         const double before = *std::max_element(sizes_.begin(), half + 1);
@@ -512,23 +513,23 @@ private:
     }
 
     ReturnSearch& s_;
-    double length_, delay_ = 0, stretch_;  // of a return, or 0; of the greatest dead time; of a run to a passage
-    /// How long after the instants at which all controllers sample it is looked at: by rounding some of them sample
-    /// before such an instant and some after it. None samples half of the shortest interval later.
+    double length_, delay_ = 0, stretch_;  // duration of a return, or 0; greatest delay; length of a run to a passage
+    /// The delay of the observation after common sampling instants, as rounding scatters the samples around these. Half
+    /// of the shortest interval later no controller samples.
     double beside_ = model::never;
     bool timeless_;
     double t_;
     std::optional<model::WantedEvent> passage_;
-    int looks_ = 0;               // for another section
-    Runs::Run run_;               // the last one
-    std::vector<double> sizes_;   // of all runs
-    std::size_t small_ = 0;       // the last runs in which hardly anything moved
+    int looks_ = 0;               // number of sections tried
+    Runs::Run run_;               // the last run
+    std::vector<double> sizes_;   // sizes of all runs
+    std::size_t small_ = 0;       // number of last runs with hardly any motion
     std::vector<VectorXd> seen_;  // at each return,
-    std::vector<double> times_;   // and when that was
-    VectorXd size_;               // of what is seen
+    std::vector<double> times_;   // and its time
+    VectorXd size_;               // scale of the observed numbers
 };
 
-// ---- without
+// ---- without a period
 
 void ReturnSearch::cycle() {
     const double natural = runs_.natural_period(), base = pace(), start = question().repeats.start;
@@ -573,10 +574,10 @@ bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double len
     ClosedSearch search(map, facts_.maps, 16);
     const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
     const auto found = search.follow(first, counts);
-    return found && tells_closed(map, *found);
+    return found && complete_closed(map, *found);
 }
 
-/// Nothing depends on the time: what stands, or goes round evenly, and leaves everything as it is, does so for ever.
+/// Detects a rest of an autonomous system: standing, or steady rotation with all other numbers constant.
 bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const VectorXd& most_changed) {
     const bool stands = run.outcome == model::Outcome::at_rest ||
                         (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
@@ -598,12 +599,12 @@ void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
     facts_.period = 0;
     facts_.stable = true;
     facts_.status = SteadyStatus::rest;
-    tell_rest(run, stands);
+    complete_rest(run, stands);
 }
 
-/// The facts about a motion that closes; false when no run stays with it.
-bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
-    if (!(found.period > 0)) return false;  // a passage at once, of what has all but come to rest
+/// Completes the answer for a closed motion; returns false if no run stays on it.
+bool ReturnSearch::complete_closed(Returns& map, const Closed& found) {
+    if (!(found.period > 0)) return false;  // a passage at once: the motion has nearly stopped
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
     std::vector<std::complex<double>> multipliers;
@@ -624,7 +625,7 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
         note_family(facts_);
     }
     const Moment moment = map.moment(found.x, found.mode);
-    const auto middle = tells(moment, map.start());
+    const auto middle = complete(moment, map.start());
     if (middle) {
         note_symmetry(moment.y, *middle);
     } else {
@@ -635,7 +636,7 @@ bool ReturnSearch::tells_closed(Returns& map, const Closed& found) {
     return middle.has_value();
 }
 
-/// Half a period later all angles and velocities are the opposite.
+/// Sets `symmetric` if all angles and velocities are opposite half a period later.
 void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) {
     if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_goes_round()) return;
     VectorXd units = VectorXd::Ones(2 * n());
@@ -657,40 +658,40 @@ SteadyMotion ReturnSearch::found() {
     return std::move(facts_);
 }
 
-// ---- what is told of it
+// ---- the answer
 
-std::optional<VectorXd> ReturnSearch::tells(const Moment& moment, double start) {
+std::optional<VectorXd> ReturnSearch::complete(const Moment& moment, double start) {
     const double period = facts_.period;
     constexpr double rows = 400;
     Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
     facts_.begun = std::make_shared<const model::Drive>(runs_.from(moment, start));
-    return tell_period(moment, std::move(run), period);
+    return complete_period(moment, std::move(run), period);
 }
 
-std::optional<VectorXd> ReturnSearch::tell_settled(const Runs::Run& so_far) {
+std::optional<VectorXd> ReturnSearch::complete_settled(const Runs::Run& so_far) {
     const double period = facts_.period, t = so_far.t_stop;
     constexpr double rows = 400;
     Runs::Run run = runs_.go_on(so_far.carry, t, t + period, motion::Grid::every(period / rows));
     if (!model::is_whole(run.outcome)) return {};
-    return tell_period(Runs::at_stop(so_far), std::move(run), period);
+    return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }
 
-void ReturnSearch::tell_rest(const Runs::Run& run, bool stands) {
+void ReturnSearch::complete_rest(const Runs::Run& run, bool stands) {
     const Moment now = Runs::at_stop(run);
     const auto velocity = now.y.segment(n(), n());
     const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
     const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
     if (moves && chart_.any_goes_round()) facts_.status = SteadyStatus::steady;
-    if (moves && stuck) facts_.status = SteadyStatus::adheres;  // to the belt, which takes it along
+    if (moves && stuck) facts_.status = SteadyStatus::adheres;  // it adheres to the belt and moves with it
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
     if (question().settles < 0) facts_.begun = std::make_shared<const model::Drive>(runs_.from(now, run.t_stop));
     facts_.bodies = bodies_at(now.y, chart_, n());
 }
 
-/// From this moment on the run is the motion.
-std::optional<VectorXd> ReturnSearch::tell_period(const Moment& from, Runs::Run run, double period) {
+/// Completes the answer with a run that is one period from this moment.
+std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, Runs::Run run, double period) {
     const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;

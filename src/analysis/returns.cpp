@@ -25,7 +25,7 @@ double size_of_step(const VectorXd& step) {
 
 namespace {
 
-/// Passes zero where a measured number passes a place.
+/// An event function that is zero at the section.
 class Passage final : public model::UserFunction {
 public:
     Passage(const Chart& chart, const Returns::Section& section, bool named)
@@ -42,7 +42,7 @@ private:
     bool named_;
 };
 
-/// A run from a start that is shifted is the same, shifted.
+/// Returns whether a shift of the start only shifts the whole run.
 bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
     constexpr double by = 0.73;
     const double start = runs.question().repeats.start;
@@ -157,7 +157,7 @@ model::Drive Runs::from(const Moment& moment, double start) const {
         drive.states[k].start = moment.y[2 * n + static_cast<Index>(k)];
     }
     if (!moment.mode) return drive;
-    // A body that is held has the velocity of what holds it to the last bit, else it would slip first.
+    // A held body must have exactly the velocity of its support, otherwise it would slip first.
     for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
         const int leans = moment.mode->mode.leans[j];
         if (!moment.mode->mode.holds(j)) continue;
@@ -194,7 +194,7 @@ Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start,
     if (!section) return run(question_.drive, start, end, rows, true, std::move(before));
     model::Drive drive = question_.drive;
     drive.events.push_back(*section);
-    const auto unwatched = [](const engine::Carry& carry) {  // other runs have other events
+    const auto unwatched = [](const engine::Carry& carry) {  // without the user's events, which other runs do not have
         auto copy = std::make_shared<engine::Carry>(carry);
         copy->watches.clear();
         return copy;
@@ -218,7 +218,7 @@ Runs::Run Runs::run(const model::Drive& drive, double start, double end, const m
                               .limits = limits,
                               .before = std::move(before),
                               .longest = question_.longest,
-                              .keeps_torques = grid.count() > 0});  // a user sees those with rows
+                              .keeps_torques = grid.count() > 0});  // only users see those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
     floor_ = result.carry->floor;
     return result;
@@ -332,7 +332,7 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
     const Eigen::MatrixXd allowed = runs_.allowed(mode, units_.size());
     Derivative found{Eigen::MatrixXd::Zero(n, n)};
     if (allowed.cols() == 0) return found;
-    // Orthonormal among places, of those directions that keep the section as well.
+    // An orthonormal basis, within places, of the allowed directions in the section.
     const algebra::Basis basis = algebra::orthonormal_basis(to_place * allowed);
     const double h = order == 2 ? 1e-5 : 3e-4;
     for (Index i = 0; i < basis.rank; ++i) {
@@ -340,7 +340,7 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
         struct Slope {
             VectorXd value;
             double bend;
-            bool alike;  // the motions to both sides
+            bool alike;  // whether the motions on both sides have the same events
         };
         const auto slope = [&](double step) -> std::optional<Slope> {
             const Return ahead = (*this)(at + step * direction, mode, returns);
@@ -353,7 +353,7 @@ std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const
         const auto differ = [](const Slope& s) { return !s.alike && s.bend > little; };
         double step = h;
         std::optional<Slope> near = slope(step), far = order == 2 ? near : slope(2 * step);
-        // A grazing, a stop or a switch lies between the two sides.
+        // A grazing, a stop or a switch lies between both sides.
         while (order != 2 && near && far && (differ(*near) || differ(*far))) {
             step /= 10;
             if (step < least) return {};

@@ -14,7 +14,7 @@ namespace {
 
 using Wave = std::complex<double>;
 
-/// Eigen's transform takes n times the sum of the prime factors of n.
+/// Returns whether n has small prime factors only: Eigen's transform costs n times their sum.
 bool is_fast(std::size_t n) {
     for (const std::size_t factor : {2U, 3U, 5U, 7U, 11U, 13U}) {
         while (n % factor == 0) n /= factor;
@@ -22,13 +22,13 @@ bool is_fast(std::size_t n) {
     return n < 100;
 }
 
-/// Of a number of values with a large prime factor, as a convolution of a length without one (Bluestein 1970): the
-/// product i k in the exponent is (i^2 + k^2 - (i - k)^2)/2.
+/// The transform for a number of values with a large prime factor, as a convolution of another length (Bluestein 1970):
+/// the product i k in the exponent is (i^2 + k^2 - (i - k)^2)/2.
 std::vector<Wave> transform_by_chirp(const std::vector<double>& values) {
     const std::size_t n = values.size(), length = std::bit_ceil(2 * n);
     std::vector<Wave> chirp(n), left(length), right(length);
     for (std::size_t i = 0; i < n; ++i) {
-        // The whole turns are taken out while the number is whole: i^2 alone would cost digits.
+        // Removes whole turns in integer arithmetic: i^2 as a double would lose digits.
         const auto turns = static_cast<double>(std::uint64_t{i} * i % (2 * n)) / static_cast<double>(n);
         chirp[i] = std::polar(1.0, -std::numbers::pi * turns);
         left[i] = values[i] * chirp[i];
@@ -56,7 +56,7 @@ double weight(SpectrumWindow window, double phase) {
     switch (window) {
         case SpectrumWindow::hann:
             return 0.5 - 0.5 * wave(1);
-        case SpectrumWindow::flat_top:  // of ISO 18431-2
+        case SpectrumWindow::flat_top:  // from ISO 18431-2
             return 1 - 1.933 * wave(1) + 1.286 * wave(2) - 0.388 * wave(3) + 0.0322 * wave(4);
         case SpectrumWindow::rectangle:
             break;
@@ -69,7 +69,7 @@ double weight(SpectrumWindow window, double phase) {
 std::size_t evenly_spaced(std::span<const double> times) {
     if (times.size() < 3) return times.size();
     const double step = times[1] - times[0];
-    // Late times are rounded, and with them the step.
+    // Late times are rounded, and so is their step.
     const double rounding =
         2 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(times[0]), std::fabs(times.back()));
     std::size_t n = 2;

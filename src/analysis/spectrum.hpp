@@ -9,20 +9,18 @@ namespace dinal::analysis {
 enum class SpectrumWindow { hann, rectangle, flat_top };
 
 struct Spectrum {
-    std::vector<double> frequency, amplitude;  ///< cycles per time unit; of a sine in the unit of the values
+    std::vector<double> frequency, amplitude;  ///< cycles per time unit; amplitude of a sine in the unit of the values
 };
 
-/// Of values dt apart, at least 8, all of them. The mean with the window's weights stands at frequency 0, and is taken
-/// away before the rest. A sine of amplitude A that goes into the time a whole number of times gives A at its
-/// frequency, whatever the window.
+/// The amplitude spectrum of at least 8 values with spacing dt. The mean, weighted by the window, is at frequency 0 and
+/// is subtracted first. A sine of amplitude A with a whole number of periods gives A at its frequency with any window.
 Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window);
 
-/// Welch's power density (1967): the mean over segments of this length that overlap by half, the mean of each taken
-/// away. In place of amplitudes: the square of the unit per frequency; the sum times the step of frequency is the
-/// variance.
+/// Welch's power density (1967): the mean over segments of this length that overlap by half, each without its mean. Its
+/// unit is the square of the values' unit per frequency; the sum times the frequency step is the variance.
 Spectrum density_of(std::span<const double> values, double dt, SpectrumWindow window, std::size_t length);
 
-/// How many of the times, from the first one, are evenly spaced.
+/// The number of evenly spaced times from the first on.
 std::size_t evenly_spaced(std::span<const double> times);
 
 }  // namespace dinal::analysis

@@ -52,7 +52,7 @@ public:
         return found();
     }
 
-    /// Found or not: nothing is known of an M that is no function of its arguments.
+    /// The answer; status none if M contradicted itself.
     SteadyMotion judged(SteadyMotion motion) const {
         for (const auto* found : {&contradiction_, &map_.contradiction(), &half_.contradiction()}) {
             if (!*found) continue;
@@ -66,8 +66,8 @@ public:
 private:
     using Try = FixedPointSearch::Try;
 
-    /// Without viscous damping, a harmonic of M at the natural frequency feeds pi |M_n| / k in each natural period, and
-    /// friction takes 2 (Rd forward + Rd backward) / k.
+    /// The growth in each natural period without viscous damping: a harmonic of M at the natural frequency adds pi
+    /// |M_n| / k, and friction takes 2 (Rd forward + Rd backward) / k.
     [[nodiscard]] double resonant_growth() const {
         const model::Oscillator& system = question_.body;
         if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
@@ -83,7 +83,7 @@ private:
     }
 
     SteadyMotion growing(const Place& start, double growth) {
-        constexpr int periods = 30;  // in which friction may have caught it for good
+        constexpr int periods = 30;  // within which friction may have stopped it for good
         Place x = start;
         MapStep step = map_(x);
         for (int i = 0; i < periods && step.finished && step.moved; ++i) {
@@ -100,8 +100,8 @@ private:
         return answer_;
     }
 
-    /// Under one sine closed forms from event to event give the answer, and one look confirms it; a motion too small
-    /// for that has a closed form to the end.
+    /// Under a single sine, closed forms between events give a start that one period confirms; a motion too small for
+    /// that is computed in closed form.
     bool follows_sine() {
         const auto own = sine::single_sine(question_);
         if (!own) return false;
@@ -115,14 +115,14 @@ private:
         return found && found->step.moved && settle(*found, half_, 1, true);
     }
 
-    /// One period of M, or its half when M and friction are the same the other way round.
+    /// Searches over one period of M, or over half of it if M and friction are antisymmetric.
     bool search_once(const Place& start, bool half) {
         const PeriodMap& map = half ? half_ : map_;
         const auto found = FixedPointSearch(map, half ? -1 : 1, answer_.maps).search(start, 60);
         return found && (!half || repeats(*found)) && settle(*found, map, 1, half);
     }
 
-    /// What a function gives was looked at here and there only: a whole period shows whether both halves are alike.
+    /// A function's antisymmetry was only sampled: a whole period verifies it.
     bool repeats(const FixedPointSearch::Try& found) {
         if (std::isfinite(question_.drive.M().most())) return true;
         const MapStep whole = map_(found.x);
@@ -141,7 +141,7 @@ private:
         return settled;
     }
 
-    /// A motion that creeps up to the edge of where it can rest would take for ever: this is where it gets.
+    /// The edge of the resting range, for a motion that would creep up to it for ever.
     [[nodiscard]] std::optional<Place> rest_beside(const Place& x, const MapStep& step) const {
         const double k = system_.stiffness(), size = system_.greatest_holding() / k;
         if (!question_.body.has_linear_spring() || !(step.high - step.low <= 1e-8 * size) ||
@@ -153,7 +153,7 @@ private:
         return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
     }
 
-    /// The facts about the motion through a fixed point of a map.
+    /// Completes the answer for the motion through a fixed point of a map.
     bool settle(FixedPointSearch::Try last, const PeriodMap& map, int periods, bool half) {
         if (const auto rest = last.step.moved ? rest_beside(last.x, last.step) : std::nullopt) {
             const FixedPointSearch::Try still = FixedPointSearch(map_, 1, answer_.maps).at(*rest, 0);
@@ -178,7 +178,7 @@ private:
         return step.finished && length_of(step.to + x) <= std::max(1e-8 * size, 4 * half_.rounding());
     }
 
-    /// Runs the motion itself, and sees whether it comes back after some periods, or grows.
+    /// Runs the motion until it returns after some periods, or grows.
     void brute(const Place& start, int longest) {
         std::vector<Place> places{start};
         std::vector<double> sizes{length_of(start)};
@@ -198,11 +198,10 @@ private:
                 if (recurs(places, sizes.back(), longest, near, true)) return;
             }
         }
-        // Near resonance a beat may be as slow as the growth of a motion that has no bound.
+        // Near resonance a beat may be as slow as unbounded growth.
         if (is_bounded() && symmetric_ && follows_sine() && answer_.stable) return;
         if (!is_bounded() && grows(sizes, false)) return;
-        // Nothing that this motion is seen to approach: it may do so slowly, and a motion that others leave is better
-        // than none.
+        // No approach was seen; it may be slow, and an unstable motion is better than none.
         for (const double near : {1e-5, 3e-2}) {
             if (recurs(places, sizes.back(), longest, near, false)) return;
         }
@@ -217,7 +216,7 @@ private:
         const auto is_it = [&](int m) {
             return answer_.stable && (approaching ? approaches(places, m, size) : is_near(last, 0.2 * size));
         };
-        int tries = 0;  // chaos comes near to itself again and again
+        int tries = 0;  // chaotic motions come near to themselves repeatedly
         for (int m = 1; tries < 5 && m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
             if (length_of(last - places[places.size() - 1 - static_cast<std::size_t>(m)]) > near * size) continue;
             ++tries;
@@ -228,8 +227,7 @@ private:
         }
         return false;
     }
-    /// Beside the motion that a run comes to there may be others, to which Newton's method may lead: it is this one
-    /// where the run comes nearer to it all the time.
+    /// Accepts Newton's result only if the run keeps approaching it, as other motions may exist nearby.
     [[nodiscard]] bool approaches(const std::vector<Place>& places, int m, double size) const {
         const std::size_t last = places.size() - 1, period = static_cast<std::size_t>(m);
         const std::size_t back = period * std::max<std::size_t>(1, last / (2 * period));
@@ -238,7 +236,7 @@ private:
         const double now = length_of(found - places.back());
         return now <= there * size || now <= nearer * length_of(found - places[last - back]);
     }
-    /// What comes back after m periods may have come back before: the answer is that of the fewest.
+    /// Reduces m to the smallest number of periods after which the motion returns.
     void reduce(int m) {
         const SteadyMotion whole = answer_;
         const Place x = place_of(whole.start, map_.omega());
@@ -262,7 +260,7 @@ private:
         return length_of(place_of(answer_.start, map_.omega()) - place) <= distance;
     }
 
-    /// A linear spring off resonance, and friction, which only takes.
+    /// Returns whether motions are bounded: a linear spring off resonance, and friction that only dissipates.
     [[nodiscard]] bool is_bounded() const {
         return !system_.has_remainder() && !question_.body.walls() && !question_.drive.M().has_feedback() &&
                question_.body.stiffness() > 0 && question_.body.damping() >= 0;
@@ -277,7 +275,7 @@ private:
             return overflow;
         }
         const double last = sizes[n - 1] - sizes[n - 1 - span], before = sizes[n - 1 - span] - sizes[n - 1 - 2 * span];
-        // More than a motion that wanders between bounds: what grows evenly from nothing has grown to twice its half.
+        // Steady growth from zero doubles between half time and end; bounded wandering does not.
         const bool keeps_growing = before > 0 && last >= 0.9 * before && last > 1e-3 * sizes[n - 1];
         if (!overflow && !(keeps_growing && sizes[n - 1] >= 1.3 * sizes[n / 2])) return false;
         answer_.status = SteadyStatus::grows;
@@ -352,7 +350,7 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 namespace {
 
-/// The same motion, or its mirror image.
+/// Returns whether the motions are equal or mirror images.
 bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
     if (a.stands() && b.stands()) {
         const double within = 1e-6 * size;
@@ -365,12 +363,12 @@ bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
     return std::fabs(a.amplitude - b.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
 }
 
-/// Questions that begin around the motion.
+/// Questions with starts around the motion.
 std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
         question.body.stiffness() > 0 ? question.body.natural_frequency() : 2 * std::numbers::pi / period;
-    // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
+    // At resonance a motion may be far larger than the one found, and the mass may also adhere.
     const bool asks = question.drive.M().has_feedback() || question.is_timeless();
     const auto M = asks ? TorqueRange{} : extremes(question.drive.M(), question.repeats);
     const double stiff = question.body.inertia() * omega * omega;
@@ -391,20 +389,20 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
 
 namespace {
 
-/// Of one plain body.
+/// For one plain body.
 std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
     if (!known.is_found() || known.unique.value_or(false) || family) return {};
     double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
-    // At rest the initial state is all that says how large motions may be.
+    // At rest only the initial state indicates the size of motions.
     if (known.stands())
         size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
     const auto alike = [size](const SteadyMotion& a, const SteadyMotion& b) { return are_alike(a, b, size); };
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
-/// Of all bodies.
+/// For all bodies.
 std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;

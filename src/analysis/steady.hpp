@@ -1,5 +1,5 @@
-// The periodic motion of a system under a periodic M: a fixed point of the period map, found by Newton's method, by
-// waiting where that does not lead on, and by recurrence where the motion is subharmonic. docs/theory.md, section 10.
+// Steady motions under a periodic M: fixed points of the period map, found by Newton's method, by waiting if that
+// fails, and by recurrence if subharmonic. docs/theory.md, section 10.
 #pragma once
 
 #include <array>
@@ -29,36 +29,35 @@ constexpr std::string_view name(SteadyStatus status) {
 struct SteadyQuestion {
     model::SystemHandle system;
     model::Drive drive;
-    /// The body, or of several the one that is looked at, as an oscillator with its formulas.
+    /// the body, or the one of interest, as an oscillator
     model::Oscillator body;
-    Repetition repeats = {};  ///< period 0: nothing depends on the time, and the period of a cycle is to be found
-    int periods = 0;          ///< of M in one of the motion; 0: as many as it takes
-    std::optional<std::size_t> joint = {};  ///< the body or link whose motion is told; none: of all that have names
-    /// Controllers sample or wait, and all that drives the bodies repeats after this time; 0: after any; -1: there are
-    /// none.
+    Repetition repeats = {};                ///< period 0: nothing depends on time, the period of a cycle is unknown
+    int periods = 0;                        ///< periods of M in one of the motion; 0: as many as needed
+    std::optional<std::size_t> joint = {};  ///< the body or link of interest; none: all that have names
+    /// For sampled or delayed controllers: the time after which drive and sampling repeat; 0: any; -1: no such
+    /// controllers.
     double settles = -1;
-    double longest = model::never;  ///< stretch of its runs, time units
+    double longest = model::never;  ///< longest stretch of its runs, time units
 
-    /// About one body without a name and with constant friction, or all or one of others.
-    /// Fails where a body is moved by its theta or velocity.
+    /// A question about one plain body, or about all or one of several. Fails if a body's motion is prescribed.
     static text::Expected<SteadyQuestion> of(model::SystemHandle system, model::Drive drive,
                                              std::optional<std::size_t> joint = {});
 
-    /// About one body without a name.
+    /// A question about one plain body.
     static SteadyQuestion of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats);
-    /// The same about this body or link.
+    /// The same question about this body or link.
     [[nodiscard]] SteadyQuestion seen_at(std::size_t which) const;
 
     [[nodiscard]] bool is_timeless() const { return repeats.period == 0; }
     [[nodiscard]] bool is_plain() const { return system->is_plain(); }
-    /// What acts on the body that is looked at: of several bodies as far as it depends on the time alone.
+    /// The excitation of the body of interest; with several bodies the part that depends on time only.
     [[nodiscard]] const model::Excitation& load() const;
 };
 
-/// How one of several bodies moves.
+/// The motion of one of several bodies.
 struct BodyMotion {
-    double low = 0, high = 0;  ///< of its angle, from that of another body where they go round
-    double turned = 0;         ///< how far it goes round in a period, or in a time unit where nothing has a period
+    double low = 0, high = 0;  ///< range of its angle, measured from another body if they rotate
+    double turned = 0;         ///< rotation in a period, or in a time unit if nothing has a period
     double begin = 0;          ///< its angle at the start
 };
 
@@ -70,42 +69,42 @@ struct PeriodOfBodies {
 
 struct SteadyMotion {
     SteadyStatus status = SteadyStatus::none;
-    int periods = 1;     ///< of M in one of the motion
-    double period = 0;   ///< of the motion
+    int periods = 1;     ///< periods of M in one of the motion
+    double period = 0;   ///< period of the motion
     model::State start;  ///< at the beginning of M's period
     double amplitude = 0, low = 0, high = 0, t_high = 0;
     std::size_t stops = 0;
     double stuck = 0;  ///< part of a period
     std::vector<std::complex<double>> multipliers = {};
-    bool differentiable = false;  ///< else there are no multipliers
+    bool differentiable = false;  ///< whether there are multipliers
     bool stable = false, symmetric = false;
-    std::optional<bool> unique;                              ///< none: other starts must tell
-    std::pair<double, double> rest;                          ///< where it may stand, when it adheres
-    double growth = 0;                                       ///< of the amplitude, in a period of M
-    int maps = 0;                                            ///< periods that were run
-    double residual = 0;                                     ///< what is left of the fixed point, in amplitudes
-    model::Outcome outcome = model::Outcome::reached_end;    ///< of the last run
-    std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
-    std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
-    std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
-    // Of motions that return:
+    std::optional<bool> unique;                              ///< none: unknown, search from other starts
+    std::pair<double, double> rest;                          ///< range in which it may stand, if it adheres
+    double growth = 0;                                       ///< growth of the amplitude in a period of M
+    int maps = 0;                                            ///< number of periods that were run
+    double residual = 0;                                     ///< residual of the fixed point, in amplitudes
+    model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
+    std::shared_ptr<const motion::Trajectory> settled = {};  ///< run of one period, for motions found by returns
+    std::shared_ptr<const SteadyQuestion> asked = {};  ///< the question whose run is `settled`; null: the end of a run
+    // Set for motions found by returns.
     std::vector<BodyMotion> bodies = {};
-    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< none at rest
-    std::shared_ptr<const model::Drive> begun = {};        ///< of a run that is the motion from its start on
+    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
+    std::shared_ptr<const model::Drive> begun = {};        ///< drive of a run that is periodic from its start
 
-    /// Whether there is a motion or a rest, and so facts about it.
+    /// Returns whether a motion or a rest was found.
     [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }
     [[nodiscard]] bool stands() const { return status == SteadyStatus::adheres || status == SteadyStatus::rest; }
 };
 
-/// Where the motion from the start of the question leads, as seen from its joint.
+/// The steady motion that a run from the start of the question leads to, as seen from its joint.
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// The same from a place near the answer, as when a parameter has changed a little.
+/// The same from a start near the answer, such as after a small change of a parameter.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// The motions from other starts that are not this one, each once, with the question whose start leads to it. None is
-/// looked for where no motion was found, or it is known to be the only one, or one of a family.
+/// Other motions, found from other starts, each once with a question whose start leads to it. Not searched if no motion
+/// was found, or if it is unique or one of a family.
 struct OtherMotion {
     SteadyQuestion question;
     SteadyMotion motion;
@@ -114,19 +113,19 @@ inline constexpr int other_starts = 16;
 std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor = {});
 
-/// What the motion is besides its extremes: integrals over its period, which take a look at all of it.
+/// Integrals over the period of a motion, which need another run.
 struct SteadyShape {
-    double mean = 0;                      ///< of theta, by time
-    std::optional<double> lag = {};       ///< of the fundamental behind that of M, rad in (-pi, pi]
-    std::optional<double> peak_lag = {};  ///< of the highest theta behind the maximum of the fundamental of M
-    double fundamental = 0;               ///< its amplitude
+    double mean = 0;                      ///< time average of theta
+    std::optional<double> lag = {};       ///< lag of the fundamental behind that of M, rad in (-pi, pi]
+    std::optional<double> peak_lag = {};  ///< lag of theta's maximum behind that of M's fundamental, rad
+    double fundamental = 0;               ///< amplitude of theta's fundamental
 };
 SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
 
-/// The answer in sentences.
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::vector<OtherMotion>& others);
-/// The same of all bodies.
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
+/// Describes the answer in sentences.
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                           const std::vector<OtherMotion>& others);
+/// The same for all bodies.
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
 
 }  // namespace dinal::analysis

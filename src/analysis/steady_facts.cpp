@@ -13,7 +13,7 @@ namespace {
 
 using model::Motion;
 
-/// Friction is the same both ways.
+/// Returns whether friction is the same in both directions.
 bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
     if (law.depends_on_speed()) {
         for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
@@ -24,7 +24,7 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
            system.holding(Motion::forward) == system.holding(Motion::backward);
 }
 
-/// After a stop what is left of a disturbance is a product of cosines, or so, which has no error to speak of.
+/// Tolerance of multipliers after a stop: a disturbance is multiplied by factors such as cosines, nearly without error.
 constexpr double kept_within = 1e-12;
 
 std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
@@ -34,19 +34,19 @@ std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
         const double turn = std::sqrt(-square);
         return {std::complex(mean, turn), std::complex(mean, -turn)};
     }
-    // The greater one first: the other is a quotient, and no difference.
+    // The greater one first: the other is a quotient rather than a difference.
     const double first = mean + std::copysign(std::sqrt(square), mean);
     const double determinant = D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0);
     return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};
 }
 
-/// The torque against the motion does not fall as the motion grows.
+/// Returns whether the torque against the motion never falls as the motion grows.
 bool is_monotone(const model::Friction& law, const model::Spring& spring, const std::optional<model::Walls>& walls) {
     const auto even = [&law](Motion way) { return law.holding(way) == law.sliding(way, 0); };
     return spring.none() && !walls && !law.depends_on_speed() && even(Motion::forward) && even(Motion::backward);
 }
 
-/// How far from here, this way, the springs pull back with no more than friction can hold through all of the period.
+/// The farthest angle in this direction at which friction holds against the springs throughout the period.
 double edge_of_rest(const model::Lowered& system, double here, double way, const TorqueRange& M) {
     const double least = M.high - system.holding(Motion::forward), most = M.low + system.holding(Motion::backward);
     const auto holds = [&](double d) {
@@ -103,7 +103,7 @@ bool contracts(const SteadyQuestion& question) {
 
 double miss_one(const std::vector<std::complex<double>>& multipliers) {
     double least = model::never;
-    constexpr double far = 1e-3;  // from the unit circle, on which a disturbance stays
+    constexpr double far = 1e-3;  // distance from the unit circle, where a disturbance persists
     constexpr int most = 32;
     for (const std::complex<double>& multiplier : multipliers) {
         const bool stays = std::fabs(std::abs(multiplier) - 1) <= far;
@@ -141,7 +141,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
         motion.high = -motion.low;
         if (-step.low > step.high) motion.t_high = step.t_low + map.length();
     }
-    motion.amplitude = (motion.high - motion.low) / 2 + 0.0;  // no -0 of a mass that stands at -0
+    motion.amplitude = (motion.high - motion.low) / 2 + 0.0;  // + 0.0 turns -0 into 0
     motion.stops = half ? 2 * step.stops : step.stops;
     motion.stuck = step.moved ? std::min(1.0, step.stuck / map.length()) : 1;
     motion.residual = found.residual() / found.size;
@@ -165,7 +165,7 @@ std::pair<double, double> rest_of(const SteadyQuestion& question, double here) {
     const auto [low, high] = rest_without_walls(question, here);
     const auto& walls = question.body.walls();
     if (!walls) return {low, high};
-    // What pulls against a wall is held by it.
+    // A wall holds against a pull towards it.
     return {std::clamp(low, walls->lower, walls->upper), std::clamp(high, walls->lower, walls->upper)};
 }
 

@@ -1,4 +1,4 @@
-// What is known of a steady motion before it is looked for, and what one look at a period of it tells.
+// Facts about a steady motion: those known in advance, and those from one run of a period.
 #pragma once
 
 #include <utility>
@@ -9,30 +9,30 @@
 
 namespace dinal::analysis {
 
-/// Sliding and holding torque are the same each way, there are no walls, and M, belt and base depend on the time alone:
-/// the map brings no two states farther apart, so there is one motion, or a family of them. Of several bodies the
-/// energy of the difference of two motions cannot grow in any joint.
+/// Returns whether the map never moves two states apart, so that there is one motion or a family. Requires equal
+/// sliding and holding torques, no walls, and M, belt and base that depend on time only. For several bodies, the energy
+/// of the difference of two motions cannot grow in any joint.
 bool contracts(const SteadyQuestion& question);
 
-/// By how much these multipliers miss 1, in one period or in some: others beside the motion are periodic, too, where
-/// they do not.
+/// The distance of these multipliers from 1, after one or several periods; if it is 0, neighbouring motions are
+/// periodic, too.
 double miss_one(const std::vector<std::complex<double>>& multipliers);
 
-/// Half a period later everything is the same the other way round: friction, springs, walls and M.
+/// Returns whether friction, springs, walls and M are antisymmetric half a period later.
 bool is_alike_both_ways(const SteadyQuestion& question);
 
-/// Of a multiplier, by how much it may miss 1.
+/// The tolerance of a multiplier that counts as 1.
 inline constexpr double neutral_within = 1e-6;
 
 inline Place place_of(const model::State& state, double omega) {
     return {state.theta, state.velocity / omega};
 }
 
-/// One of the starts all around a motion, the nearest of them within a hundredth of the farthest: angle, and velocity
-/// over a frequency.
+/// Start number i around a motion, at distances from a hundredth of `farthest` up to it: angle, and velocity over a
+/// frequency.
 std::complex<double> start_around(int i, double farthest, std::size_t body = 0);
 
-/// The motions that the questions lead to, each once, but for those that are alike to the known one.
+/// The distinct motions that the questions lead to, without those equal to the known one.
 template <class Alike>
 std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& questions, const SteadyMotion& known,
                                      const Alike& alike, const motion::Monitor& monitor) {
@@ -47,31 +47,30 @@ std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& question
     return others;
 }
 
-/// From where to where friction holds the mass through all of the period, about the place where it was found at rest.
+/// The range of angles around `here` in which friction holds the mass throughout the period.
 std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 
-/// The facts about the motion through a fixed point of the map over `periods` of M, or of its half (periods = 1), whose
-/// opposite it repeats. Where the mass may rest, and whether another motion is there, are not among them.
+/// The facts about the motion through a fixed point of the map over `periods` of M, or over half a period (periods = 1)
+/// of a symmetric motion. Does not determine the range of rest, or other motions.
 SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,
                       int periods, bool half);
 
-/// The facts that one period as a run tells: its extremes and stops, and whether anything moves.
+/// Fills in what a run of one period shows: extremes, stops, any movement.
 void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
 
-/// The question whose run begins so.
+/// The question with this start.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
-/// The motion as seen from the body or link of the question; `run` is the run of its period as seen from there, none at
-/// rest.
+/// The motion as seen from the joint of the question; `run` is its period seen from there, null at rest.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
                        std::shared_ptr<const motion::Trajectory> run);
-/// The same of a motion that was seen from any: the run is that of its period.
+/// The same for a motion with a stored period.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion);
 
-/// The motion of a run with more in it or of an M with a memory, or a limit cycle, that a run from `initial` leads to.
+/// The motion that a run from `initial` leads to, for drives beyond M, an M with a memory, or a limit cycle.
 SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);
 
-/// Whether a motion that was found by theta and velocity alone goes on like this in one run of some periods.
+/// Returns whether a motion found from theta and velocity alone persists in a run of several periods.
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

@@ -1,4 +1,4 @@
-// The integrals of a steady motion over its period, and the motion told in sentences.
+// The integrals of a steady motion over its period, and its description in sentences.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,9 +15,9 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr double least_harmonic = 1e-9;  // of a harmonic in the whole, below which its phase is rounding
+constexpr double least_harmonic = 1e-9;  // smaller harmonics, relative to the whole, have no phase but rounding
 
-/// What is summed over the time: theta, and theta e^(-i omega t).
+/// Sums over time: theta, and theta e^(-i omega t).
 struct Moments {
     double theta = 0;
     std::complex<double> wave = {};
@@ -29,7 +29,7 @@ struct Moments {
     Moments& operator+=(const Moments& other) { return *this = *this + other; }
 };
 
-/// The fundamental of M, beside all of M.
+/// Returns whether M's fundamental exceeds the rounding of M.
 bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<double>& wave) {
     const double most = question.load().most();
     if (std::isfinite(most)) return std::abs(wave) > least_harmonic * 2 * most;
@@ -37,7 +37,7 @@ bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<do
     return std::abs(wave) > least_harmonic * (M.high - M.low);
 }
 
-/// An angle in (-pi, pi].
+/// The angle reduced to (-pi, pi].
 double in_one_turn(double angle) {
     constexpr double whole = 2 * std::numbers::pi;
     const double turn = angle - whole * std::ceil(angle / whole - 0.5);
@@ -48,7 +48,7 @@ double in_one_turn(double angle) {
 
 namespace {
 
-/// The mean and the fundamental from the motion itself.
+/// Computes mean and fundamental from the motion itself.
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
                                      const SteadyMotion& motion, const PeriodMap& map, double length) {
     const motion::Trajectory run =
@@ -90,7 +90,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     if (motion.status != SteadyStatus::steady || motion.period == 0) return shape;
     const Repetition repeats =
         question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
-    // Half a period of a symmetric motion tells all of it.
+    // Half a period of a symmetric motion is enough.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
     const PeriodMap map(question.body, question.load(), repeats.start, length, monitor);
     const bool feedback = question.load().has_feedback() || question.is_timeless();
@@ -113,7 +113,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     if (shape.fundamental > least_harmonic * motion.amplitude) {
         shape.lag = in_one_turn(std::arg(M_wave) - std::arg(found->wave));
     }
-    // The fundamental |M| cos(omega t + arg) is greatest when omega t = -arg.
+    // The fundamental |M| cos(omega t + arg) is greatest at omega t = -arg.
     const double omega = 2 * std::numbers::pi / repeats.period;
     shape.peak_lag = in_one_turn(omega * (motion.t_high - repeats.start) + std::arg(M_wave));
     return shape;
@@ -123,7 +123,7 @@ namespace {
 
 class SteadyStory : Prose {
 public:
-    /// The names are those of several bodies, none of one.
+    /// The names of several bodies; empty for one.
     SteadyStory(const SteadyMotion& motion, bool timeless, const std::vector<std::string>& names)
         : motion_(motion), timeless_(timeless), names_(names) {}
 
@@ -185,7 +185,7 @@ public:
         if (others == 0) tell_unique();
     }
 
-    std::string told() { return std::move(sentences_); }
+    std::string take_text() { return std::move(sentences_); }
 
 private:
     [[nodiscard]] bool several() const { return !names_.empty(); }
@@ -294,16 +294,16 @@ private:
 
 }  // namespace
 
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::vector<OtherMotion>& others) {
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                           const std::vector<OtherMotion>& others) {
     const std::vector<std::string> nobody;
     SteadyStory story(motion, question.is_timeless(), nobody);
     story.tell(shape, model::has_memory<model::SampledController>(question.drive.M()), question.repeats.period);
     if (motion.is_found()) story.tell_others(others);
-    return story.told();
+    return story.take_text();
 }
 
-std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others) {
+std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others) {
     std::vector<std::string> names;
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;
@@ -311,7 +311,7 @@ std::string told(const SteadyQuestion& question, const SteadyMotion& motion, std
     SteadyStory story(motion, question.repeats.period == 0, names);
     story.tell({}, sampled, question.repeats.period);
     if (motion.is_found()) story.count_others(others);
-    return story.told();
+    return story.take_text();
 }
 
 }  // namespace dinal::analysis

@@ -1,4 +1,4 @@
-// A measured motion before anything is fitted to it: its noise, its turning points, its swings.
+// Properties of a measured motion before any fit: noise, turning points, clipping, initial slope.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,23 @@
 
 namespace dinal::analysis {
 
-/// The standard deviation of the noise of a smooth motion that is sampled about evenly, from fourth differences.
+/// The standard deviation of the noise of a smooth, about evenly sampled motion, from fourth differences.
 double noise_of(std::span<const double> theta);
-/// Half the samples of a smooth curve would show far more of it.
+/// Returns whether values are noisy: half the samples of a smooth curve would show far more noise.
 bool is_noisy(std::span<const double> values);
 
-/// How many samples of a free decay stand exactly at its least and at its greatest value, four and more in a row: there
-/// its instrument could show no more. Where it comes to rest is no such row.
+/// Detects a clipped record: the numbers of samples exactly at its least and greatest value, in rows of four or more. A
+/// final rest does not count.
 struct CutOff {
     double low = 0, high = 0;
     std::size_t at_low = 0, at_high = 0;
 };
 CutOff cut_off(std::span<const double> theta);
 
-/// Indices of the turning points: from one to the next the motion gets at least `least` far, and back.
+/// The indices of turning points, between which theta moves by at least `least`.
 std::vector<std::size_t> turning_points(std::span<const double> theta, double least);
 
-/// The slope of a straight line through the first `count` points, and its value at the first one.
+/// The straight line through the first `count` points: its value at the first one, and its slope.
 struct Tangent {
     double value = 0, slope = 0;
 };

@@ -28,7 +28,7 @@ constexpr double usual_seconds = 10;
 constexpr double frames_per_second = 25;
 constexpr double most_frames_in_file = 3000, most_frames = 100'000;
 
-/// Which part, how fast, within what a file or a memory should hold.
+/// The requested part and speed, within the limits of a file or of memory.
 animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Trajectory& run,
                            double most) {
     animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
@@ -51,7 +51,7 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
 
 AnimationViewer animation_viewer = nullptr;
 
-/// The surface that the run slides on, where it moves.
+/// The velocity of the surface that the run slides on, or nullptr.
 const model::Excitation* belt_of(const Run& run) {
     const model::Excitation* belt = run.origin ? &run.origin->drive.belts[run.place()] : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;
@@ -61,7 +61,7 @@ animation::Scene asked_scene(lua_State* L, const lua::Options& options, const Ru
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
     const plots::RunData data{run, &run->trajectory, alone(*run), units};
-    lua::CallState call(L);  // between rows the integrator asks the excitation again
+    lua::CallState call(L);  // between rows the integrator evaluates the excitation
     auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
     if (lua::interrupt_requested()) {
@@ -70,7 +70,7 @@ animation::Scene asked_scene(lua_State* L, const lua::Options& options, const Ru
     return options.value_or_fail(std::move(scene));
 }
 
-/// Writes all of it; false when nobody reads any more.
+/// Writes the whole text; returns false if the output is closed.
 bool show(std::string_view text) {
     while (!text.empty()) {
         const ssize_t count = ::write(STDOUT_FILENO, text.data(), text.size());
@@ -81,14 +81,14 @@ bool show(std::string_view text) {
     return true;
 }
 
-/// In place, by the clock: a frame that comes too late is left out. Several scenes stand one below the other.
+/// Plays in place in real time; late frames are dropped. Several scenes are drawn one below the other.
 void play(const std::vector<animation::Scene>& scenes, const AnimateOptions& asked) {
     const animation::Scene& scene = scenes.front();
     using Clock = std::chrono::steady_clock;
     static_cast<void>(std::fflush(stdout));
     const auto began = Clock::now();
     const double count = static_cast<double>(scene.frames.size() - 1);
-    int above = 0;  // lines of the frame before
+    int above = 0;  // number of lines of the frame before
     bool goes_on = show("\x1b[?25l");
     for (bool last = false; goes_on && !last;) {
         const double passed = std::chrono::duration<double>(Clock::now() - began).count();
@@ -116,7 +116,7 @@ void play(const std::vector<animation::Scene>& scenes, const AnimateOptions& ask
     [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, cursor.data(), cursor.size());
 }
 
-/// All bodies, and the links between them.
+/// A scene of all bodies and the links between them.
 animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const RunHandle& run,
                               const animation::Take& take, const model::Units& units) {
     std::vector<animation::Scene> bodies;
@@ -132,7 +132,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
             bodies.push_back(std::move(scene));
         }
     }
-    // Angles that nothing brings back belong to what turns, however far it gets in this run.
+    // Without a spring the angles belong to rotating parts, however far they turn in this run.
     const bool angles = units.theta.empty() || units.theta == "rad";
     const auto links_begin = system.joints.begin() + static_cast<std::ptrdiff_t>(system.bodies.size());
     const bool is_free = std::all_of(system.joints.begin(), links_begin, [](const model::Joint& joint) {
@@ -143,7 +143,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
     return rig;
 }
 
-/// For a terminal: what goes round comes back at half a turn.
+/// The scenes for a terminal: rotation jumps back at half a turn.
 std::vector<animation::Scene> one_below_the_other(const animation::RigScene& rig) {
     std::vector<animation::Scene> scenes = rig.bodies;
     for (animation::Scene& scene : scenes) {
@@ -161,7 +161,7 @@ void refuse_no_terminal(const lua::Options& options) {
                               shown ? "one cannot do it, as TERM says" : "output is none")});
 }
 
-/// Into the file, unless the animation cannot be made.
+/// Writes the file, unless the animation cannot be made.
 template <class Make>
 void write_animation(const lua::Options& options, const std::string& name, const Make& make) {
     if (text::ending_of(name) != ".svg") {
@@ -187,7 +187,7 @@ Animation drawn(const animation::RigScene& rig) {
     return {animation::animated_svg(rig), animation::title_of(rig.bodies.front())};
 }
 
-/// Into the file, to whoever views animations, or into the terminal; `make` makes the scene of a part of the run.
+/// Writes a file, calls the viewer, or plays in the terminal; `make` makes the scene of a part of the run.
 template <class Make>
 int animate(lua_State* L, const lua::Options& options, const motion::Trajectory& run, const Make& make) {
     AnimateOptions asked;

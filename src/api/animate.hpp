@@ -39,14 +39,15 @@ inline constexpr text::Call report_animate_call{"r:animate", "r:animate(run, { s
 
 int animate_run(lua_State* L);
 
-/// A run in motion as SVG that a browser plays, and its title.
+/// An animated SVG of a run, and its title.
 struct Animation {
     std::string svg, title;
 };
-/// Of the run at `index`, with the options of report_animate_call behind it.
+/// Makes the animation of the run at `index`, with the options of report_animate_call after it.
 Animation animation_at(lua_State* L, int index);
 
-/// Where animations go, files besides, while what sees them is no terminal: the page of a script, or a notebook.
+/// Receives all animations, including those for files, if the output is not a terminal: the page of a script, or a
+/// notebook.
 using AnimationViewer = void (*)(const Animation& animation, Shown where);
 void show_animations_by(AnimationViewer viewer);
 

@@ -1,4 +1,4 @@
-// data{ ... }, load(file), and the class of what they return: columns, rows by number, and what one does with them.
+// data{ ... }, load(file), and the class of their result: columns, rows by number, and operations on them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@
 
 namespace dinal::api {
 
-// What help() and the manual say about data, and the options of its methods.
+// The documentation of data, and the options of its methods.
 
 /// d:plot{ x, y }.
 inline constexpr text::Option data_plot_options[] = {
@@ -154,7 +154,7 @@ std::vector<std::string_view> names_of(const Data& data) {
     return names;
 }
 
-/// Of the columns that have one.
+/// The units of the columns that have one.
 std::map<std::string, std::string> units_of_columns(const Data& data) {
     std::map<std::string, std::string> units;
     for (const DataColumn& column : data.columns) {
@@ -163,7 +163,7 @@ std::map<std::string, std::string> units_of_columns(const Data& data) {
     return units;
 }
 
-/// The metatable of the rows of the data at `index`, kept with it: it knows the order of the names.
+/// Pushes the metatable of the rows of the data at `index`, kept with the data: it stores the order of the names.
 void push_row_metatable(lua_State* L, int index, const Data& data) {
     if (lua_getiuservalue(L, index, 1) == LUA_TTABLE) return;
     lua_pop(L, 1);
@@ -345,7 +345,7 @@ std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<
 
 namespace {
 
-/// The values on the top of the stack.
+/// Reads the parameter values on the top of the stack.
 DataColumn parameter_on_top(lua_State* L, const lua::Options& options, const std::string& name) {
     if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {
         options.fail("over",
@@ -448,12 +448,12 @@ void register_data(lua_State* L) {
 
 }  // namespace dinal::api
 
-// What one does with data: pick and sort rows, pick columns, draw, save, write down.
+// Operations on data: pick and sort rows, pick columns, draw, save, write down.
 
 namespace dinal::api::data_functions {
 namespace {
 
-/// The same columns with these rows only.
+/// A copy with these rows only.
 Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
     Data picked{.columns = {},
                 .points_of = data.points_of,
@@ -480,7 +480,7 @@ std::string file_argument(lua_State* L, int index, const char* call) {
 }
 
 std::string in_markdown(const std::string& words) {
-    return text::markdown(text::displayable(words), "|\\`[");  // the marks end a cell, or are no text
+    return text::markdown(text::displayable(words), "|\\`[");  // | ends a cell, the others are markup
 }
 
 }  // namespace
@@ -608,20 +608,20 @@ std::string markdown_of(const Data& data) {
 
 namespace dinal::api::data_functions {
 
-// d:plot{ ... }: columns over a column, maps, and what data bring along to be drawn with them.
+// d:plot{ ... }: curves over a column, maps, and the overlays that data provide.
 
 namespace {
 
 // ---- maps: a column in shades over the grid of two others
 
-constexpr int vermilion = 2;  // is seen on the dark and on the bright end
+constexpr int vermilion = 2;  // visible on both the dark and the bright end
 
-/// Has a place on the axis.
+/// Returns whether the value has a place on the axis.
 bool is_drawn(double value, bool logarithmic) {
     return std::fabs(value) <= 1e300 && (value > 0 || !logarithmic);
 }
 
-/// The different values, increasing.
+/// The distinct values, increasing.
 std::vector<double> different_values(std::span<const double> all, bool logarithmic) {
     std::vector<double> values;
     std::copy_if(all.begin(), all.end(), std::back_inserter(values),
@@ -643,7 +643,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     };
     const bool xlog = is_asked("xlog"), ylog = is_asked("ylog");
     plots::Shades shades{.x = different_values(x, xlog), .y = different_values(y, ylog), .z = {}, .label = names[2]};
-    constexpr double sparse = 16;  // places for a row: what is scattered has no neighbours
+    constexpr double sparse = 16;  // places of the grid for each row; scattered points have no neighbours
     const double places = static_cast<double>(shades.x.size()) * static_cast<double>(shades.y.size());
     if (shades.x.empty() || shades.y.empty() || places > sparse * static_cast<double>(z.size())) {
         options.fail(
@@ -666,7 +666,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     return shades;
 }
 
-/// Of x, y and z, with zlim and contours as the options say. Fails when x and y form no grid.
+/// A map of z over x and y, with the options zlim and contours. Fails unless x and y form a grid.
 plots::Figure figure_of_map(const lua::Options& options, const std::array<std::string, 3>& names,
                             const std::array<plots::Numbers, 3>& columns) {
     plots::Shades shades = shades_of(options, names, columns);
@@ -696,7 +696,7 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     return figure;
 }
 
-/// Of the branches of a response at one place a map shows the stable one with the greatest z.
+/// The rows of a map: of several branches at one place, the stable one with the greatest z.
 std::array<plots::Numbers, 3> stable_rows(const Data& data, const std::array<plots::Numbers, 3>& columns) {
     const DataColumn* stable = data.pieces_of.empty() ? nullptr : data.find(data.dotted_of);
     if (stable == nullptr || stable->numbers() == nullptr) return columns;
@@ -719,7 +719,7 @@ std::array<plots::Numbers, 3> stable_rows(const Data& data, const std::array<plo
 
 // ---- curves
 
-/// The names that stand under `option`: one or a list of them.
+/// The names given in `option`: one or a list.
 std::vector<std::string> asked_names(lua_State* L, const lua::Options& options, const char* option) {
     options.push(option);
     const auto names = lua::strings_at(L, -1);
@@ -745,9 +745,9 @@ std::string label_of(const Data& data, const std::string& name) {
     return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
 }
 
-constexpr double spectrum_decades = 1e-6;  // of the largest amplitude, that a plot of a spectrum shows
+constexpr double spectrum_decades = 1e-6;  // part of the largest amplitude: the range of a plotted spectrum
 
-/// The frequencies at which a spectrum is that high, if it is lower at a good part of the others.
+/// The frequencies with amplitudes in that range, if a good part of the spectrum is lower.
 std::optional<plots::Interval> telling_frequencies(const Data& data, const plots::Curve& curve) {
     if (!data.is_spectrum || curve.size() == 0) return std::nullopt;
     double greatest = 0, last = 0;
@@ -760,8 +760,8 @@ std::optional<plots::Interval> telling_frequencies(const Data& data, const plots
     return last > 0 && room * last < good_part * end ? std::optional(plots::Interval{0, room * last}) : std::nullopt;
 }
 
-/// What is seen of a curve that says little in its full height: six decades of a spectrum, and of a response no more
-/// than some times what most of it reaches, since near a pole it has no bound.
+/// Limits of y that show the interesting part of a curve: six decades of a spectrum; of a response a few times its
+/// typical height, as it is unbounded near a pole.
 std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
     std::vector<double> values;
     std::copy_if(curve.y.values.begin(), curve.y.values.end(), std::back_inserter(values),
@@ -783,7 +783,7 @@ std::optional<plots::Interval> telling_limits(const Data& data, const plots::Cur
                : std::nullopt;
 }
 
-/// The line broken where its data are, and a dotted one of what is unstable.
+/// Splits a line where its data are interrupted; unstable parts become a dotted line.
 std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& pieces, const plots::Curve& whole) {
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
     const auto numbers_of = [&data](const std::string& name) -> const lua::Vector* {
@@ -792,7 +792,7 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& p
     };
     const lua::Vector* piece = numbers_of(pieces);
     const lua::Vector* solid = numbers_of(data.dotted_of);
-    std::array<std::vector<double>, 2> x, y;  // of the dotted line, of the other one
+    std::array<std::vector<double>, 2> x, y;  // the dotted and the solid line
     std::array<bool, 2> any{};
     std::size_t before = 1;
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -804,7 +804,7 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& p
         };
         if (i > 0 && (new_piece || line != before)) {
             put(before, gap, gap);
-            // The one goes on where the other ends.
+            // One line continues from the end of the other.
             if (!new_piece) put(line, whole.x.values[i - 1], whole.y.values[i - 1]);
         }
         put(line, whole.x.values[i], whole.y.values[i]);
@@ -828,7 +828,7 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& p
     return curves;
 }
 
-/// The curve in parts by the words of a column, each with its word as the label.
+/// Splits a curve by the words of a column, each of which becomes a label.
 std::vector<plots::Curve> parts_by(const std::vector<std::string>& words, const plots::Curve& whole) {
     std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> parts;
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -846,7 +846,7 @@ std::vector<plots::Curve> parts_by(const std::vector<std::string>& words, const 
     return curves;
 }
 
-/// What data bring along, as curves of the same columns: one, or one for each kind of point of a map.
+/// The curves of an overlay in the same columns: one, or one for each kind of point on a map.
 std::vector<plots::Curve> overlay_curves(const lua::Options& options, const Data& data, const std::string& name,
                                          const std::string& x, const std::string& y) {
     const DataCompanion* companion = data.companion(name);
@@ -875,7 +875,7 @@ std::vector<plots::Curve> overlay_curves(const lua::Options& options, const Data
     return kind == nullptr ? std::vector{curve} : parts_by(kind->words(), curve);
 }
 
-/// Those that are not the same in all rows.
+/// The parameters with more than one value.
 std::vector<std::string> different_parameters(const Data& data) {
     std::vector<std::string> names;
     for (const std::string& name : data.parameters) {
@@ -890,7 +890,7 @@ std::vector<std::string> different_parameters(const Data& data) {
     return names;
 }
 
-/// The columns of numbers that are neither x nor parameters of a grid.
+/// The numeric columns that are neither x nor parameters of a grid.
 std::vector<std::string> drawable_results(const Data& data, const std::string& x) {
     std::vector<std::string> names;
     for (const DataColumn& column : data.columns) {
@@ -909,7 +909,8 @@ int plot(lua_State* L) {
     std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
     if (x.size() > 1) options.fail("x", "x must be one column");
     std::vector<std::string> z = asked_names(L, options, "z");
-    // Points over two parameters are a map, of the first result where none is named, or a curve for each of the first.
+    // Points over two parameters are drawn as a map, by default of the first result, or as a curve for each value of
+    // the first parameter.
     const std::vector<std::string> over = different_parameters(*data);
     const bool curves = !y.empty() || options.has("style");
     const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
@@ -952,7 +953,7 @@ int plot(lua_State* L) {
     figure.x.label = label_of(*data, x.front());
     plots::Curve curve;
     if (!data->points_of.empty() && !options.has("y") && x.front() != data->points_of) y = {data->points_of};
-    const bool leaps = over.size() == 2 && x.front() == over[0];  // from row to row
+    const bool leaps = over.size() == 2 && x.front() == over[0];  // a line would jump between grid rows
     if (!data->points_of.empty() || leaps) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);

@@ -1,4 +1,4 @@
-// What run:energy() returns: the energy balance of a run in total, for each half cycle, and as columns beside its rows.
+// The energy of a run, as run:energy() returns it: in total, for each half cycle, and as columns beside the rows.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,10 +24,10 @@ namespace {
 struct RunEnergy {
     RunHandle run = {};
     analysis::Energy energy = {};
-    std::vector<analysis::Energy> parts = {};  ///< of which that energy is the sum
-    Eigen::MatrixXd columns = {};              ///< at the rows; made when first asked for
+    std::vector<analysis::Energy> parts = {};  ///< the energies of which it is the sum
+    Eigen::MatrixXd columns = {};              ///< at the rows; computed on first use
 };
-// Shared, because a column that Lua takes out is a view that keeps it alive.
+// Shared: a column in Lua is a view that keeps it alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
 
 bool is_part(const RunEnergy& energy) {
@@ -42,16 +42,16 @@ analysis::Whose whose_of(const Run& run) {
                                                          : analysis::Whose::link;
 }
 
-/// Of several bodies the sum: what the others do on one of them cancels.
+/// Computes the columns; for several bodies the sum, in which the work between them cancels.
 void make_columns(lua_State* L, RunEnergy& energy) {
     if (energy.columns.size() > 0) return;
-    lua::CallState call(L);  // a law of friction may be a user's function
+    lua::CallState call(L);  // a friction law may be a user's function
     for (const RunHandle& part : parts_of(energy.run)) {
         const Eigen::MatrixXd own = analysis::energy_columns(part->trajectory, whose_of(*part));
         call.check();
         energy.columns = energy.columns.size() == 0 ? own : energy.columns + own;
     }
-    if (is_part(energy)) energy.columns.col(error_column) *= -1;  // then it is the work of the others
+    if (is_part(energy)) energy.columns.col(error_column) *= -1;  // so that it is the work of the other bodies
     lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
 }
 
@@ -65,7 +65,7 @@ lua::Vector column_of_energy(lua_State* L, const EnergyHandle& handle) {
     return energy_column(L, handle, static_cast<Eigen::Index>(which));
 }
 
-/// What does not add up of a whole run, and the work of the others of one of several; nil of the other kind.
+/// The closure error of a whole run, or the work of the other bodies on a part; nil for the other kind.
 template <bool of_part>
 std::optional<lua::Vector> rest_of_energy(lua_State* L, const EnergyHandle& handle) {
     if (is_part(*handle) != of_part) return {};
@@ -120,7 +120,7 @@ std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
     return list;
 }
 
-/// energy.load, energy.clutch
+/// energy.load, energy.clutch: pushes the energy of a body or link.
 int part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
@@ -280,9 +280,9 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
 
 namespace {
 
-/// Of each part of the run; fails with the sentence of the first that fails.
+/// The energies of the parts of a run; fails with the first error.
 text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const std::vector<RunHandle>& parts) {
-    lua::CallState call(L);  // a law of friction may be a user's function
+    lua::CallState call(L);  // a friction law may be a user's function
     std::vector<analysis::Energy> energies;
     for (const RunHandle& part : parts) {
         auto energy = analysis::energy_of(part->trajectory, whose_of(*part));

@@ -28,7 +28,7 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
     if (lua_type(L, index) == LUA_TNUMBER) {
         term = model::Constant{lua_tonumber(L, index)};
     } else if (lua::is_callable(L, index)) {
-        const std::size_t name = what.rfind(": ");  // its errors name it: "M.motor returned nil"
+        const std::size_t name = what.rfind(": ");  // its errors name the function: "M.motor returned nil"
         lua::FunctionRole role;
         if (name != std::string_view::npos) role.name = what.substr(name + 2);
         const auto function = std::make_shared<lua::LuaFunction>(L, index, std::move(role));
@@ -57,7 +57,7 @@ namespace {
 
 constexpr double no_end = 1e300;
 
-/// None when there are none, or when one is not finite.
+/// The sum of these terms; none if there are none or one is invalid.
 std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
     model::Excitation sum;
     for (const model::Term& term : terms) {
@@ -68,11 +68,11 @@ std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
     return terms.empty() ? std::nullopt : std::optional(sum);
 }
 
-/// Whether the terms equal the formula between these times, to its own rounding and that of the times: what
-/// stands for a formula is compared with it before the run begins.
+/// Returns whether the terms equal the formula between these times, to rounding of the values and times. Replacements
+/// of a formula are compared with it before a run.
 bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon(),
-                     allowed = 1e-12;  // of a time; of the values
+                     allowed = 1e-12;  // relative, for the values
     double greatest = 0, worst = 0;
     for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {
         const double t = to < no_end ? from + part * (to - from) : from + std::exp(10 * part);
@@ -86,10 +86,10 @@ bool agree(model::Formula& formula, const model::Excitation& terms, double from,
     return worst <= allowed * greatest;
 }
 
-/// The same for terms that repeat: in the middles of the pieces of the first, the second and the last period.
+/// The same for periodic terms: in the middles of the pieces of the first, second and last period.
 bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& middles, double period,
            double to) {
-    constexpr double allowed = 1e-12, far = 1000;  // of the values; periods, where there is no last one
+    constexpr double allowed = 1e-12, far = 1000;  // relative, for the values; period number without an end
     double greatest = 0, worst = 0;
     for (const double middle : middles) {
         const double last = to < no_end ? std::floor((to - middle) / period) : far;
@@ -104,11 +104,11 @@ bool agree(model::Formula& formula, const model::Excitation& terms, const std::v
     return worst <= allowed * greatest;
 }
 
-/// A function that is constant on each piece between two breaks, and repeats: the differences from its first piece are
+/// A periodic function that is constant between its breaks, as native terms: the differences from its first piece are
 /// square waves.
 std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double to, double period) {
     constexpr int most_pieces = 50;
-    constexpr double least = 1e-9;  // of a period: the last piece may seem to end a little before it
+    constexpr double least = 1e-9;  // part of a period: by rounding the last piece may end earlier
     const double first = function.next_break(from), end = first + period * (1 - least);
     std::vector<model::Term> made;
     std::vector<double> middles;
@@ -133,7 +133,7 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
     return sum && agree(*function.formula(), *sum, middles, period, to) ? sum : std::nullopt;
 }
 
-/// The function as native terms from one time to another, piece by piece.
+/// The function as native terms in a time span, piece by piece; none if that fails.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
     if (!(function.next_break(from) < to)) {
@@ -159,7 +159,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     return sum;
 }
 
-/// A function whose breaks nobody has announced, if it is read.
+/// The component's formula function without declared breaks, or nullptr.
 lua::LuaFunction* read_function(const model::Component& component) {
     const auto* script = std::get_if<model::Scripted>(&component.term);
     auto* function = script == nullptr ? nullptr : dynamic_cast<lua::LuaFunction*>(script->function.get());
@@ -227,7 +227,7 @@ model::State state_arguments(lua_State* L, int index) {
     return state;
 }
 
-/// Of a controller with a memory only a run can tell what it gives.
+/// Refuses a controller with a memory, whose values exist in runs only.
 void refuse_memory(lua_State* L, const model::Excitation& excitation, const char* call) {
     if (model::has_memory(excitation)) {
         lua::fail(L, call, {"a controller with a memory has values in a run only; see run.M"});
@@ -334,7 +334,7 @@ int subtract(lua_State* L) {
     return 1;
 }
 
-/// The excitation at `index`, scaled by the number at `number_index` (or its inverse).
+/// Pushes the excitation at `index` times `gain`.
 int push_scaled(lua_State* L, int index, double gain) {
     if (!std::isfinite(gain)) {
         lua::raise(L, fmt::format("an excitation cannot be scaled by {}", gain));

@@ -1,4 +1,4 @@
-// Excitations from Lua: what may stand for M, and the functions that make one.
+// Conversion of Lua values to excitations.
 #pragma once
 
 #include <optional>
@@ -9,18 +9,18 @@
 
 namespace dinal::api {
 
-/// What stands at `index` as an excitation: nothing (M = 0), a number, a function or callable table, an excitation.
-/// Raises a sentence headed by `what` for anything else, about that option if it is one.
+/// The excitation at `index`: nothing (M = 0), a number, a function or callable table, or an excitation. Raises an
+/// error for anything else; it begins with `what` and names `option` if given.
 model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
 
-/// The functions in M as native terms, to rounding, from one time to another. None where one is no such sum on each of
-/// its pieces, or where something else runs in Lua meanwhile, which may change what M depends on.
+/// M with its functions replaced by native terms, to rounding, in a time span. None if that is impossible for some
+/// function, or if other Lua code runs meanwhile, which may change what M depends on.
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to);
-/// The same M, whose functions have the periods that they are proven to have.
+/// The same M with the proven periods of its functions.
 model::Excitation with_periods(lua_State* L, const model::Excitation& M);
 
-/// Pushes the excitation of one term, or raises what is wrong with it.
+/// Pushes the excitation of one term, or raises its error.
 int push_term(lua_State* L, model::Term term);
 
 }  // namespace dinal::api

@@ -1,5 +1,5 @@
-// What `excitation.` has to offer: a function for each term of the model, which says what its options are and what is
-// told about it. Two terms need more than a table of options: samples a file, and scripted a function.
+// The module `excitation`: a function for each term of the model, with options and documentation from the term. Two
+// terms have special arguments: samples also takes a file, scripted a function.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -144,7 +144,7 @@ inline constexpr lua::Member controller_functions[] = {
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        lua::raise(L, made.error());  // it names its call
+        lua::raise(L, made.error());  // it begins with its call
     }
     lua::push(L, std::move(made).value());
     return 1;
@@ -162,7 +162,7 @@ constexpr auto columns_of_file = text::joined(column_names, model::terms::betwee
 constexpr text::Call file_call{
     "excitation.samples", "excitation.samples(\"record.csv\", { time = \"t\", value = \"M\" })", columns_of_file, true};
 
-/// The column that an option names or numbers, else the first with one of the usual names, else `otherwise`.
+/// The column named or numbered by an option, otherwise the first with a usual name, otherwise `otherwise`.
 Eigen::Index samples_column(lua_State* L, const lua::Options& options, const std::string& file,
                             const files::Table& table, std::string_view option,
                             std::initializer_list<std::string_view> usual, Eigen::Index otherwise) {
@@ -183,7 +183,7 @@ Eigen::Index samples_column(lua_State* L, const lua::Options& options, const std
     return otherwise;
 }
 
-/// In files, times are counted by the row, not by the index of a table.
+/// Checks the times; errors count rows of the file rather than table indices.
 void check_times(const lua::Options& options, const std::string& file, const files::Table& table, Eigen::Index column) {
     const auto t = table.values.col(column);
     for (Eigen::Index i = 1; i < t.size(); ++i) {
@@ -201,7 +201,7 @@ int samples_from_file(lua_State* L) {
     const lua::Options options(L, 2, file_call);
     auto read = files::read_columns(file);
     if (lua::interrupt_requested()) {
-        lua::raise_interrupted(L);  // what was read is not all
+        lua::raise_interrupted(L);  // the file was read in part only
     }
     const files::Table table = options.value_or_fail(files::table_of(options.value_or_fail(std::move(read))));
     if (table.values.rows() == 0) {
@@ -217,8 +217,8 @@ int samples_from_file(lua_State* L) {
         const auto values = table.values.col(column);
         return std::vector<double>(values.data(), values.data() + values.size());
     };
-    // The columns by name, so that the text still means the same when the file gets another one; numbers where it has
-    // no names are found by these names, too.
+    // Columns by name, so that the text stays valid if the file gets another column; in files without names, numbers
+    // are found by these names, too.
     const auto name = [&](Eigen::Index column) { return text::quoted(table.names[static_cast<std::size_t>(column)]); };
     model::Samples points;
     options.fill(points);
@@ -263,7 +263,7 @@ int scripted(lua_State* L) {
 
 // ---- the functions
 
-/// How Lua makes a term: by one table that fills it, unless it is one of the two below.
+/// A term's constructor in Lua: from one table of options, except for samples and scripted.
 template <class T>
 struct Maker {
     static constexpr text::FixedText<96> signature{T::about.call.name, "{ OPTIONS } -> excitation"};

@@ -1,4 +1,4 @@
-// friction.stribeck{...} and its like: laws of friction as values, for `friction =` of a system.
+// friction.stribeck{...} etc.: friction laws as values, for `friction =` of a system.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ int coulomb_law(lua_State* L) {
     return push_law(L, options, torques.law());
 }
 
-/// A law whose options fill all of it.
+/// Makes a law from its options alone.
 template <class Law, const text::Call& call>
 int law_of_options(lua_State* L) {
     const lua::Options options(L, 1, call);
@@ -49,7 +49,7 @@ int law_of_options(lua_State* L) {
     return push_law(L, options, law);
 }
 
-/// One side of asymmetric friction: a table { Rd, Re } of its own.
+/// One direction of asymmetric friction: a table { Rd, Re }.
 laws::Coulomb law_of_side(lua_State* L, const lua::Options& options, const char* name) {
     const std::string call = fmt::format("{}: {}", laws::asymmetric_call.name, name);
     const text::Call own{call.c_str(), "{ Rd = 0.3, Re = 0.4 }", laws::coulomb_options};

@@ -1,4 +1,4 @@
-// identify{ ... } and the class of what it returns.
+// identify{ ... } and the class of its result.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -40,7 +40,7 @@
 
 namespace dinal::api {
 
-// What identify{ ... } is told.
+// The options of identify{ ... }.
 
 struct IdentifyOptions {
     std::optional<std::string> t = {}, theta = {};
@@ -115,14 +115,14 @@ struct FitAnswer {
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
     std::optional<model::System> system;
-    bool from_guess = false;  ///< a system was given
-    model::Units units;       ///< of the record; without one for M where only ratios to I are found
+    bool from_guess = false;  ///< whether a system was given
+    model::Units units;       ///< units of the record; without a unit for M if only ratios to I are found
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
 
-// The record that identify{ ... } is given, and which of the unknowns are fitted.
+// The record passed to identify{ ... }, and the choice of fitted parameters.
 
-/// What stands under `data`.
+/// Reads the option `data`.
 Data record_of(lua_State* L, const lua::Options& options) {
     Data record;
     options.push("data");
@@ -152,8 +152,8 @@ Data record_of(lua_State* L, const lua::Options& options) {
     return record;
 }
 
-/// The numbers of the column asked for, or of the first with one of these names, or of the one in this place; nan where
-/// there is none.
+/// The numbers of the requested column, otherwise of the first with one of these names, otherwise of the column at
+/// `place`; nan marks a gap.
 std::span<const double> record_numbers(lua_State* L, const lua::Options& options, const Data& record,
                                        const std::optional<std::string>& asked,
                                        std::initializer_list<std::string_view> names, std::size_t place) {
@@ -170,7 +170,7 @@ std::span<const double> record_numbers(lua_State* L, const lua::Options& options
     return found->numbers()->values();
 }
 
-/// What the record is measured in, where its columns say it.
+/// The units of the record according to its columns.
 model::Units units_of_record(const Data& record) {
     model::Units units;
     for (const auto& [name, unit] : {std::pair{"theta", &units.theta}, {"t", &units.t}, {"M", &units.M}}) {
@@ -180,7 +180,7 @@ model::Units units_of_record(const Data& record) {
     return units;
 }
 
-/// Fills times and angles of the question, without gaps. Raises when there is no such record.
+/// Sets times and angles of the question, without gaps. Raises an error if there is no such record.
 void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked, const Data& record,
                  analysis::IdentifyQuestion& question) {
     const auto t = record_numbers(L, options, record, asked.t, {"t", "time"}, 0);
@@ -195,7 +195,7 @@ void take_record(lua_State* L, const lua::Options& options, const IdentifyOption
     }
 }
 
-/// The names under `free`; raises when there are none.
+/// The names in `free`; raises an error if there are none.
 std::vector<std::string> free_names(lua_State* L, const lua::Options& options) {
     options.push("free");
     const auto names = lua_istable(L, -1) ? lua::strings_at(L, -1) : std::nullopt;
@@ -204,7 +204,7 @@ std::vector<std::string> free_names(lua_State* L, const lua::Options& options) {
     return *names;
 }
 
-/// Fills what is given, by value or by not being free. The M of the question must be there already.
+/// Sets the given parameters: those with a value, and those that are not free. Requires the M of the question.
 void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                 analysis::IdentifyQuestion& question) {
     if (asked.Re && asked.Rd && *asked.Re < *asked.Rd) {
@@ -234,21 +234,21 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         const auto place = static_cast<std::size_t>(which);
         if (!held[place] || question.given[place]) continue;
         if (which != Unknown::I && which != Unknown::k) {
-            question.given[place] = 0;  // an Re less than Rd is Rd
+            question.given[place] = 0;  // an Re below Rd counts as Rd
         } else if (question.M) {
             options.fail({fmt::format("{} is neither given nor in free", analysis::unknown_names[place])});
         }
     }
 }
 
-// identify{ system = ..., free = { ... } }: parameters of any system, and of tables that a user's functions read,
-// fitted from a guess to measured angles, velocities or accelerations.
+// identify{ system = ..., free = { ... } }: fits parameters of any system, and of tables that user functions read, from
+// a guess to measured angles, velocities or accelerations.
 
 enum class Sign { any, not_negative, positive };
-/// Is given a number by its name. Returns whether it has set the number.
+/// Receives a number with its name, and may change it. Returns whether it has.
 using Change = std::function<bool(const std::string& name, double& number, Sign sign)>;
 
-/// Re is at least Rd, and goes with Rd where the two are one number of which nobody sets Re alone.
+/// Visits Rd and Re. Re follows Rd if both were equal and Re is not set by itself.
 void change_torques(model::laws::Coulomb& law, const std::string& before, const Change& change) {
     const bool one_number = law.kinetic == law.breakaway;
     change(before + "Rd", law.kinetic, Sign::not_negative);
@@ -258,7 +258,7 @@ void change_torques(model::laws::Coulomb& law, const std::string& before, const 
 
 template <class Law>
 void change_rows(Law& law, std::span<const text::Option> rows, const Change& change) {
-    double Rd = 0;  // the first of the rows
+    double Rd = 0;  // the first row
     for (const text::Option& row : rows) {
         text::OptionValue now = row.filled.get(&law);
         auto* number = std::get_if<double>(&now);
@@ -297,12 +297,12 @@ model::Friction changed_law(const model::Friction& friction, const Change& chang
     return law.breakaway > 0 ? model::Friction(law) : model::Friction();
 }
 
-/// What stands before the names of this body or link: "load."
+/// The prefix of names for this body or link: "load.".
 std::string before_names(const model::System& system, std::size_t joint) {
     return system.named ? system.joints[joint].name + "." : "";
 }
 
-/// Of each number of the body or link that can be fitted, by its name in identify: "load.Rd", or "Rd" of one body.
+/// Visits each fittable number of the body or link by its name in identify: "load.Rd", or "Rd" for a single body.
 void change_numbers(model::System& system, std::size_t j, const Change& change_named) {
     const std::string before = before_names(system, j);
     const Change change = [&](const std::string& own, double& number, Sign sign) {
@@ -336,7 +336,7 @@ void change_numbers(model::System& system, std::size_t j, const Change& change_n
     }
 }
 
-/// Pushes the system, or raises what is wrong with its numbers.
+/// Pushes the system, or raises the error in its numbers.
 int push_with_numbers(lua_State* L, const model::System& system) {
     if (!system.named) return push_alone(L, "identify", system, 0);
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -348,7 +348,7 @@ int push_with_numbers(lua_State* L, const model::System& system) {
     return 1;
 }
 
-/// Called with a system and the options of its run.
+/// Runs a system; receives it and the options of the run.
 int run_with_numbers(lua_State* L) {
     push_with_numbers(L, *static_cast<const model::System*>(lua_touserdata(L, 1)));
     lua_getfield(L, -1, "simulate");
@@ -358,13 +358,13 @@ int run_with_numbers(lua_State* L) {
     return 1;
 }
 
-/// What is fitted.
+/// A fitted parameter.
 struct Fitted {
     std::string name;
     double start = 0, typical = 0, least = -1e300;
     std::vector<double> other_starts = {};
-    int table = 0;         ///< its place on the stack; 0: in none
-    std::string key = {};  ///< in it
+    int table = 0;         ///< stack index of its table; 0: none
+    std::string key = {};  ///< key in that table
 };
 
 enum class Measure { theta, velocity, acceleration };
@@ -372,10 +372,10 @@ constexpr const char* measure_names[] = {"theta", "velocity", "acceleration"};
 struct MeasuredColumn {
     Measure quantity;
     std::size_t joint;
-    std::string name;  ///< of the column of a run
+    std::string name;  ///< column name in a run
     std::vector<double> numbers = {};
     double range = 0;
-    double size = 1;  ///< in whose units it is fitted: its noise, or a small part of its range
+    double size = 1;  ///< its unit in the fit: its noise, or a small part of its range
 };
 
 class AnyFit {
@@ -388,7 +388,7 @@ public:
         take_free();
     }
 
-    /// Fills the answer.
+    /// Runs the fit and fills the answer.
     void fit(FitAnswer& fit) {
         analysis::GeneralQuestion question;
         const auto n = static_cast<Eigen::Index>(free_.size());
@@ -445,7 +445,7 @@ private:
         }
     }
 
-    /// What is measured, and the names of its columns: "velocity", { "theta", "velocity" } or { theta = "x" }.
+    /// The measured quantities and their columns: "velocity", { "theta", "velocity" } or { theta = "x" }.
     std::vector<std::pair<MeasuredColumn, std::string>> asked_columns() {
         std::vector<std::pair<MeasuredColumn, std::string>> asked;
         const std::string_view wanted = system_.named
@@ -528,7 +528,7 @@ private:
         }
     }
 
-    /// How far things are from each other in this record, for parameters that begin at 0.
+    /// Sets typical sizes in this record, for parameters that start at 0.
     void take_scales() {
         constexpr double swings = 10;
         const double period = system_.shortest_natural_period(), span = t_.back() - t_.front();
@@ -556,14 +556,14 @@ private:
             }
             if (velocity0_[body]) continue;
             Fitted one{.name = before + "velocity0", .start = first_velocity(body), .typical = 0.1 * speed_};
-            // Friction may hold a body at rest, and then no slope leads away from there.
+            // Friction may hold a body at rest, where the derivative by its velocity is zero.
             const bool is_measured = measured(body, Measure::theta) != nullptr || one.start != 0;
             if (!is_measured) one.other_starts = {speed_, -speed_};
             free_.push_back(std::move(one));
         }
     }
 
-    /// The numbers under this option, by body or link; of one body without a name its number.
+    /// The numbers in this option for each body or link; a single unnamed body has one number.
     std::vector<std::optional<double>> given(const char* option) {
         std::vector<std::optional<double>> numbers(system_.joints.size());
         if (!options_.has(option)) return numbers;
@@ -582,7 +582,7 @@ private:
         return numbers;
     }
 
-    /// The first column that measures this, if there is one.
+    /// The first column that measures this quantity, or nullptr.
     [[nodiscard]] const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
         const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const MeasuredColumn& column) {
             return column.joint == joint && column.quantity == quantity;
@@ -590,7 +590,7 @@ private:
         return found == columns_.end() ? nullptr : &*found;
     }
 
-    /// Without a spring no velocity depends on where a body began.
+    /// Returns whether the initial angle matters: without a spring, no velocity depends on it.
     [[nodiscard]] bool place_counts(std::size_t body) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
@@ -617,7 +617,7 @@ private:
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
             const bool of_start = name == before + "theta0" || name == before + "velocity0";
-            if (of_start && !system_.is_link(j)) return;  // fitted unless given
+            if (of_start && !system_.is_link(j)) return;  // the start is fitted unless given
             if (name == before + "offset") one.typical = 0.1 * angle_, found = true;
             change_numbers(system_, j, [&](const std::string& own, double& number, Sign sign) {
                 known.push_back(own);
@@ -634,7 +634,7 @@ private:
         free_.push_back(std::move(one));
     }
 
-    /// Whether a function or an excitation stands where this number would.
+    /// Returns whether this parameter is a function or an excitation.
     [[nodiscard]] bool is_function(std::string_view name) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
@@ -652,7 +652,7 @@ private:
         return false;
     }
 
-    /// "p.Kp": the variable p of a function of M, belt, base or a state's rate, or the global p.
+    /// For "p.Kp": finds the variable p of a function in M, belt, base or a rate of a state, or the global p.
     void find_table(const std::string& name, const std::vector<std::string>& known, Fitted& one) {
         const std::size_t dot = name.find('.');
         const std::string variable = name.substr(0, dot);
@@ -689,13 +689,13 @@ private:
              .cure = text::did_you_mean(name, known)});
     }
 
-    /// Without metamethods: a library has names that it refuses.
+    /// Pushes a field without metamethods, as a library refuses unknown names.
     int push_field(const Fitted& one) {
         lua_pushstring(L_, one.key.c_str());
         return lua_rawget(L_, one.table);
     }
 
-    /// Pushes the table that functions in the value on the top of the stack know by this name.
+    /// Pushes the table that functions inside the value on the top know by this name.
     bool push_variable(const std::string& variable, int depth) {
         const int value = lua_gettop(L_);
         if (const auto* excitation = lua::test<model::Excitation>(L_, value)) {
@@ -735,7 +735,7 @@ private:
         lua_setfield(L_, one.table, one.key.c_str());
     }
 
-    /// Sets the tables, and gives the system.
+    /// Sets the tables, and returns the system with these parameters.
     model::System with(const Eigen::VectorXd& p) {
         model::System system = system_;
         for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -791,7 +791,7 @@ private:
         lua_setfield(L_, -2, "times");
     }
 
-    /// The parameter of this name, if it is fitted.
+    /// The parameter of this name if it is fitted.
     [[nodiscard]] std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
         for (std::size_t i = 0; i < free_.size(); ++i) {
             if (free_[i].name == name) return p[static_cast<Eigen::Index>(i)];
@@ -799,7 +799,7 @@ private:
         return {};
     }
 
-    /// The measured numbers of a run, which stands on the top of the stack.
+    /// The measured quantities of the run on the top of the stack, as one vector.
     std::optional<Eigen::VectorXd> stacked(const Eigen::VectorXd& p, std::size_t rows) {
         std::vector<double> all;
         std::vector<std::vector<double>> columns;
@@ -822,7 +822,7 @@ private:
         return stacked.allFinite() ? std::optional(std::move(stacked)) : std::nullopt;
     }
 
-    /// The tables are the user's.
+    /// Restores the user's tables.
     void restore() {
         for (const Fitted& one : free_) {
             if (one.table > 0) set_number(one, one.start);
@@ -834,7 +834,7 @@ private:
         restore();
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
-            double value = found.value[place];  // what holds may have been less than what slides
+            double value = found.value[place];  // by rounding, the breakaway torque may be the smaller one
             for (std::size_t j = 0; j < system.joints.size(); ++j) {
                 change_numbers(system, j, [&](const std::string& name, const double& number, Sign /*sign*/) {
                     if (name == free_[i].name) value = number;
@@ -869,10 +869,10 @@ private:
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
     std::vector<double> t_;
-    std::vector<Eigen::Index> known_until_;                           ///< how many numbers there are up to each row
-    std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< that are given, by body or link
+    std::vector<Eigen::Index> known_until_;                           ///< number of measured values up to each row
+    std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< given values, by body or link
     double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;
-    std::string failure_;  ///< of the last run
+    std::string failure_;  ///< error of the last run
 };
 
 // The answer.
@@ -881,7 +881,7 @@ void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
     const auto add = [&fit](std::string_view name, double value, double error) {
         fit.values.emplace_back(name, value);
-        fit.errors.emplace_back(name, error > 0 ? std::max(error, 1e-15 * std::fabs(value)) : 0);  // some ulps
+        fit.errors.emplace_back(name, error > 0 ? std::max(error, 1e-15 * std::fabs(value)) : 0);  // at least some ulps
     };
     const auto given = [&fit](Unknown which) {
         return fit.question.given[static_cast<std::size_t>(which)].has_value();
@@ -1018,7 +1018,7 @@ int fit_plot(lua_State* L) {
     return deliver(L, options, std::move(figures));
 }
 
-/// What a value of this name is measured in; nothing where nobody has said it.
+/// The unit of a value of this name; empty if unknown.
 std::string unit_of_value(const model::Units& units, std::string_view name) {
     if (units.usual()) return "";
     if (name == "omega0") return units.t.empty() ? "" : "rad/" + units.t;
@@ -1031,7 +1031,7 @@ std::string unit_of_value(const model::Units& units, std::string_view name) {
                                           : "";
 }
 
-/// "load." of "load.Rd"; empty for one body without a name.
+/// Returns "load." for "load.Rd"; empty for a single unnamed body.
 std::string body_of_value(const FitAnswer& fit, std::string_view name) {
     for (std::size_t j = 0; fit.system && j < fit.system->joints.size(); ++j) {
         std::string before = before_names(*fit.system, j);
@@ -1040,7 +1040,7 @@ std::string body_of_value(const FitAnswer& fit, std::string_view name) {
     return "";
 }
 
-/// What is known of a value that the record does not determine. That of a fit is one of many: Re is at least Rd.
+/// Describes a value that the record does not determine; its fitted value is one of many. Re is at least Rd.
 std::string text_of_silent(const FitAnswer& fit, const std::string& name, double value) {
     const auto is_silent = [&fit](const std::string& other) {
         return std::find(fit.silent.begin(), fit.silent.end(), other) != fit.silent.end();
@@ -1076,7 +1076,7 @@ std::string fit_summary(const FitAnswer& fit) {
     if (!unlisted.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(unlisted, ", "));
     constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
     const double Rd = fit.found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // a record without noise leaves rounding
+    if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // without noise only rounding remains
         text += fmt::format(
             "\n  Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
             "Rd; leave Re out, or give Rd as well",

@@ -1,4 +1,4 @@
-// integrator.NAME{...} for every row of motion/integrators.hpp, and the objects they make: their options are fields.
+// integrator.NAME{...} for every row of motion/integrators.hpp, and the class of integrators: their options are fields.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ const text::Option* find_option(const motion::MethodText& about, std::string_vie
     return found == about.call.options.end() ? nullptr : &*found;
 }
 
-/// A value that is absent or without limit is nil.
+/// Pushes an option's value; nil if absent or infinite.
 void push_option(lua_State* L, const text::Option& option, const text::OptionValue& value) {
     if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number)) {
         lua_pushnumber(L, *number);
@@ -72,7 +72,7 @@ bool is_option(std::type_identity<std::variant<M...>> /*all*/, std::string_view 
     return ((find_option(M::about, name) != nullptr) || ...);
 }
 
-/// An option by its name; nil for those that only other methods have.
+/// Pushes an option by its name; nil for options that only other methods have.
 int option_by_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const std::string_view name = lua_tostring(L, 2);

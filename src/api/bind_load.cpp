@@ -1,4 +1,4 @@
-// load(file): whatever dinal has written, or any CSV file. Of anything else it is Lua's own load.
+// load(file): reads a file written by dinal, or any CSV file. Other arguments go to Lua's own load.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace dinal::api {
 
 namespace {
 
-const char original_key = 0;  // in the registry: load as it was
+const char original_key = 0;  // registry key of Lua's own load
 
 enum class Duplicates { keep, mean, first, last };
 struct LoadOptions {
@@ -51,7 +51,7 @@ constexpr text::Option load_options[] = {
 };
 constexpr text::Call load_call{"load", "load(\"log.csv\", { skip = 3, sort = true })", load_options, true};
 
-/// The rows in these groups, one row of each: its first, its last, or with the mean of its numbers.
+/// Merges the rows of each group: keeps the first or last, or averages the numbers.
 void take_groups(files::ReadColumns& content, const std::vector<std::vector<std::size_t>>& groups, Duplicates which) {
     const auto one = [which](const auto& values, const std::vector<std::size_t>& rows) {
         return values[which == Duplicates::last ? rows.back() : rows.front()];
@@ -74,7 +74,7 @@ void take_groups(files::ReadColumns& content, const std::vector<std::vector<std:
     }
 }
 
-/// Sorts the rows by their times, and makes one of those with the same time, as asked.
+/// Sorts rows by time and merges rows of equal times, as requested.
 void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadColumns& content) {
     if (!asked.sort && asked.duplicates == Duplicates::keep) return;
     auto& columns = content.columns;
@@ -106,7 +106,7 @@ void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadC
     take_groups(content, groups, asked.duplicates);
 }
 
-/// The rows of a run, as run:save wrote them.
+/// Pushes a run from the rows written by run:save.
 int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
     Run run;
     run.comments = std::move(content.comments);
@@ -124,7 +124,7 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
     return 1;
 }
 
-/// Units of the comments are those of run:save, whose columns may begin with the names of bodies.
+/// Pushes data. Comments of run:save declare units; its columns may begin with the names of bodies.
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
     const ColumnUnits in(model::Units::from_file(content.comments));
     Data data;
@@ -141,7 +141,7 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
     return push_data(L, std::move(data));
 }
 
-/// The comments of run:save begin so, or there are times and angles of one body; and the rows have no gaps.
+/// Returns whether the file is a run: it has the comments of run:save, or times and angles of one body, and no gaps.
 bool is_run(const files::ReadColumns& content) {
     const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
     const auto has = [&](std::string_view name) {
@@ -154,7 +154,7 @@ bool is_run(const files::ReadColumns& content) {
     return (saved || (has("t") && has("theta"))) && std::all_of(content.columns.begin(), content.columns.end(), finite);
 }
 
-/// Of the line of units, where there is one.
+/// The units in the line of units; default units without one.
 model::Units units_of(const files::ReadColumns& content) {
     model::Units units = model::Units::from_file(content.comments);
     for (const files::ReadColumn& column : content.columns) {
@@ -188,7 +188,7 @@ int load_file(lua_State* L, const std::string& file) {
                          fmt::format("the record of 1989 (.dat) has no {}: its six columns are known", option.name));
         }
         auto record = files::read_record1989(file);
-        if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);  // the file was read in part only
         return push_loaded_run(L, lua::value_or_raise(L, "load", std::move(record)), {});
     }
     auto read = files::read_columns(file, reading);
@@ -200,7 +200,7 @@ int load_file(lua_State* L, const std::string& file) {
     return push_loaded_run(L, lua::value_or_raise(L, "load", files::table_of(std::move(content))), std::move(units));
 }
 
-/// The ending of what is no Lua and may be the name of a file; "" for all else.
+/// The file extension of a text that is not Lua and may be a file name; otherwise "".
 std::string ending_of_file(lua_State* L, std::string_view name) {
     constexpr std::size_t longest = 4096;
     const bool options = lua_gettop(L) == 2 && lua_type(L, 2) != LUA_TSTRING;

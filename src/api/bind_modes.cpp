@@ -1,4 +1,4 @@
-// sys:modes{...}: eigenvalues beside a rest or an even sliding.
+// sys:modes{...}: eigenvalues at an equilibrium or in steady sliding.
 #include <fmt/format.h>
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// plot{ ... } and the pictures it can return; run:plot and run:phase_plot, which bind_run.cpp lists.
+// plot{ ... } and its pictures; run:plot and run:phase_plot, which bind_run.cpp lists.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -33,16 +33,16 @@ namespace dinal::api {
 
 namespace {
 
-/// The list part of plot{ ... }: curves made of vectors, runs, or pictures to set side by side.
+/// The list part of plot{ ... }: curves from vectors or runs, or pictures to be placed side by side.
 struct PlotItems {
     std::vector<plots::Curve> curves = {};
-    std::vector<plots::Figure> panels = {};  ///< of pictures
-    RunHandle run = {};                      ///< the first one, when each of the curves is theta over t of a run
+    std::vector<plots::Figure> panels = {};  ///< from pictures
+    RunHandle run = {};                      ///< the first run if every curve is theta over t of a run
 };
 
 plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
     if (const auto* vector = lua::test<lua::Vector>(L, -1)) {
-        const auto kept = std::make_shared<const lua::Vector>(*vector);  // a view; no number is copied
+        const auto kept = std::make_shared<const lua::Vector>(*vector);  // a view without copying
         return {kept, kept->values()};
     }
     if (!lua_istable(L, -1)) {
@@ -78,7 +78,7 @@ plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::
 
 plots::Curve curve_with_options(lua_State* L, int item, lua_Integer listed, const std::string& call) {
     lua::push_copy(L, item, listed);
-    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // which of the curves it is
+    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // errors name the curve
     const lua::Options options(L, lua_gettop(L), named);
     plots::Curve curve;
     options.fill(curve);
@@ -91,7 +91,7 @@ plots::Curve curve_with_options(lua_State* L, int item, lua_Integer listed, cons
     return curve;
 }
 
-/// The run that stands first in the table on the top of the stack, or is itself there; none when there is none.
+/// The run on the top of the stack, or first in the table there; otherwise null.
 RunHandle run_on_top(lua_State* L) {
     if (const auto* run = lua::test<RunHandle>(L, -1)) return *run;
     if (!lua_istable(L, -1)) return nullptr;
@@ -102,7 +102,7 @@ RunHandle run_on_top(lua_State* L) {
     return found;
 }
 
-/// theta over t of a run, which may have options beside it in a table.
+/// The curve theta over t of a run, alone or in a table with options.
 plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string& call) {
     plots::Curve curve;
     if (lua_istable(L, -1)) curve = curve_with_options(L, lua_gettop(L), 1, call);
@@ -113,7 +113,7 @@ plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string&
     return curve;
 }
 
-/// The curve that the table on the top of the stack describes; the table stays.
+/// The curve described by the table on the top of the stack, which stays.
 plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     const int item = lua_gettop(L);
     plots::Curve curve = curve_with_options(L, item, 2, call);
@@ -145,7 +145,7 @@ plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     return curve;
 }
 
-/// plot{ { 0, 1 }, { 2, 3 } } forgets the braces around x and y; its items are no curves.
+/// Returns whether the braces around x and y are missing: plot{ { 0, 1 }, { 2, 3 } } has items that are not curves.
 bool is_table_of_items(lua_State* L) {
     if (!lua_istable(L, -1)) {
         return false;
@@ -180,13 +180,13 @@ PlotItems plot_items(lua_State* L, int table) {
     return items;
 }
 
-/// The value of what is constant from this time on.
+/// The value of an excitation that is constant from this time on, otherwise none.
 std::optional<double> constant_value(const model::Excitation& excitation, double t) {
     if (excitation.components().empty()) return 0;
     return excitation.constant_from() <= t ? std::optional(excitation.value(t)) : std::nullopt;
 }
 
-/// What acts on the mass besides its system; none if that varies, or if the mass would rest on a moving belt.
+/// The constant load on the mass; none if it varies, or if the mass would rest on a moving belt.
 std::optional<double> constant_load(const Run& run) {
     if (!run.origin || run.system().joints.size() > 1) return {};
     const source::Task& task = *run.origin;
@@ -197,7 +197,7 @@ std::optional<double> constant_load(const Run& run) {
     return *M - run.system().bodies.front().inertia * *base;
 }
 
-/// Without its events, which are those of all bodies.
+/// A copy without events, which belong to all bodies.
 std::shared_ptr<const motion::Trajectory> without_events(const motion::Trajectory& trajectory) {
     auto rows = std::make_shared<motion::Trajectory>(trajectory);
     rows->events = {};
@@ -213,7 +213,7 @@ plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandl
     return {drawn, drawn.get(), alone(*run), asked_units(L, options).value_or(units_of(*run)), constant_load(*run)};
 }
 
-/// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.
+/// The name of the column on the top of the stack, given by name or number. "M/k" is resolved elsewhere.
 std::string column_on_top(lua_State* L, const lua::Options& options, std::string_view what, const RunHandle& run) {
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
@@ -244,7 +244,7 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
     return names;
 }
 
-/// What the option `labels` calls the curves, in the order of their columns.
+/// The labels of the curves from the option `labels`, in the order of their columns.
 std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options) {
     options.push("labels");
     const auto labels = lua_type(L, -1) == LUA_TSTRING ? std::nullopt : lua::strings_at(L, -1);
@@ -272,7 +272,7 @@ bool is_column(lua_State* L, int index) {
     return number;
 }
 
-/// How many columns the table at `index` lists; 0 for everything else.
+/// The number of columns in the table at `index`; 0 for other values.
 lua_Integer columns_in(lua_State* L, int index) {
     const auto count = lua_istable(L, index) ? static_cast<lua_Integer>(lua_rawlen(L, index)) : 0;
     for (lua_Integer i = 1; i <= count; ++i) {
@@ -283,8 +283,8 @@ lua_Integer columns_in(lua_State* L, int index) {
     return count;
 }
 
-/// plot(run), plot(x, y), plot(x, { y, z }) and the same with a table of options become plot{ run, options } and
-/// plot{ { x, y }, { x, z }, options }.
+/// Rewrites plot(run), plot(x, y), plot(x, { y, z }) and the same with options as plot{ run, options } and plot{ { x, y
+/// }, { x, z }, options }.
 void join_columns(lua_State* L) {
     const bool run = lua::test<RunHandle>(L, 1) != nullptr;
     const int given = lua_gettop(L), columns = run ? 1 : 2;
@@ -316,7 +316,7 @@ motion::BetweenRows between_rows(const Run& run) {
     const model::Excitation* M = nullptr;
     if (run.of_body()) M = run.terms ? &*run.terms : &run.origin->drive.loads[run.place()];
     const bool of_state =
-        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // of theta and velocity alone
+        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // theta and velocity determine M
     const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
     return {run.trajectory, known ? M : nullptr};
@@ -351,7 +351,7 @@ int plot_vectors(lua_State* L) {
     if (items.curves.empty() && items.panels.empty()) {
         lua::raise(L, {.sentence = fmt::format("plot needs a curve, for example {}", plot_call.example),
                        .call = "plot",
-                       .culprit = "nil"});  // what has no value in a table is not there
+                       .culprit = "nil"});  // nil values are absent from a table
     }
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {
@@ -390,7 +390,7 @@ int plot_vectors(lua_State* L) {
 
 namespace {
 
-/// The angles of all bodies, one below the other, and of the links that rub; with bars where they stick.
+/// Figures of all bodies' angles, one below the other, and of links with friction, with bars where they stick.
 std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& options, const RunHandle& run) {
     std::vector<plots::Figure> figures;
     for (const RunHandle& part : parts_of(run)) {
@@ -422,7 +422,7 @@ int plot_run(lua_State* L) {
     const std::vector<std::string> ys = asked_columns(L, options, "y", run);
     const bool over_time = x.empty() || x.front() == "t";
     const plots::RunData data = data_of(L, options, run, over_time ? options.numbers("xlim") : std::vector<double>());
-    // Who names the axis has decided that there is one.
+    // A user who labels the axis wants one axis.
     const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
     std::vector<plots::Figure> figures = options.value_or_fail(plots::column_figures(
         data, {.x = x.empty() ? "" : x.front(), .ys = ys, .labels = asked_labels(L, options), .axes = axes}));
@@ -477,7 +477,7 @@ plots::Interval asked_range(const lua::Options& options, std::string_view name, 
         options.fail(name, fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name,
                                        ends[0], ends[1]));
     }
-    // So far apart, or so close together, that fractions of the axis could not be told.
+    // Fractions of an axis this long or this short cannot be computed.
     if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < plots::shortest_axis ||
         ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
         options.fail(name, fmt::format("{} = {{ {}, {} }} cannot be drawn: its ends must differ by more than 1e-13 of "
@@ -487,7 +487,7 @@ plots::Interval asked_range(const lua::Options& options, std::string_view name, 
     return {ends[0], ends[1]};
 }
 
-/// xticks = 0.5: a tick at each multiple of it; xticks = { 0, 1, 4 }: these.
+/// xticks = 0.5: ticks at multiples of it; xticks = { 0, 1, 4 }: ticks at these values.
 void set_ticks(lua_State* L, const lua::Options& options, std::string_view name, plots::Axis& axis) {
     if (!options.has(name)) {
         return;
@@ -506,7 +506,7 @@ void set_ticks(lua_State* L, const lua::Options& options, std::string_view name,
     }
 }
 
-/// As wide as the screen, but no wider than one can overlook, and so high that what was typed still stands above it.
+/// The width of the screen within readable limits, and a height that leaves the typed line visible.
 plots::TextFormat asked_format(const TargetOptions& asked, bool phase) {
     const terminal::Display seen = terminal::display_of(STDOUT_FILENO);
     constexpr int widest = 120;
@@ -530,7 +530,7 @@ plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& as
     return {size[0], size[1]};
 }
 
-enum class FileKind { svg, png, pdf, txt };  // the first ones as in plots::PictureKind
+enum class FileKind { svg, png, pdf, txt };  // the first ones in the order of plots::PictureKind
 
 FileKind kind_of(const lua::Options& options, std::string_view file) {
     constexpr std::array<std::string_view, 4> endings{".svg", ".png", ".pdf", ".txt"};
@@ -557,8 +557,7 @@ void write_picture(lua_State* L, const lua::Options& options, const TargetOption
                    const std::vector<plots::Figure>& figures, const plots::TextFormat& format) {
     const FileKind kind = kind_of(options, *asked.file);
     const plots::PaperSize size = asked_size(options, asked);
-    files::OutputFile file =
-        options.value_or_fail(files::OutputFile::create(*asked.file));  // before the work that may be in vain
+    files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));  // fail before the work
     const auto bytes = content(figures, kind, size, format);
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);
@@ -567,7 +566,7 @@ void write_picture(lua_State* L, const lua::Options& options, const TargetOption
     options.value_or_fail(file.commit());
 }
 
-/// What they may keep alive outside of Lua.
+/// The memory that figures may keep alive outside of Lua.
 std::size_t bytes_of(const std::vector<plots::Figure>& figures) {
     std::size_t numbers = 0;
     for (const plots::Figure& figure : figures) {
@@ -578,7 +577,7 @@ std::size_t bytes_of(const std::vector<plots::Figure>& figures) {
     return numbers * sizeof(double);
 }
 
-/// A user's ticks must be few enough to be told apart.
+/// Raises an error if the user's ticks are too many to be legible.
 void check_ticks(const lua::Options& options, std::string_view name, const plots::Axis& axis,
                  const plots::Scale& scale) {
     constexpr double most = 200;

@@ -1,4 +1,4 @@
-// progress(n, label): a for loop that shows how far it is.
+// progress(n, label): a for loop with a progress line.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* example = "for i in progress(100, \"sweep\") do ... end";
 
-/// The state of such a loop. Its user value is the list that it goes through, if any.
+/// The state of such a loop. Its user value is the list it iterates, if any.
 struct Loop {
-    std::unique_ptr<terminal::Progress> progress;  // none when the loop has ended
+    std::unique_ptr<terminal::Progress> progress;  // null when the loop has ended
     lua_Integer steps = 0;
     bool list = false;
 };
@@ -31,7 +31,7 @@ Loop& loop_self(lua_State* L) {
     return *loop;
 }
 
-/// The function that the for loop calls: with the Loop and the number of the step before.
+/// The iterator of the for loop; receives the Loop and the number of the step before.
 int next_step(lua_State* L) {
     Loop& loop = loop_self(L);
     const lua_Integer step = lua_tointeger(L, 2) + 1;
@@ -55,7 +55,7 @@ int close_loop(lua_State* L) {
     return 0;
 }
 
-/// How many steps the first argument stands for; none when it is no whole number of them.
+/// The number of steps given by the first argument; none if it is not a valid count.
 std::optional<double> steps_of(lua_State* L) {
     if (lua_type(L, 1) == LUA_TTABLE) {
         return static_cast<double>(lua_rawlen(L, 1));
@@ -91,7 +91,7 @@ int progress(lua_State* L) {
     lua_pushvalue(L, 1);
     lua_setiuservalue(L, -2, 1);
     lua_pushinteger(L, 0);
-    lua_pushvalue(L, -2);  // the closing value: the line goes, however the loop is left
+    lua_pushvalue(L, -2);  // the closing value removes the line whichever way the loop ends
     return 4;
 }
 

@@ -1,5 +1,5 @@
-// The run object: columns as vectors, events, the motion between the rows; how it goes on, and into files. run:energy
-// is in bind_energy.cpp.
+// The class of runs: columns as vectors, events, the motion between rows, continuation, files. run:energy is in
+// bind_energy.cpp.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,7 +59,7 @@ std::string line_of(const Run& run) {
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const Run& run = *handle;
-    lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
+    lua::CallState call(L);  // spring, belt and base may be user functions
     const std::string text =
         run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.trajectory, run.units);
     call.check();
@@ -68,7 +68,7 @@ std::string story_of_run(lua_State* L, const RunHandle& handle) {
 
 namespace {
 
-// ---- What a run is asked besides its columns: run:spectrum, run:poincare.
+// ---- Methods beyond the columns: run:spectrum, run:poincare.
 
 enum class SpectrumMethod { amplitude, welch };
 
@@ -157,14 +157,14 @@ std::span<const double> column_values(const motion::Trajectory& trajectory, Eige
     return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
-/// The last of the values is the first one again: one period, or several, and a row too many.
+/// Returns whether the last value repeats the first: whole periods with one row too many.
 bool closes(std::span<const double> values) {
-    constexpr double same = 1e-9;  // of what they go through
+    constexpr double same = 1e-9;  // relative to the range of the values
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return *high > *low && std::fabs(values.front() - values.back()) <= same * (*high - *low);
 }
 
-/// That of M, where it knows one; else 0.
+/// The period of M if it is known, otherwise 0.
 double period_of_run(const Run& run) {
     const auto drive = run.of_body()
                            ? analysis::repetition_of(run.terms ? *run.terms : run.origin->drive.loads[run.place()], 0)
@@ -180,7 +180,7 @@ struct Samples {
 };
 constexpr std::size_t fewest_samples = 8;
 
-/// Samples of the motion from this time on, dense enough for its fastest part.
+/// Samples of the motion from this time on, close enough for its fastest part.
 Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, std::size_t place, double from) {
     constexpr double a_period = 40, an_event = 20, least = 1024, most = 1 << 21;
     const motion::Trajectory& trajectory = run.trajectory;
@@ -247,7 +247,7 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
     return {.values = {values.begin(), end}, .dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1)};
 }
 
-/// Of which body or link "load.theta" is; a state is of each. None of other columns of the whole run.
+/// The joint of a column such as "load.theta"; a state belongs to every joint. None for other columns of the whole run.
 std::optional<std::size_t> joint_of_column(const Run& run, std::string_view column) {
     if (!run.of_all()) return {};
     const auto& states = run.origin->drive.states;
@@ -356,7 +356,7 @@ int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
     const motion::Trajectory& trajectory = run->trajectory;
     const auto column = trajectory.find(name);
-    if (!column && run->of_all()) joint_named(L, name, run->system(), "this run", run_class);  // raises
+    if (!column && run->of_all()) joint_named(L, name, run->system(), "this run", run_class);  // raises an error
     if (!column) {
         raise_unknown_name(
             L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
@@ -373,7 +373,7 @@ int column_field(lua_State* L) {
     return column_by_name(L, name.c_str());
 }
 
-/// A method of data, of the rows of the run.
+/// A method of data applied to the rows of the run.
 template <lua_CFunction method>
 int as_data(lua_State* L) {
     push_data(L, rows_of(run_self(L, "run:select(\"t\")")));
@@ -399,7 +399,7 @@ int other_column(lua_State* L) {
     return column_by_name(L, lua_tostring(L, 2));
 }
 
-/// run.load
+/// run.load: pushes the run of a body or link.
 int body_or_link(lua_State* L) {
     const RunHandle run = run_self(L, "run.load");
     if (!run->of_all()) return 0;
@@ -532,7 +532,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     std::vector<model::WantedEvent> wanted;
     if (run->origin) wanted = run->origin->drive.events;
     std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
-    if (trajectory.on_belt) {  // no event tells the extremes of theta there
+    if (trajectory.on_belt) {  // extremes of theta on a belt are no events
         const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
         events.insert(events.end(), turns.begin(), turns.end());
         std::stable_sort(events.begin(), events.end(),
@@ -556,7 +556,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     return {};
 }
 
-/// What was simulated, and how; nil where the run was read from a file.
+/// The simulated system; nil if the run was read from a file.
 lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
     if (run->origin == nullptr) {
         lua_pushnil(L);
@@ -802,7 +802,7 @@ void register_run(lua_State* L) {
 
 namespace {
 
-/// The answer to a name that is no state of the run: the metamethod __index of run.states.
+/// Raises an error for an unknown state: __index of run.states.
 int no_such_state(lua_State* L) {
     const std::string wanted(lua_type(L, 2) == LUA_TSTRING ? lua::text_at(L, 2) : luaL_typename(L, 2));
     const std::vector<std::string> names = lua::text_keys(L, 1);
@@ -813,7 +813,7 @@ int no_such_state(lua_State* L) {
                               text::did_you_mean(wanted, names)));
 }
 
-/// Pushes a table of the numbers from this place on.
+/// Pushes a table by name of the numbers from index `from` on.
 template <class Named>
 void push_by_name(lua_State* L, const std::vector<Named>& named, const std::vector<double>& numbers, std::size_t from) {
     lua_createtable(L, 0, static_cast<int>(named.size()));
@@ -826,9 +826,9 @@ namespace {
 
 int at_one_time(lua_State* L) {
     const RunHandle run =
-        lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
+        lua::self<RunHandle>(L, 1, "run:at(t)");  // a copy: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
-    lua::CallState call(L);  // between rows the integrator asks the excitation again
+    lua::CallState call(L);  // between rows the integrator evaluates the excitation
     const bool of_all = run->of_all();
     const auto state = part_of(run, 0)->trajectory.at(t);
     call.check();
@@ -860,11 +860,11 @@ int at_one_time(lua_State* L) {
 
 }  // namespace
 
-/// At each of several times: vectors in place of the numbers, also in tables by name.
+/// run:at for several times: returns vectors instead of numbers, also in tables by name.
 int run_at(lua_State* L) {
     if (lua::test<lua::Vector>(L, 2) == nullptr && !lua_istable(L, 2)) return at_one_time(L);
     lua_settop(L, 2);
-    std::map<std::pair<int, std::string>, std::vector<double>> found;  // by the result and the name in it
+    std::map<std::pair<int, std::string>, std::vector<double>> found;  // by result index and name
     int results = 0;
     for (const double t : lua::numbers_at(L, 2, "run:at(t)", "t")) {
         lua_settop(L, 2);
@@ -894,7 +894,7 @@ int run_at(lua_State* L) {
     return results;
 }
 
-/// From the equation of motion at the rows.
+/// The acceleration at the rows, from the equation of motion.
 lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".acceleration");
     const motion::Trajectory& trajectory = run->trajectory;
@@ -917,7 +917,7 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
                velocity = trajectory.column(Column::velocity), M = trajectory.column(Column::M),
                friction = trajectory.column(Column::friction), damping = trajectory.column(Column::damping);
     std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(trajectory.size()));
-    lua::CallState call(L);  // the spring and the base may be functions
+    lua::CallState call(L);  // spring and base may be functions
     for (Eigen::Index i = 0; i < trajectory.size(); ++i) {
         const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
         const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
@@ -930,7 +930,7 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
 }
 
 lua::Pushed run_states(lua_State* L, const RunHandle& run) {
-    // In a file the columns after those that every run has are taken for states.
+    // In a file, columns after the standard ones count as states.
     const std::vector<std::string>& names = run->trajectory.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
@@ -946,11 +946,11 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run) {
     return {};
 }
 
-// run:continue{ t_end }: a run goes on from where it ended.
+// run:continue{ t_end }: continues a run from its end.
 
 namespace {
 
-/// The times of the run until it ended, then the new ones; without these, what it had not come to before t_end.
+/// The rows of the continued run: those so far and the new times; without new ones, the remaining times up to t_end.
 motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
                         const source::Task& task, double t_end) {
     const std::span<const double> times = task.rows.times();
@@ -984,7 +984,7 @@ double asked_end(const lua::Options& options, const MoreTime& asked, double stop
 }
 
 int continue_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // kept: M may drop the last reference
+    const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // a copy: M may drop the last reference
     const lua::Options options(L, 2, continue_call);
     MoreTime asked;
     options.fill(asked);
@@ -1025,11 +1025,11 @@ int continue_run(lua_State* L) {
     return run_task(L, options, std::move(origin), so_far.t_stop, motion::is_dense(so_far), compute);
 }
 
-// run:save(file): which kind of file, which columns, and the comment block that lets the run be repeated.
+// run:save(file): file kind, columns, and the comment block from which the run can be repeated.
 
 namespace {
 
-/// The columns asked for by `columns = { name or number, ... }`, all without it.
+/// The columns in `columns = { name or number, ... }`, by default all.
 std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
                                               const motion::Trajectory& trajectory) {
     std::vector<files::NamedColumn> all = files::named_columns(trajectory.names(), trajectory.rows.matrix());

@@ -27,7 +27,7 @@ namespace dinal::api {
 
 namespace {
 
-/// The bytes that the rows will take; none when the window or the grid is wrong, which simulate() tells.
+/// The memory of the rows in bytes; 0 if window or grid is invalid, which simulate() reports.
 std::size_t bytes_of_rows(const source::Task& task) {
     if (!(task.window.start < task.window.end)) {
         return 0;
@@ -37,7 +37,7 @@ std::size_t bytes_of_rows(const source::Task& task) {
     return grid ? std::min<std::size_t>(grid->count(), 1ULL << 40U) * row : 0;
 }
 
-/// The bytes of the machine, asked once: the answer takes as long as a tenth of a short run.
+/// The machine's memory in bytes, cached: the query takes a tenth of a short run.
 std::optional<std::size_t> memory_of_machine() {
     static const std::optional<std::size_t> bytes = []() -> std::optional<std::size_t> {
         const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGESIZE);
@@ -47,7 +47,7 @@ std::optional<std::size_t> memory_of_machine() {
     return bytes;
 }
 
-/// A run may take half of the memory of the machine, and most of what the script may still have.
+/// The memory limits of a run: half of the machine's memory, and most of what the script has left.
 motion::Limits limits_of_run(bool dense) {
     motion::Limits limits{.dense = dense};
     if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
@@ -55,14 +55,14 @@ motion::Limits limits_of_run(bool dense) {
     return limits;
 }
 
-/// The default of dt; the natural period is infinite if there is none.
+/// The default of dt; `natural_period` is infinite if there is none.
 double usual_dt(const motion::Window& window, double natural_period) {
     constexpr double rows_a_period = 40, least = 1e3, most = 1e5;
     const double length = window.end - window.start;
     return length / std::clamp(std::ceil(rows_a_period * length / natural_period), least, most);
 }
 
-/// As the integrator plays it: M as native terms, where its functions can be read so.
+/// The drive with M as native terms if its functions can be read; used for the choice of the integrator.
 model::Drive played_drive(lua_State* L, const source::Task& task) {
     model::Drive played = task.drive;
     if (auto terms = terms_alone(L, *task.system, task.drive, task.window.start, task.window.end)) {
@@ -82,7 +82,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     if (!asked.t_end && asked.times.empty()) {
         options.missing("t_end");
     }
-    // The latest time and not the last one: times that do not increase are an error of their own.
+    // The latest, not the last time: decreasing times are a separate error.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
     task.integrator = integrator != nullptr ? *integrator
                       : system->is_plain()
@@ -94,7 +94,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     return task;
 }
 
-/// A number that stands for what M's functions remember, and for all else that they use.
+/// A hash of the memory of M's functions, and of everything else they use.
 std::uint64_t memory_of(lua_State* L, const model::Excitation& M) {
     source::Fingerprint print(L, [](lua_State*, int, source::Fingerprint&) { return false; });
     lua::push(L, M);
@@ -103,8 +103,8 @@ std::uint64_t memory_of(lua_State* L, const model::Excitation& M) {
     return print.number();
 }
 
-/// Refuses sampled controllers that still remember an earlier run, themselves or in a variable that they share with
-/// those of the last run: what they answer would depend on it.
+/// Refuses sampled controllers that still have the memory of an earlier run, their own or a variable shared with
+/// controllers of the last run: their outputs would depend on it.
 class Memories {
 public:
     Memories(lua_State* L, const lua::Options& options, const model::Excitation& M, bool goes_on)
@@ -168,10 +168,10 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
             const auto* function = dynamic_cast<const lua::LuaFunction*>(script->function.get());
             if (function == nullptr) continue;
             const model::Formula* read = function->formula();
-            std::string told;
+            std::string reading;
             if (read == nullptr || read->gave_up()) {
                 if (function->last_obstacle().empty()) continue;
-                told = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
+                reading = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
             } else {
                 const bool of_motion = read->has_conditions_of_motion();
                 const char* conditions =
@@ -180,10 +180,10 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
                     : located
                         ? ": the times at which its conditions change, also those on theta, velocity or states, are located"
                         : ": the times at which its conditions change are events, except for conditions on theta, velocity or states, which are sampled";
-                told =
+                reading =
                     fmt::format("{} is read as a {}{}.", name, native ? "sum of native terms" : "formula", conditions);
             }
-            if (all.find(told) == std::string::npos) all += (all.empty() ? "" : " ") + told;
+            if (all.find(reading) == std::string::npos) all += (all.empty() ? "" : " ") + reading;
         }
     };
     const auto each = [&](const char* name, const std::vector<model::Excitation>& acting, const char* of) {
@@ -289,7 +289,7 @@ int simulate_system(lua_State* L) {
         return motion::simulate(*given.system, given.drive, given.window, given.rows, given.integrator, monitor,
                                 limits);
     };
-    // What M refers to is written down before M runs, because it may change that.
+    // Record what M refers to before the run, because M may change it.
     return run_task(L, options, source::origin_of(L, std::move(task)), from, asked.dense, compute);
 }
 
@@ -297,7 +297,7 @@ namespace {
 
 constexpr lua::FunctionRole::Motion with_motion = lua::FunctionRole::Motion::always;
 
-/// The function that the option names; nullptr when it is absent. It is called `role` wherever something is said of it.
+/// The function in an option, or nullptr if absent; `role` is its name in errors.
 std::shared_ptr<model::UserFunction> function_at(lua_State* L, const lua::Options& options, const char* name,
                                                  const std::string& role) {
     options.push(name);
@@ -375,7 +375,7 @@ std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& optio
 
 namespace {
 
-/// The event in the table on the top.
+/// Reads the event in the table on the top.
 model::WantedEvent read_event(lua_State* L, const char* simulate, const std::string& of) {
     const std::string call = fmt::format("{}: {}", simulate, of);
     const lua::Options own(L, lua_gettop(L), {call.c_str(), event_call.example, event_call.options});

@@ -1,4 +1,4 @@
-// sys:simulate{...}: a method of the class in bind_system.cpp, with a file of its own for its many options.
+// sys:simulate{...}: a method of the class in bind_system.cpp, in its own file because of its many options.
 #pragma once
 
 #include <functional>
@@ -18,22 +18,22 @@ namespace dinal::api {
 
 int simulate_system(lua_State* L);
 
-/// What is asked of the core: simulate() or resume().
+/// The core function to be called: simulate() or resume().
 using Compute = std::function<text::Expected<motion::Trajectory>(
     const source::Task& task, const motion::Monitor& monitor, const motion::Limits& limits)>;
 
-/// Pushes the run that `compute` makes of the task of `origin`, beginning at the time `from`: under the limits of the
-/// script, with a progress line. Raises when the core refuses the task, M fails or Ctrl-C is pressed; what was done
-/// until then is in dinal.partial.
+/// Pushes the run that `compute` makes from the task of `origin` from the time `from`: within the script's limits, with
+/// a progress line. Raises an error if the core refuses the task, M fails or Ctrl-C is pressed; dinal.partial then has
+/// the partial run.
 int run_task(lua_State* L, const lua::Options& options, source::Origin origin, double from, bool dense,
              const Compute& compute);
 
-/// Before a run: refuses sampled controllers in M that still remember an earlier run. What is returned is called with
-/// the address of the run after it. `goes_on`: from where another one ended.
+/// Refuses sampled controllers in M that still have the memory of an earlier run. Returns a function to be called with
+/// the address of the finished run. `goes_on`: whether it continues another run.
 std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
                                                   bool goes_on);
 
-/// What is asked of sys:simulate besides the excitation and the integrator.
+/// The options of sys:simulate other than drive and integrator.
 struct RunOptions {
     double t_start = 0;
     std::optional<double> t_end = {};
@@ -75,7 +75,7 @@ inline constexpr auto simulate_options = text::joined(drive_options, window_opti
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options, false, &with_call};
 
-/// What is asked of run:continue.
+/// The options of run:continue.
 struct MoreTime {
     std::optional<double> t_end = {};
     std::optional<std::vector<double>> times = {};

@@ -1,4 +1,4 @@
-// spring.polynomial{...}: springs as values, for `spring =` of a system; and the Lua function that may stand there.
+// spring.polynomial{...}: springs as values for `spring =` of a system; and Lua functions used there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr const char* polynomial_example = "spring.polynomial{ [3] = 0.5 }";
     lua::fail(L, "spring.polynomial", {.sentence = std::move(sentence), .culprit = lua::written(L, index)});
 }
 
-/// The power that the key at `index` is, as a user has written it.
+/// The power given by the key at `index`.
 int power_at(lua_State* L, int index) {
     const double n = lua_tonumber(L, index);
     if (lua_type(L, index) == LUA_TNUMBER && n == 0) {
@@ -63,7 +63,7 @@ int polynomial_spring(lua_State* L) {
     return 1;
 }
 
-/// What a function of theta answers that may be a user's.
+/// A value of the spring at theta; the spring may be a user's function.
 template <double (model::Spring::*get)(double) const>
 double at_theta(lua_State* L, const model::Spring& spring, double theta) {
     lua::CallState call(L);
@@ -108,7 +108,7 @@ std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& opti
             L, index,
             lua::FunctionRole{.name = "spring", .argument = "theta", .motion = lua::FunctionRole::Motion::never})};
         lua::CallState call(L);
-        static_cast<void>(own.torque(0));  // what returns nothing is told here, and not in the middle of a run
+        static_cast<void>(own.torque(0));  // reports an invalid result here rather than during a run
         call.check();
         asked = own;
     } else if (!lua_isnil(L, index)) {

@@ -1,4 +1,4 @@
-// sys:steady{ ... } and run:steady{ ... }, and the class of what they return.
+// sys:steady{ ... } and run:steady{ ... }, and the class of their result.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace dinal::api {
 
 namespace {
 
-/// The motion as seen from the body or link of this joint.
+/// The motion as seen from this joint.
 SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
     analysis::SteadyQuestion question = whole->question.seen_at(joint);
     const RunHandle run = whole->run != nullptr ? part_of(whole->run, joint) : nullptr;
@@ -37,7 +37,7 @@ SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
         Steady{.question = std::move(question), .motion = std::move(facts), .run = run, .whole = whole});
 }
 
-/// The answer to a question about all bodies: the whole motion, or of one body without a name that of this body.
+/// The answer to a question about all bodies, or about a single unnamed body.
 SteadyHandle made(lua_State* L, analysis::SteadyQuestion question, analysis::SteadyMotion motion) {
     auto whole = std::make_shared<Steady>(Steady{.question = std::move(question), .motion = std::move(motion)});
     if (whole->question.is_plain()) return whole;
@@ -80,7 +80,7 @@ int body_of_steady(lua_State* L) {
 
 }  // namespace
 
-// ---- of one of them, or of one body
+// ---- for one body or link
 
 namespace {
 
@@ -90,7 +90,7 @@ bool is_moving(const Steady& s) {
     return s.motion.status == SteadyStatus::steady;
 }
 
-/// Raises where a motion of several bodies is asked for what only one of them has.
+/// Returns s; raises an error if it is the motion of several bodies.
 const Steady& of_one(lua_State* L, const Steady& s) {
     if (!s.of_all()) return s;
     lua::raise(L, fmt::format("this motion has several bodies; choose one of them, such as s.{}.amplitude",
@@ -106,7 +106,7 @@ const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     return *s->shape;
 }
 
-/// The motions from other starts, of all bodies.
+/// The motions from other starts, for all bodies.
 const std::vector<SteadyHandle>& others_of(lua_State* L, const SteadyHandle& s) {
     Steady& all = s->whole ? *s->whole : *s;
     if (all.others) return *all.others;
@@ -118,9 +118,9 @@ const std::vector<SteadyHandle>& others_of(lua_State* L, const SteadyHandle& s) 
     return *all.others;
 }
 
-// ---- fields: nil where there is no such motion
+// ---- fields: nil without such a motion
 
-/// A fact about a motion that was found; none where it is nan, as of a body that goes round.
+/// A fact about a motion that was found; none if nan, as for a rotating body.
 template <auto fact>
 auto found_fact(const Steady& s) {
     const auto value = std::invoke(fact, s.motion);
@@ -198,11 +198,11 @@ std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const Stead
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
     const std::vector<SteadyHandle>& found = others_of(L, s);
     const Steady& all = s->whole ? *s->whole : *s;
-    if (!all.question.is_plain()) return analysis::told(all.question, all.motion, found.size());
+    if (!all.question.is_plain()) return analysis::description_of(all.question, all.motion, found.size());
     std::vector<analysis::OtherMotion> others;
     others.reserve(found.size());
     for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
-    return analysis::told(s->question, s->motion, steady_shape(L, s), others);
+    return analysis::description_of(s->question, s->motion, steady_shape(L, s), others);
 }
 
 std::string steady_summary(const Steady& s) {
@@ -355,11 +355,11 @@ void register_steady(lua_State* L) {
     lua::add_class<SteadyHandle>(L, steady_class);
 }
 
-// sys:steady{ ... } and run:steady{ ... }, and the run of what they found.
+// sys:steady{ ... } and run:steady{ ... }, and the run of the motion found.
 
 namespace {
 
-/// Pushes the motion that the question leads to.
+/// Pushes the steady motion for the question.
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
     if (!question.is_plain()) question.settles = settles_or_fail(options, question);
     const model::Excitation loads = question.drive.sum_of_loads();
@@ -372,7 +372,7 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
     return 1;
 }
 
-/// The state of the run at the last beginning of a period of M in it.
+/// The state at the beginning of the last period of M in the run.
 model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Repetition& repeats) {
     const double n = std::floor((trajectory.t_stop - repeats.start) / repeats.period);
     const double t = repeats.start + n * repeats.period;
@@ -395,7 +395,7 @@ void check_motion(const lua::Options& options, const analysis::SteadyMotion& mot
 
 namespace {
 
-/// One period as a run of 400 rows from row to row; none at rest.
+/// One period as a run with 400 rows; none at rest.
 std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
     const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
@@ -405,7 +405,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
                       .rows = motion::Grid::every(s.motion.period / rows),
                       .integrator = {}};
     if (s.motion.settled) {
-        // What led there is a part of the run that is asked for again, and its rows are those of its last period.
+        // Its origin repeats the approach to the motion, too; the rows are those of the last period.
         const motion::Trajectory& last = *s.motion.settled;
         task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.asked) {
@@ -474,7 +474,7 @@ std::optional<double> asked_period(const lua::Options& options) {
 
 namespace {
 
-/// Functions in M of a plain system that repeat say so, as native terms or by themselves.
+/// Makes repeating functions in M of a plain system native terms, or declares their periods.
 void find_period(lua_State* L, analysis::SteadyQuestion& question) {
     if (!question.is_plain()) return;
     const auto terms = terms_alone(L, *question.system, question.drive, 0, model::never);

@@ -1,4 +1,4 @@
-// system{...}, nondimensional{...} and the systems they make. sys:simulate{...} is in bind_simulate.cpp.
+// system{...}, nondimensional{...} and the class of systems. sys:simulate{...} is in bind_simulate.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }", system_options, false,
                                  &simulate_call};
 
-/// Ratios to k = 1 and to the characteristic torque Mc = 1.
+/// Ratios for k = 1 and characteristic torque Mc = 1.
 struct Ratios {
     double zeta = 0;
     double friction = 0;
@@ -63,12 +63,12 @@ int nondimensional(lua_State* L) {
     Ratios ratios;
     options.fill(ratios);
     const double breakaway_ratio = ratios.breakaway.value_or(ratios.friction);
-    if (breakaway_ratio < ratios.friction) {  // the core would speak of Rd and Re, which the user has not typed
+    if (breakaway_ratio < ratios.friction) {  // the core's error would name Rd and Re, which the user has not given
         options.fail("breakaway_ratio", fmt::format("breakaway_ratio = {} must be at least friction_ratio = {}",
                                                     breakaway_ratio, ratios.friction));
     }
-    // NOTE: no double is both I = 1/(4 pi^2), for which T0 is 1 to the last bit, and a square, so that C/2 = sqrt(I k)
-    // can hold to the last bit, too. zeta = 1 needs the square: it is critical damping then, and not nearly so.
+    // NOTE: no double is both I = 1/(4 pi^2), for which T0 is exactly 1, and a square, for which C/2 = sqrt(I k) can
+    // hold exactly. zeta = 1 needs the square: then damping is exactly critical.
     constexpr double root = 1 / (2 * std::numbers::pi);
     model::OscillatorParameters parameters;
     parameters.inertia = ratios.zeta == 1 ? root * root : 1 / (4 * std::numbers::pi * std::numbers::pi);
@@ -83,7 +83,7 @@ int nondimensional(lua_State* L) {
     return 1;
 }
 
-/// The body without a name that a field is read of. Fields of named systems end in field_of_names().
+/// The unnamed body whose field is read. Fields of named systems are handled by field_of_names().
 model::Oscillator body_of(const SystemHandle& system) {
     return model::oscillator_at(*system, 0).value();
 }
@@ -94,7 +94,7 @@ auto of_body(const SystemHandle& system) {
     return std::invoke(fact, body_of(system));
 }
 
-/// The same, which only k gives: nil without it.
+/// The same for facts that require k; nil without it.
 template <auto fact>
 auto of_spring(const SystemHandle& system) {
     const model::Oscillator body = body_of(system);
@@ -267,7 +267,7 @@ const lua::Class system_functions = {"system",
 
 namespace {
 
-/// That which is no number or law of the options in the table on the top.
+/// The name of an option in the table on the top that is neither a number nor a law, or nullptr.
 const char* varying_option(lua_State* L) {
     for (const char* name : {"friction", "Rd", "Re", "normal"}) {
         const bool given = lua_getfield(L, -1, name) != LUA_TNIL;
@@ -278,7 +278,7 @@ const char* varying_option(lua_State* L) {
     return nullptr;
 }
 
-/// The fields of a system with names are its bodies and links; what each of these has is asked of it.
+/// Pushes a field of a named system: a body or a link.
 int field_of_names(lua_State* L, const model::System& system, std::string_view name) {
     const auto own =
         std::find_if(system.joints.begin(), system.joints.end(), [&](const auto& j) { return j.name == name; });
@@ -296,7 +296,7 @@ int field_of_names(lua_State* L, const model::System& system, std::string_view n
     return 0;
 }
 
-/// What a friction that varies says under these names: what the user wrote.
+/// Pushes a field of a system with varying friction: what the user wrote.
 int field_of_varying(lua_State* L, const model::System& system, std::string_view name) {
     constexpr std::array<std::string_view, 6> own{"Rd", "Re", "normal", "friction", "walls", "dead_zone"};
     if (std::find(own.begin(), own.end(), name) == own.end()) return 0;
@@ -309,7 +309,7 @@ int field_of_varying(lua_State* L, const model::System& system, std::string_view
         if (name == "walls") return 1;
         lua_pop(L, 1);
         if (name == "Re" && lua_getfield(L, -1, "Rd") != LUA_TNIL) return 1;
-        if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // of no matter to the law
+        if (varying != nullptr && std::string_view(varying) == "normal") varying = nullptr;  // does not affect the law
     }
     if (varying != nullptr && name != "normal") {
         lua_getfield(L, 3, varying);

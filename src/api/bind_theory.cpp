@@ -1,4 +1,4 @@
-// theory.NAME{...}: the closed forms. Each option is a number or a vector, and results have the same shape.
+// theory.NAME{...}: closed forms. Each option is a number or a vector; results have the same shape.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ namespace dinal::api {
 
 namespace {
 
-// ---- the options: a row each, and the calls that take them
+// ---- the options, a row each, and the calls that use them
 
 namespace theory_options {
 
@@ -52,7 +52,7 @@ constexpr Range den_hartog_r{"be 0 or from 0.0001 to 1e6", [](double x) {
 constexpr Range at_least_one{"be at least 1: breakaway takes no less than kinetic friction",
                              [](double x) { return x >= 1; }};
 
-// Of most functions; each is a number or a vector.
+// For most functions; each is a number or a vector.
 constexpr Option r{.name = "r", .otherwise = needed, .range = text::not_negative, .meaning = "omega/omega0"};
 constexpr Option sliding_r{.name = "r", .otherwise = needed, .range = den_hartog_r, .meaning = "omega/omega0"};
 constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous damping ratio"};
@@ -187,10 +187,10 @@ constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys,
 
 // ---- arguments and results
 
-/// What a closed form returns where it does not hold: nil for numbers, nan in a vector.
+/// The result where a closed form does not hold: nil for numbers, nan in a vector.
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-/// A number, or the numbers of a vector.
+/// A number or a vector of numbers.
 class Quantity {
 public:
     explicit Quantity(double number) : Quantity(std::vector{number}) {}
@@ -202,7 +202,7 @@ private:
     std::shared_ptr<const std::vector<double>> values_;
 };
 
-/// The option `system`; none when it is absent.
+/// The option `system`; none if absent.
 std::optional<model::Oscillator> asked_system(const lua::Options& options) {
     const auto* system = options.object<SystemHandle>("system");
     if (system == nullptr) return {};
@@ -217,8 +217,8 @@ public:
 
     [[nodiscard]] const lua::Options& options() const { return options_; }
 
-    /// A number or a vector in the range of its row. Vectors and tables of numbers must be equally long. A nan in a
-    /// vector passes: its result is nan. What is absent is the default of its row, a number or another option.
+    /// A number or a vector within the range of its row. Vectors and tables must have equal lengths. A nan in a vector
+    /// is accepted, with the result nan. An absent option has its default, a number or another option.
     Quantity quantity(std::string_view name) {
         if (options_.has(name)) {
             return given(name);
@@ -235,13 +235,12 @@ public:
     Quantity quantity(std::string_view name, Quantity otherwise) {
         return options_.has(name) ? given(name) : std::move(otherwise);
     }
-    /// All options of a call that takes nothing else.
+    /// All options, for calls with numbers only.
     template <std::size_t n>
     std::array<Quantity, n> quantities() {
         return quantities(std::make_index_sequence<n>());
     }
-    /// The system; nullptr when there is none and none is needed.
-    /// Raises when no closed form is known for it.
+    /// The system; none if absent and optional. Raises an error if no closed form applies to it.
     [[nodiscard]] std::optional<model::Oscillator> system() const {
         std::optional<model::Oscillator> system = asked_system(options_);
         if (!system) return system;
@@ -257,7 +256,7 @@ public:
         return system;
     }
 
-    /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
+    /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] if NAME is a number).
     [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const {
         options_.push(name);
         const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
@@ -265,8 +264,8 @@ public:
         options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
     }
 
-    /// Pushes f(i) for each element, i from 0: an array of doubles, one for each result. A number when all options are
-    /// numbers, otherwise a vector.
+    /// Pushes f(i), an array of results, for each element i from 0: numbers if all options are numbers, otherwise
+    /// vectors.
     template <class Function>
     int push_results(Function f) const {
         constexpr std::size_t count = std::tuple_size_v<decltype(f(0))>;
@@ -289,7 +288,7 @@ public:
         }
         return static_cast<int>(count);
     }
-    /// The same for a function with one result.
+    /// The same for a single result.
     template <class Function>
     int push_result(Function f) const {
         return push_results([&](std::size_t i) { return std::array{static_cast<double>(f(i))}; });
@@ -346,8 +345,8 @@ private:
     std::string_view sized_by_;  // the first option that is a vector
 };
 
-/// theory.NAME for a function of as many numbers as the call has options, in their order; its result is a number or
-/// an array of them.
+/// theory.NAME for a function that takes the call's options as numbers, in their order, and returns a number or an
+/// array.
 template <const text::Call& call, auto function>
 int closed_form(lua_State* L) {
     TheoryArguments arguments(L, call);
@@ -362,14 +361,14 @@ int closed_form(lua_State* L) {
     });
 }
 
-// ---- what does more than one formula
+// ---- functions of more than one formula
 
 namespace theory_functions {
 
 using namespace theory;
 namespace options = theory_options;
 
-/// The free motions that the options system, theta0 and velocity0 set off at t = 0.
+/// The free motions that start at t = 0 with the options system, theta0 and velocity0.
 class Starts {
 public:
     explicit Starts(TheoryArguments& arguments)
@@ -387,7 +386,7 @@ std::array<double, 2> both(const model::State& state) {
     return {state.theta, state.velocity};
 }
 
-/// How many extremes extremes{...} returns.
+/// The number of extremes that extremes{...} returns.
 double asked_count(const lua::Options& options, std::optional<double> count, const FreeMotion& motion) {
     constexpr double most = 1e7;
     const double all = motion.extremes();
@@ -491,7 +490,7 @@ std::array<double, 2> identify(double X0, double X1, double X2) {
     return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};
 }
 
-/// den_hartog{...} and den_hartog_fundamental{...}: two numbers of the motion.
+/// den_hartog{...} and den_hartog_fundamental{...}: amplitude and lag of the motion.
 template <const text::Call& call, auto amplitude, auto lag>
 int sliding_motion(lua_State* L) {
     TheoryArguments arguments(L, call);
@@ -544,7 +543,7 @@ int step_limit(lua_State* L) {
 namespace f = theory_functions;
 namespace o = theory_options;
 
-/// theory.NAME, which takes the options of the call.
+/// The member theory.NAME with the options of the call.
 template <const text::Call& call, lua_CFunction function>
 constexpr lua::Member row(const char* signature, const char* summary, const char* sample) {
     return {lua::a_function<function>, {signature, summary, sample, {&call}}};

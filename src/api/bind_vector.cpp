@@ -1,5 +1,4 @@
-// Vectors as Lua sees them: arithmetic, mathematics and questions about their elements. bind_vector_module.cpp makes
-// them.
+// The class of vectors: arithmetic, mathematics and queries. bind_vector_module.cpp makes them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +24,7 @@ namespace {
 using lua::Vector;
 using Values = std::span<const double>;
 
-using Numbers = std::vector<double>;  // a new vector
+using Numbers = std::vector<double>;  // for a new vector
 using text::Error;
 using text::Expected;
 
@@ -33,7 +32,7 @@ Error unequal_sizes(std::size_t n, std::size_t m) {
     return {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)};
 }
 
-/// Calls work(i) for all i below n; a stop is noticed in between.
+/// Calls work(i) for i < n; checks for a stop in between.
 template <class Work>
 void for_each_index(lua_State* L, std::size_t n, Work work) {
     constexpr std::size_t block = std::size_t{1} << 16U;
@@ -53,14 +52,14 @@ Numbers of_each(lua_State* L, const Vector& v) {
     return result;
 }
 
-/// One value from at least so many.
+/// A value computed from at least `least` elements.
 template <auto f, std::size_t least = 1>
 auto of_all(const Vector& v) -> Expected<decltype(f(Values()))> {
     if (v.size() < least) return Error{least == 1 ? "the vector is empty" : "two numbers are needed at least"};
     return f(v.values());
 }
 
-/// f fills a vector that has as many numbers.
+/// A vector of equal length filled by f.
 template <auto f>
 Numbers filled(lua_State* L, const Vector& v) {
     Numbers result = lua::new_numbers(L, v.size());
@@ -68,7 +67,7 @@ Numbers filled(lua_State* L, const Vector& v) {
     return result;
 }
 
-/// How an operator is written, for its errors.
+/// The text of an operator, for errors.
 struct Symbol {
     char text[8] = {};
     template <std::size_t n>
@@ -77,7 +76,7 @@ struct Symbol {
     }
 };
 
-/// One side of an operator: a vector, or a number that stands for as many as the other side has.
+/// One side of an operator: a vector, or a number repeated to the other's length.
 struct Operand {
     const Vector* vector = nullptr;
     double number = 0;
@@ -103,7 +102,7 @@ Operands operands(lua_State* L, const char* symbol) {
         lua::raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
                                   a.vector->size(), b.vector->size()));
     }
-    if (a.vector == nullptr && b.vector == nullptr) {  // debug.getmetatable leads here
+    if (a.vector == nullptr && b.vector == nullptr) {  // possible through debug.getmetatable
         lua::raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
     }
     return {a, b, (a.vector != nullptr ? a : b).vector->size()};
@@ -117,19 +116,19 @@ int combined(lua_State* L) {
     return lua::push_vector(L, std::move(result));
 }
 
-// Lua turns the result of v > 0 into true or false. So that v[v > 0] can work, the comparison is remembered here, with
-// the line of the script that made it; v[true] in that line means it.
+// Lua converts the result of v > 0 to true or false. To support v[v > 0], the comparison is stored here with its script
+// line; v[true] in that line refers to it.
 struct Comparison {
     const void* function = nullptr;
     int line = 0;
-    int count = 0;  // how many comparisons this line has made since the last v[...]
+    int count = 0;  // comparisons by this line since the last v[...]
     bool all = false;
     std::vector<bool> mask = {};
 };
 thread_local Comparison last_comparison;
-const char comparing_function = 0;  // registry key: the function lives as long as its address is compared with
+const char comparing_function = 0;  // registry key: keeps the function alive while its address is compared
 
-/// The function that runs, and its line.
+/// The running function and its line.
 std::pair<const void*, int> running_line(lua_State* L) {
     lua_Debug caller{};
     if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "lf", &caller) == 0) return {nullptr, 0};
@@ -138,7 +137,7 @@ std::pair<const void*, int> running_line(lua_State* L) {
     return {function, caller.currentline};
 }
 
-/// Whether the function has a variable of that name from outside of it.
+/// Returns whether `wanted` is an upvalue of the function.
 bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
     lua_getinfo(L, "f", &caller);
     bool found = false;
@@ -150,9 +149,9 @@ bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
     return found;
 }
 
-/// Why v[v > 0] cannot be trusted in this statement; "" if it can. With `and` and `or` Lua leaves out the second
-/// comparison, so the mask would be that of the first. Lua before 5.4.7 compiles v[v > 0] wrongly if v is a variable of
-/// an outer function: it indexes another register.
+/// Returns why v[v > 0] is unreliable in this statement; "" if it is reliable. `and` and `or` skip the second
+/// comparison, so the mask would be the first's. Lua before 5.4.7 compiles v[v > 0] wrongly if v is an upvalue: it
+/// indexes another register.
 std::string fault_of_mask(lua_State* L, lua_Debug& caller, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     int depth = 0;
@@ -176,7 +175,7 @@ std::string fault_of_mask(lua_State* L, lua_Debug& caller, std::string_view stat
     return "";
 }
 
-/// The same for the line that runs. A line is read once as long as no other one asks.
+/// The same for the running line, cached for the last line.
 std::string fault_of_mask_here(lua_State* L, const void* function) {
     thread_local std::pair<const void*, int> known;
     thread_local std::string fault;
@@ -205,7 +204,7 @@ int masked(lua_State* L) {
                                 "brackets; for more use v[v:find(function(x) return x > 0 and x < 1 end)]",
                     .call = "v"});
     }
-    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // v[not (v > 0)]
+    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // false in v[not (v > 0)]
     lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -214,7 +213,7 @@ int masked(lua_State* L) {
     return lua::push_vector(L, std::move(result));
 }
 
-/// True when it holds for every element.
+/// Pushes whether the relation holds for every element.
 template <Symbol symbol, auto f>
 int holds(lua_State* L) {
     const Operands of = operands(L, symbol.text);
@@ -231,7 +230,7 @@ int holds(lua_State* L) {
 
 // ---- sums and extremes
 
-/// Neumaier's sum: the rounding errors are collected and added at the end.
+/// Neumaier's sum: collects the rounding errors and adds them at the end.
 class Sum {
 public:
     void add(double x) {
@@ -255,7 +254,7 @@ double mean_of(Values v) {
     return sum_of(v) / static_cast<double>(v.size());
 }
 
-/// The greatest element, or with -1 the least one; nan if there is any.
+/// The greatest element, or for sign -1 the least; nan if there is any.
 template <int sign>
 double extreme(Values v) {
     double best = v.front();
@@ -265,7 +264,7 @@ double extreme(Values v) {
     return best;
 }
 
-/// Its place from 1, and nan does not count.
+/// The index from 1 of the extreme, ignoring nan.
 template <int sign>
 std::size_t place_of_extreme(Values v) {
     std::size_t best = 0;
@@ -275,7 +274,7 @@ std::size_t place_of_extreme(Values v) {
     return best + 1;
 }
 
-/// By Welford's recurrence: no difference of large sums.
+/// Welford's recurrence avoids the difference of large sums.
 double deviation(Values v) {
     double mean = 0, squares = 0, n = 0;
     for (const double x : v) {
@@ -304,9 +303,9 @@ void sort(Values v, std::vector<double>& result) {
     std::sort(result.begin(), result.end(), [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
 }
 
-// ---- questions with an argument
+// ---- methods with an argument
 
-/// Leaves f(x, i) on the top of the stack.
+/// Pushes f(x, i).
 void ask(lua_State* L, double x, std::size_t i) {
     lua_pushvalue(L, 2);
     lua_pushnumber(L, x);

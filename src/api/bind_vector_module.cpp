@@ -1,4 +1,4 @@
-// The module `vector`: evenly spaced numbers and random ones.
+// The module `vector`: evenly spaced and random numbers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ int vector_make(lua_State* L) {
 std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) {
     std::vector<double> values = lua::new_numbers(L, n);
     for (std::size_t i = 0; i < n; ++i) {
-        // A mean of the ends with whole weights: what is a round number comes out exactly.
+        // A weighted mean of the ends with integer weights, so that round numbers are exact.
         const long double last = n - 1, weight = i;
         values[i] = static_cast<double>((from * (last - weight) + to * weight) / last);
     }
@@ -52,7 +52,7 @@ text::Expected<Numbers> vector_range(lua_State* L, double from, double to, std::
         return text::Error{fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)};
     }
     if (ratio >= most_numbers) return text::Error{fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)};
-    constexpr double rounding = 1e-9;  // of a step: 0 to 0.3 by 0.1 has its end
+    constexpr double rounding = 1e-9;  // tolerance, as a part of a step: 0 to 0.3 by 0.1 includes its end
     Numbers values = lua::new_numbers(L, static_cast<std::size_t>(std::floor(ratio + rounding)) + 1);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = from + static_cast<double>(i) * step;
     return values;
@@ -100,7 +100,7 @@ constexpr text::Option normal_options[] = {
 };
 constexpr text::Call normal_call{"vector.normal", "vector.normal{ n = 100, seed = 1, std = 0.02 }", normal_options};
 
-/// From 0 to 1, without 1. NOTE: the distributions of the standard library differ from one library to another.
+/// A number in [0, 1). NOTE: the standard library's distributions differ between implementations.
 double unit(std::mt19937_64& engine) {
     return static_cast<double>(engine() >> 11U) * 0x1p-53;
 }
@@ -123,7 +123,7 @@ int vector_random(lua_State* L) {
     return lua::push_vector(L, std::move(values));
 }
 
-/// Box and Muller's pairs.
+/// Normal numbers in pairs by the method of Box and Muller.
 int vector_normal(lua_State* L) {
     const auto asked = lua::read<NormalNumbers>(L, 1, normal_call);
     std::mt19937_64 engine = engine_of(asked.seed);

@@ -22,7 +22,7 @@ namespace {
 
 using model::of_unit;
 
-/// Name, value and remark in columns; a remark that does not fit is left out.
+/// Name, value and remark in columns; a remark that does not fit is omitted.
 std::string row(std::string_view name, double value, std::string_view remark, const terminal::Display& screen) {
     const std::string text = fmt::format("  {:<9}  {:<10.6g}", name, value);
     const bool fits = text::columns(text) + text::columns(remark) + 1 < screen.width;
@@ -84,7 +84,7 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
 
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen) {
     const motion::MethodView method = *lua::test<motion::Integrator>(L, index);
-    return text::wrapped(method.lua_text(text::Defaults::told), screen.width - 1);
+    return text::wrapped(method.lua_text(text::Defaults::described), screen.width - 1);
 }
 
 std::string vector_text(const lua::Vector& v, std::size_t whole, std::size_t ends) {
@@ -117,14 +117,14 @@ std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
     return text::wrapped(terminal::spelled(text, screen), screen.width - 1);
 }
 
-// M(t) as a formula for the eye. source/describe.cpp writes it as Lua text that makes it again.
+// M(t) as a formula for display. source/describe.cpp writes it as Lua text.
 
 namespace {
 
 constexpr int most_breaks = 6;
-constexpr int most_lines = 8;  // of the text of a function
+constexpr int most_lines = 8;  // lines of a function's text
 
-/// A function by its source text, times `gain`.
+/// A function as its source text, times `gain`.
 std::string formula(lua_State* L, const model::Scripted& s, double gain) {
     const auto* function = dynamic_cast<const lua::LuaFunction*>(s.function.get());
     std::string text = "a function";
@@ -147,7 +147,7 @@ std::string formula(lua_State* /*L*/, const T& term, double gain) {
     return term.formula(gain);
 }
 
-/// The sign that makes the amplitude of a term positive goes to the front of its line.
+/// The amplitude of a term; its sign goes to the front of the line.
 double* amplitude_of(model::Term& term) {
     return std::visit(
         [](auto& t) -> double* {
@@ -179,7 +179,7 @@ std::string line_of(lua_State* L, model::Component c, bool first) {
     return text;
 }
 
-/// The first breaks, in one line.
+/// The first breaks in one line.
 std::string breaks_of(const model::Excitation& excitation, std::size_t width) {
     std::string text;
     int count = 0;

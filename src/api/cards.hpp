@@ -1,4 +1,4 @@
-// Objects as the prompt shows them, for the eye: what `tostring` says in Lua text, and what follows from it.
+// Objects as the prompt shows them: the text of `tostring`, and derived quantities.
 #pragma once
 
 #include <string>
@@ -8,25 +8,25 @@
 
 namespace dinal::api {
 
-/// The parameters of the system at `index` and what follows from them, a line each.
+/// The parameters of the system at `index` and derived quantities, one a line.
 std::string system_card(lua_State* L, int index, const terminal::Display& screen);
 
-/// M(t) as a formula, a line for each term, and the times at which it jumps or kinks.
+/// M(t) as a formula, one line for each term, and its jumps and kinks.
 std::string excitation_card(lua_State* L, int index, const terminal::Display& screen);
 
-/// The method with all its options, those that were not given, too.
+/// The method with all its options, including defaults.
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen);
 
-/// All elements if there are not more than `whole`; otherwise so many of both ends, and the length.
+/// All elements if there are at most `whole`; otherwise `ends` elements at both ends, and the length.
 std::string vector_text(const lua::Vector& v, std::size_t whole, std::size_t ends);
 
 /// The ends of the vector that fit on a line, and its length.
 std::string vector_card(lua_State* L, int index, const terminal::Display& screen);
 
-/// The summary, over more than one line when it must be.
+/// The summary, wrapped.
 std::string run_card(lua_State* L, int index, const terminal::Display& screen);
 
-/// The balance, without the remarks that do not fit.
+/// The balance, without remarks that do not fit.
 std::string energy_card(lua_State* L, int index, const terminal::Display& screen);
 
 }  // namespace dinal::api

@@ -22,7 +22,7 @@ std::string short_word(std::string word) {
     return std::string(text::cut_to_columns(word, widest_word - 3)) + "...";
 }
 
-/// The lines of a table with the columns that fit; the first column is the number of the row.
+/// The lines of a table with the columns that fit; the first column is the row number.
 class TableText {
 public:
     TableText(const Data& data, std::size_t rows) : rows_(rows) {
@@ -161,7 +161,7 @@ ColumnUnits::ColumnUnits(const model::Units& units) {
 }
 
 std::string ColumnUnits::of(std::string_view column) const {
-    column.remove_prefix(column.find('.') + 1);  // that of "load.theta"
+    column.remove_prefix(column.find('.') + 1);  // of "load.theta"
     const bool torque = column == "M" || column == "friction" || column == "damping" || column == "torque";
     return column == "t" ? t : column == "theta" ? theta : column == "velocity" ? speed : torque ? M : "";
 }
@@ -183,11 +183,11 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
                          ListColumn{"velocity", &Event::velocity, in.speed});
     const ListColumn names{
         "name", [&](const Event& e) { return e.user < 0 ? "" : user_names[static_cast<std::size_t>(e.user)]; }};
-    if (!user_names.empty()) data.columns.push_back(names.of(events));
+    if (!user_names.empty()) data.columns.push_back(names.column_from(events));
     const ListColumn where{"where", [&](const Event& e) {
                                return e.user >= 0 ? "" : several->joints[static_cast<std::size_t>(e.where)].name;
                            }};
-    if (several != nullptr) data.columns.insert(data.columns.begin() + 2, where.of(events));
+    if (several != nullptr) data.columns.insert(data.columns.begin() + 2, where.column_from(events));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
 }

@@ -1,4 +1,4 @@
-// Reads the options of what drives a run, and of where it starts, into a model::Drive.
+// Reads the options for the drive and the start of a run into a model::Drive.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,12 +16,12 @@ namespace engine = motion::engine;
 
 namespace {
 
-/// The option, or the part of it that is for this body or link.
+/// The option, or the part of it for this body or link.
 std::string part_of_option(const model::System& system, const char* option, std::size_t joint) {
     return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
 }
 
-/// What relays can look at: theta.load, velocity.load and the states.
+/// The quantities that relays can observe: theta.load, velocity.load and the states.
 std::vector<std::string> names_for_relays(const model::System& system, const model::Drive& drive) {
     std::vector<std::string> known;
     if (!system.named) known = {"theta", "velocity"};
@@ -99,7 +99,7 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
     }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const model::Joint& joint = system.joints[j];
-        // What is moved takes those along that are linked to it.
+        // A body with prescribed motion moves linked bodies from the start.
         const bool free = std::none_of(joint.of.begin(), joint.of.end(), [&](const model::Weight& weight) {
             return system.bodies[weight.body].moved.has_value();
         });

@@ -1,4 +1,4 @@
-// The options of sys:simulate{...} for runs with more in them: states, events, belt, base.
+// The options of sys:simulate{...} for the drive: M, states, events, belt, base.
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ inline constexpr text::Call event_call{
     "events[1]", "{ when = function(t, theta, velocity, z) return theta - 1 end, name = \"limit\" }", event_options};
 
 inline constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
-/// The variables that a user adds, and what moves the surfaces and the support.
+/// A user's own variables, and the motion of surfaces and support.
 inline constexpr text::Option states_option[] = {
     {.name = "states",
      .meaning = "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, "
@@ -61,7 +61,7 @@ inline constexpr text::Option moved_options[] = {
      .meaning = "acceleration of the support, to which theta is relative: a number, a function of t, or an excitation",
      .object = "excitation"},
 };
-/// What drives a system in a run, and from where it starts. The rest is in more_drive_options.
+/// The drive of a system and its start; more_drive_options has the rest.
 inline constexpr text::Option drive_options[] = {
     {.name = "M",
      .unit = "torque",
@@ -91,23 +91,23 @@ inline constexpr auto more_drive_options = text::joined(states_option, events_op
 
 std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options);
 std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options);
-/// A function of time alone.
+/// Reads a function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name);
 
-/// Raises when a relay in M looks at something else than these; `M` is how the excitation is called.
+/// Raises an error if a relay in M observes a name that is not known; `M`: the user's name of the excitation.
 void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,
                   const std::string& M = "M");
 
-/// Raises when the name under the option is no name of Lua, or one that a run of the class has.
+/// Raises an error if the name in the option is not a Lua name, or is a member of runs.
 void check_name(const lua::Options& options, const char* option, const std::string& name, const lua::Class& of);
 
-/// The names in the table on the top, sorted, since a table has no order.
+/// The names in the table on the top, sorted, since tables are unordered.
 std::vector<std::string> names_in_table(lua_State* L, const lua::Options& options, const char* option);
 
-/// Pushes the option of this name, a function, and returns its index.
+/// Pushes the option, a function, and returns its index.
 int push_function(lua_State* L, const lua::Options& options, const char* name);
 
-/// Sets dinal.partial to the value on the top, which is popped.
+/// Sets dinal.partial to the value on the top and pops it.
 void set_partial(lua_State* L);
 
 }  // namespace dinal::api

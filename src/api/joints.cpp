@@ -1,4 +1,4 @@
-// What bodies and links are made of: from the options of system{...} to joints, and back to options for :with{...}.
+// Bodies and links: from the options of system{...} to joints, and back to options for :with{...}.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -123,12 +123,12 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
 
 namespace {
 
-/// What everybody asks of a run of several bodies; all else gives way to a body or link of that name.
+/// Fields of runs that names of bodies and links must not hide.
 constexpr std::string_view names_in_runs[] = {"at",     "continue", "data",  "energy",  "events",    "explain",
                                               "plot",   "animate",  "save",  "states",  "status",    "outcome",
                                               "system", "t",        "t_end", "t_start", "integrator"};
 
-/// The names under the option, each of a table; that stays on the top.
+/// The names of the tables in the option, which stays on the top.
 std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& options, const char* option) {
     options.push(option);
     std::vector<std::string> names = names_in_table(L, options, option);
@@ -153,7 +153,7 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
     return names;
 }
 
-/// All of a joint but its bodies.
+/// Reads a joint except its bodies.
 model::Joint asked_joint(lua_State* L, const lua::Options& options, double& inertia) {
     model::OscillatorParameters numbers;
     options.fill(numbers);
@@ -168,7 +168,7 @@ model::Joint asked_joint(lua_State* L, const lua::Options& options, double& iner
     return joint;
 }
 
-/// A body, and its joint with the ground, from the table on the top.
+/// Reads a body, and its joint with the ground, from the table on the top.
 model::Joint read_body(lua_State* L, const std::string& call, model::Body& body) {
     const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", body_options};
     const lua::Options options(L, lua_gettop(L), own);
@@ -229,7 +229,7 @@ std::size_t body_index(const lua::Options& options, const model::System& system,
                   .cure = name.empty() ? "" : text::did_you_mean(name, names)});
 }
 
-/// The bodies and weights of the link in the table on the top, which are removed from it.
+/// Takes the bodies and weights of a link out of the table on the top.
 std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& options, const model::System& system,
                                         const std::string& link) {
     std::vector<model::Weight> weights;
@@ -252,7 +252,7 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
     return weights;
 }
 
-/// A link from the table on the top: between two bodies that it begins with, or of any by their weights.
+/// Reads a link from the table on the top: between its first two entries, or any bodies with weights.
 model::Joint read_link(lua_State* L, const lua::Options& options, const model::System& system,
                        const std::string& name) {
     const int given = lua_gettop(L);
@@ -303,7 +303,7 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
     return joint;
 }
 
-/// Raises where a system with names is given what only a body has.
+/// Raises an error if a named system is given options of a single body.
 void refuse_of_one(const lua::Options& options) {
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
@@ -357,7 +357,7 @@ int push_body(lua_State* L, const lua::Options& options) {
 
 namespace {
 
-/// The laws of the list on the top, side by side: their sum, and the sliders, which go into `friction`.
+/// Reads a list of laws on the top: returns their sum; sliders go into `friction`.
 model::Friction read_list(lua_State* L, const lua::Options& options, model::ContactFriction& friction) {
     using enum model::Motion;
     model::Friction main;
@@ -405,7 +405,7 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
         options.push(name);
         model::Excitation value = to_excitation(L, -1, fmt::format("{}: {}", call, name), name);
         lua_pop(L, 1);
-        // Only controllers in M are asked at their instants.
+        // Only controllers in M are sampled at their instants.
         if (model::has_memory(value)) {
             options.fail(name,
                          fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
@@ -420,7 +420,7 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
     };
     friction.normal = varying("normal");
     const auto normal = number("normal");
-    // A constant load of a law is part of it, so that nobody else needs to know; of bristles it stretches the state.
+    // A constant load becomes part of the law; with bristles it scales the state.
     const auto of_law = [&](const model::Friction& law) {
         friction.law = law;
         if (const auto* slider = law.as<model::laws::Jenkins>()) friction.sliders = {*slider}, friction.law = {};
@@ -483,7 +483,7 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
 
 namespace {
 
-/// The number or the function, where it is nothing else.
+/// Pushes a constant as a number and a lone function as itself, otherwise the excitation.
 void push_acting(lua_State* L, const model::Excitation& value) {
     const auto& parts = value.components();
     const auto* constant = parts.size() == 1 ? std::get_if<model::Constant>(&parts.front().term) : nullptr;
@@ -565,8 +565,8 @@ void push_joint(lua_State* L, const model::System& system, std::size_t j) {
 
 namespace {
 
-/// Writes what stands in the table on the top into that below it, the options of a body. A new Rd and Re make another
-/// law one of Coulomb's again; Re goes with Rd where the two were one number.
+/// Merges the options in the table on the top into the options of a body below it. New Rd and Re replace another law by
+/// Coulomb's; Re follows Rd if both were equal.
 void overwrite(lua_State* L, const lua::Options& options) {
     const int changes = lua_gettop(L), into = changes - 1;
     const auto has = [L](int table, const char* name) {

@@ -1,4 +1,4 @@
-// A picture in Lua: figures that were described but not yet drawn, and where drawing them leads.
+// Pictures in Lua: figures described but not yet drawn, and their output.
 #pragma once
 
 #include <cmath>
@@ -20,33 +20,32 @@ struct Picture {
     plots::TextFormat format;
 };
 
-/// Changes the figure as its options say.
+/// Applies the options to the figure.
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure);
-/// The same for figures one below the other, which share x.
+/// The same for figures one below the other with a common x axis.
 void apply_options(lua_State* L, const lua::Options& options, std::vector<plots::Figure>& figures);
 
-/// As its options say, prints, writes the file, or with show = false leaves the picture on the
-/// stack; returns the number of values left.
+/// Prints the figures, writes the file, or with show = false pushes the picture; returns the number of pushed values.
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures);
 
 /// plot{ ... }
 int plot_vectors(lua_State* L);
 
-/// Where pictures go that are shown: else to standard output, as text. Those that were written into a file are shown to
-/// it, too, when they are.
+/// Receives shown pictures; by default they go to standard output as text. Pictures written to a file are passed as
+/// well.
 enum class Shown { here, in_file };
 using PictureViewer = void (*)(const Picture& picture, Shown where);
 void show_pictures_by(PictureViewer viewer);
 
-/// The picture as an element <svg> for a page or a notebook.
+/// The picture as an <svg> element for a page or notebook.
 text::Expected<std::string> svg_of(const Picture& picture);
 
-/// The text of the picture without the last line end.
+/// The text of the picture without its last newline.
 std::string text_of_picture(const Picture& picture);
 
-// The options of plot, run:plot and run:phase_plot: the parts of a figure, where it goes, and each of its curves.
+// The options of plot, run:plot and run:phase_plot: parts of the figure, its output, and each curve.
 
-/// What is absent stays as the figure has it.
+/// Absent options keep the figure's values.
 struct FigureOptions {
     std::optional<std::string> title = {}, xlabel = {}, ylabel = {};
     std::optional<std::vector<double>> xlim = {}, ylim = {};
@@ -75,7 +74,7 @@ inline constexpr text::Option figure_options[] = {
      .filled = text::fills<&FigureOptions::ends>},
 };
 
-/// Where a picture goes, and how large it is.
+/// The destination and size of a picture.
 struct TargetOptions {
     std::optional<std::string> file = {};
     std::optional<std::vector<double>> size = {};
@@ -132,7 +131,7 @@ inline constexpr text::Call plot_run_call{"run:plot", "run:plot{ y = { \"theta\"
 inline constexpr text::Call phase_plot_call{"run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
                                             phase_plot_options, true};
 
-// What help() and the manual say about plot, run:plot and run:phase_plot besides their options.
+// The documentation of plot, run:plot and run:phase_plot beyond their options.
 
 /// Defined in bind_plot.cpp.
 int plot_run(lua_State* L);

@@ -23,27 +23,27 @@
 
 namespace dinal::api {
 
-// What a response brings along: its jumps, and the curves of theory that can be drawn over it.
+// Additional data of a response: its jumps, special points and closed-form curves.
 
-/// The column of what is varied; its unit, and that of theta.
+/// The name and unit of a varied column, and the unit of theta.
 struct VariedColumn {
     std::string name, unit = {}, theta = {};
 };
 
-/// A response over one parameter, which over two is that at a value of the first.
+/// A response over one parameter; over two, its part at a value of the first.
 struct ResponsePart {
     double beside = 0;
-    std::size_t branches_before = 0;  ///< in the parts before this one
+    std::size_t branches_before = 0;  ///< number of branches in the parts before
     analysis::ResponseCurve curve = {};
 };
 
-/// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
+/// A sweep of the frequency of a harmonic M, or of its amplitude at one frequency.
 struct HarmonicSweep {
     model::Oscillator system;
     VariedColumn column;
     double low = 0, high = 0;
-    std::optional<double> frequency = {};  ///< none: that is what is varied
-    double amplitude = 1;                  ///< torque, where the frequency is varied
+    std::optional<double> frequency = {};  ///< none: the frequency is varied
+    double amplitude = 1;                  ///< torque, if the frequency is varied
 };
 
 namespace {
@@ -51,7 +51,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t curve_points = 400;
 
-/// A curve of theory at one point: amplitude in units of M0/k and lag in rad.
+/// A closed form at one point: amplitude in units of M0/k and lag in rad.
 using ClosedCurve = std::optional<theory::Harmonic_motion> (*)(double r, double zeta, double gamma, double breakaway);
 
 std::optional<theory::Harmonic_motion> linearised_at(double r, double zeta, double gamma, double) {
@@ -92,10 +92,10 @@ struct LocatedPoint {
     double curve = 0;
 };
 
-/// Numbers the curves that the points form. A point goes on the curve of the nearest point of its kind at the value of
-/// the first parameter before, if that is near and has no nearer one. `points` are in the order of these values.
+/// Connects points to numbered curves. A point continues the curve of the nearest point of its kind at the previous
+/// value of the first parameter, if that is near and has no nearer one. `points` are sorted by that parameter.
 void number_curves(std::vector<LocatedPoint>& points, double range) {
-    constexpr double near = 0.5;  // of the range, and of the amplitude
+    constexpr double near = 0.5;  // relative to the range and to the amplitude
     const auto distance = [range](const LocatedPoint& a, const LocatedPoint& b) {
         const double larger = std::max({a.at.motion.amplitude, b.at.motion.amplitude, 1e-300});
         return a.at.kind != b.at.kind ? std::numeric_limits<double>::infinity()
@@ -121,7 +121,7 @@ void number_curves(std::vector<LocatedPoint>& points, double range) {
 
 }  // namespace
 
-/// c.linearised and c.den_hartog, for a linear spring and the friction of Coulomb; else none.
+/// c.linearised and c.den_hartog, for a linear spring and Coulomb friction; otherwise empty.
 std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
     const model::Oscillator& system = sweep.system;
     const model::Lowered lowered(system);
@@ -132,7 +132,7 @@ std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
             {"den_hartog", [sweep] { return closed_curve(sweep, den_hartog_at); }}};
 }
 
-/// c.jumps, over the one or two parameters.
+/// c.jumps, over one or two parameters.
 DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
     const VariedColumn& column = over.back();
     struct Jump {
@@ -150,7 +150,7 @@ DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector
                           ListColumn{"status", [](const Jump& j) { return analysis::name(j.at.landed.status); }});
     if (over.size() > 1) {
         const ListColumn beside{over.front().name, &Jump::beside, over.front().unit};
-        jumps.columns.insert(jumps.columns.begin(), beside.of(list));
+        jumps.columns.insert(jumps.columns.begin(), beside.column_from(list));
     }
     const auto drawn = [list, column = column] {
         std::vector<double> x, amplitude;
@@ -164,7 +164,7 @@ DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector
     return {"jumps", [jumps] { return Data(jumps); }, drawn};
 }
 
-/// c.points: where a branch turns back, or another one begins. Over two parameters they form curves.
+/// c.points: folds and points where other branches begin. Over two parameters they form curves.
 DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
     std::vector<LocatedPoint> located;
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -193,8 +193,8 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
         ListColumn{"branch", &Point::branch});
     if (!is_plane) return {"points", [points] { return Data(points); }};
     const ListColumn beside{over.front().name, &Point::beside, over.front().unit};
-    points.columns.insert(points.columns.begin(), beside.of(located));
-    points.columns.push_back(ListColumn{"curve", &Point::curve}.of(located));
+    points.columns.insert(points.columns.begin(), beside.column_from(located));
+    points.columns.push_back(ListColumn{"curve", &Point::curve}.column_from(located));
     points.pieces_of = "curve";
     const auto drawn = [over, located] {
         std::vector<double> x, y;
@@ -222,7 +222,7 @@ inline constexpr text::Option system_at_option[] = {
 inline constexpr auto at_options = text::joined(drive_options, period_options, more_drive_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
 
-/// What a call of sys:response asks.
+/// The arguments of a call of sys:response.
 class ResponseCall {
 public:
     ResponseCall(lua_State* L, SystemHandle system, const lua::Options& options)
@@ -242,24 +242,24 @@ public:
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 
-    /// Over two parameters: the second one is varied at each value of the first.
+    /// Returns whether there are two parameters: the second is varied at each value of the first.
     [[nodiscard]] bool is_plane() const { return parameters_.size() > 1; }
-    /// The values of the first of two parameters; one without a meaning if there is one parameter.
+    /// The values of the first of two parameters; a dummy value if there is one parameter.
     [[nodiscard]] std::vector<double> beside_values() const {
         if (!is_plane()) return {0};
         const auto values = parameters_.front().numbers()->values();
         return {values.begin(), values.end()};
     }
-    /// From now on the first of two parameters is this.
+    /// Sets the first of two parameters.
     void set_beside(double value) { beside_ = value; }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
     [[nodiscard]] const model::System& system() const { return *system_; }
-    /// Rows for the values only.
+    /// Returns whether rows are wanted at the given values only.
     [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] bool doubled() const { return asked_.doubled; }
     [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
-    /// There are closed forms beside it.
+    /// Returns whether closed forms exist for comparison.
     [[nodiscard]] bool harmonic() const { return !function_ && (over_frequency() || varied_ == "amplitude"); }
     [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
     [[nodiscard]] double frequency_at(double x) const {
@@ -274,7 +274,7 @@ public:
     [[nodiscard]] double amplitude_at(double x) const {
         return varied_value("amplitude", x).value_or(asked_.amplitude);
     }
-    /// Of each parameter.
+    /// One column for each parameter.
     [[nodiscard]] std::vector<VariedColumn> columns() const {
         const ColumnUnits in(system_->units);
         std::vector<VariedColumn> columns;
@@ -295,7 +295,7 @@ public:
     }
 
 private:
-    /// Pushes the table that `at` returns.
+    /// Pushes the table returned by `at`.
     void push_point(double x) const {
         lua_pushvalue(L_, place_);
         lua_newtable(L_);
@@ -347,14 +347,14 @@ private:
                                                      const analysis::SteadyQuestion& question,
                                                      const std::optional<double>& period) const {
         const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
-        // Between the values M is taken for what it is at them.
+        // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
         if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
         if (known) return {known->start, period.value_or(known->period)};
         return repetition_or_fail(L_, own, question, period);
     }
 
-    /// Adds the resonance where the motion grows: a curve past it would show a finite peak.
+    /// Adds the resonance with unbounded motion: a curve without it would show a finite peak.
     void add_resonance() {
         const model::Oscillator body = oscillator_of(*system_).value();
         if (!body.has_linear_spring()) return;
@@ -367,13 +367,13 @@ private:
         if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
 
-    /// The value of a parameter of this name where the last one is x; none if it is not varied.
+    /// The value of this parameter when the last one is x; none if it is not varied.
     [[nodiscard]] std::optional<double> varied_value(std::string_view name, double x) const {
         if (name == varied_) return x;
         return is_plane() && name == parameters_.front().name ? std::optional(beside_) : std::nullopt;
     }
 
-    /// The names under `over`, and their values.
+    /// Reads the names in `over` and their values.
     void choose() {
         parameters_ = varied_in(L_, options_);
         for (const DataColumn& parameter : parameters_) check_name(parameter.name);
@@ -383,7 +383,7 @@ private:
         beside_ = beside_values().front();
     }
 
-    /// Of bodies and links with names most columns have these in theirs.
+    /// Checks a parameter's name; with named bodies and links most columns have a prefix.
     void check_name(std::string_view name) const {
         const bool named = system_->named;
         for (const char* column : {"stable", "branch", "status", "lag", "peak", "stops", "stuck", "amplitude"}) {
@@ -396,7 +396,7 @@ private:
         }
     }
 
-    /// A harmonic M has one frequency, varied or given, and an amplitude.
+    /// Checks that a harmonic M has exactly one frequency, varied or given, and an amplitude.
     void check_harmonic() const {
         const int given = (asked_.frequency ? 1 : 0) + (asked_.omega ? 1 : 0) + (asked_.period ? 1 : 0);
         int in_time = 0;
@@ -428,12 +428,12 @@ private:
     std::vector<DataColumn> parameters_;  // one or two
     std::string varied_;                  // the last of them
     std::vector<double> values_;          // its values
-    double beside_ = 0;                   // the present value of the first of two
+    double beside_ = 0;                   // present value of the first of two
     bool function_ = false;
     int place_ = 0;
 };
 
-/// What the response tells of one body or link at a point.
+/// The results for one body or link at a point.
 struct RowOfJoint {
     analysis::SteadyMotion motion;
     std::optional<double> lag;
@@ -443,13 +443,13 @@ struct ResponseRow {
     double beside, varied;
     std::size_t branch;
     bool asked;
-    analysis::SteadyStatus status;  ///< of all
+    analysis::SteadyStatus status;  ///< status of the whole motion
     std::vector<RowOfJoint> joints;
 
     [[nodiscard]] const analysis::SteadyMotion& motion() const { return joints.front().motion; }
 };
 
-/// The motion of each body and link at this point, without the run that told it.
+/// The motion of each body and link at this point, without its run.
 ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_t branch,
                    const analysis::SteadyQuestion& question, const motion::Monitor& monitor) {
     ResponseRow row{beside, point.parameter, branch, point.asked, point.motion.status, {}};
@@ -505,7 +505,7 @@ Data response_data(const std::vector<ResponseRow>& rows, const std::vector<Varie
     std::move(rest.columns.begin(), rest.columns.end(), std::back_inserter(data.columns));
     if (over.size() > 1) {
         const ListColumn beside{over.front().name, &ResponseRow::beside, over.front().unit};
-        data.columns.insert(data.columns.begin(), beside.of(rows));
+        data.columns.insert(data.columns.begin(), beside.column_from(rows));
         data.parameters = {over.front().name, of.name};
     }
     data.pieces_of = "branch";

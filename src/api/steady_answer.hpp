@@ -1,4 +1,4 @@
-// What sys:steady{ ... } asks, and the answer as Lua sees it.
+// The options of sys:steady{ ... }, and its answer in Lua.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace dinal::api {
 
-/// A period in one of three ways.
+/// A period, given in one of three ways.
 struct PeriodOptions {
     std::optional<double> period = {}, frequency = {}, omega = {};
 };
@@ -43,10 +43,10 @@ inline constexpr text::Option instead_of_period[] = {
      .meaning = "2 pi/period, instead of period",
      .filled = text::fills<&PeriodOptions::omega>},
 };
-/// The period that they say. Raises when there are more of them.
+/// The period given by the options. Raises an error if more than one is given.
 std::optional<double> asked_period(const lua::Options& options);
 
-/// What is asked besides M.
+/// The options other than the drive.
 struct SteadyOptions {
     std::optional<int> periods = {};
 };
@@ -71,18 +71,18 @@ inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 
 struct Steady {
     analysis::SteadyQuestion question;
     analysis::SteadyMotion motion;
-    std::optional<analysis::SteadyShape> shape = {};  ///< made when it is first asked for
-    /// From other starts, once they were looked for: of all bodies.
+    std::optional<analysis::SteadyShape> shape = {};  ///< computed on first use
+    /// For all bodies, from other starts, once searched.
     std::optional<std::vector<std::shared_ptr<Steady>>> others = {};
-    RunHandle run = {};                  ///< one period, of what is not plain; none at rest
-    std::shared_ptr<Steady> whole = {};  ///< the motion of all bodies, of one or a link of which this is
+    RunHandle run = {};                  ///< one period of a motion that is not plain; null at rest
+    std::shared_ptr<Steady> whole = {};  ///< the motion of all bodies, if this is one body or link
 
     [[nodiscard]] bool of_all() const { return !question.is_plain() && whole == nullptr; }
 };
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;
 
-/// Facts about a motion, or a rest, that was found.
+/// Returns whether a motion or a rest was found.
 inline bool is_found(const Steady& s) {
     return s.motion.is_found();
 }
@@ -99,7 +99,7 @@ void asking(lua_State* L, Work work) {
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
 }
-/// The same of functions that are given the motion of the question.
+/// The same for functions that receive the motion of the question.
 template <class Work>
 void asking(lua_State* L, const analysis::SteadyQuestion& question, Work work) {
     lua::CallState call(L);
@@ -109,12 +109,12 @@ void asking(lua_State* L, const analysis::SteadyQuestion& question, Work work) {
     call.check();
 }
 
-/// When all that drives the question repeats itself, as its terms have it or as the user gives it; period 0 where
-/// nothing depends on t. Raises when the period is unknown or wrong.
+/// The common repetition of the drive, as declared by its terms or given by the user; period 0 if nothing depends on t.
+/// Raises an error if the period is unknown or wrong.
 analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& options,
                                         const analysis::SteadyQuestion& question, const std::optional<double>& period);
 
-/// Raises when the motion could not be followed, or M was found to be no function of its arguments.
+/// Raises an error if the motion could not be followed, or M contradicted itself.
 void check_motion(const lua::Options& options, const analysis::SteadyMotion& motion);
 
 /// sys:steady{ ... } and run:steady{ ... }
@@ -123,7 +123,7 @@ int steady_of_run(lua_State* L);
 /// s.run
 lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s);
 
-/// When its controllers repeat; raises when they never do.
+/// The time after which its controllers repeat; raises an error if there is none.
 double settles_or_fail(const lua::Options& options, const analysis::SteadyQuestion& question);
 
 inline constexpr lua::Doc steady_doc{

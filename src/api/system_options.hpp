@@ -1,4 +1,4 @@
-// What system{...}, nondimensional{...} and sys:with{...} share.
+// Options shared by system{...}, nondimensional{...} and sys:with{...}.
 #pragma once
 
 #include <initializer_list>
@@ -9,15 +9,15 @@
 
 namespace dinal::api {
 
-/// The law that the option `friction` names, which excludes the options that are Coulomb's. One with a state of its own
-/// is refused unless it may be one.
+/// The law in the option `friction`, which excludes the options of Coulomb's law. A law with internal state is refused
+/// unless `may_have_state`.
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
                                          std::initializer_list<const char*> instead_of, bool may_have_state = false);
 
-/// What the option `spring` says; none when it is absent.
+/// The spring in the option `spring`; none if absent.
 std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options);
 
-/// What an option says that is a table of options; none when it is absent.
+/// An option that is a table of options; none if absent.
 template <class T>
 std::optional<T> asked_table(lua_State* L, const lua::Options& options, const char* name, const text::Call& call) {
     if (!options.has(name)) return {};
@@ -28,7 +28,7 @@ std::optional<T> asked_table(lua_State* L, const lua::Options& options, const ch
     return read;
 }
 
-/// What the option `walls` says; none when it is absent, or an empty table.
+/// The walls in the option `walls`; none if absent or an empty table.
 std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options);
 
 inline constexpr text::Option law_option[] = {
@@ -38,7 +38,7 @@ inline constexpr text::Option law_option[] = {
      .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
 };
 
-/// A number, an excitation or a function, where a system of one body takes a number.
+/// The kinds of values accepted for variable friction.
 inline constexpr const char* varying_wanted = "a number, an excitation or a function of t, theta, velocity, z";
 inline constexpr text::Option friction_options[] = {
     {.name = "Rd",
@@ -90,7 +90,7 @@ inline constexpr text::Option bodies_and_links[] = {
 inline constexpr auto system_options =
     text::joined(body_numbers, friction_options, spring_and_walls, bodies_and_links, model::units_option);
 
-/// The same for a change, where none is needed and none has a default.
+/// The rows for a change: nothing is required, nothing has a default.
 constexpr auto none_needed(auto rows) {
     for (text::Option& row : rows) row.otherwise = text::its_own, row.filled.initial = nullptr;
     return rows;

@@ -25,7 +25,7 @@ namespace dinal::errors {
 
 namespace {
 
-// A value that stands alone on a line of a script, as it may at the prompt.
+// A value alone on a line of a script, which only the prompt accepts.
 
 bool compiles(lua_State* L, const std::string& text) {
     const bool good = luaL_loadbufferx(L, text.data(), text.size(), "=part", "t") == LUA_OK;
@@ -33,7 +33,7 @@ bool compiles(lua_State* L, const std::string& text) {
     return good;
 }
 
-/// The line without a remark and semicolons behind it.
+/// The line without a final comment and semicolons.
 std::string_view code_of(std::string_view line) {
     std::size_t end = 0;
     for (const lua::Token& token : lua::tokens(line)) {
@@ -46,11 +46,11 @@ bool is_value(lua_State* L, std::string_view code) {
     return !code.empty() && compiles(L, "return " + std::string(code)) && !compiles(L, std::string(code));
 }
 
-/// "; a value alone is not a statement: print(6*7) shows it", for the line of the error or the one before it; or "".
+/// "; a value alone is not a statement: print(6*7) shows it", for the error's line or the one before; or "".
 std::string bare_value(lua_State* L, const SourceText& source, int line, const lua::SyntaxMessage& message) {
     luaL_checkstack(L, LUA_MINSTACK, "for a value alone on a line");
     if (message.complaint != "syntax error" && message.complaint != "unexpected symbol") return "";
-    // A name is found out to be no statement only by what follows it, on a later line.
+    // The parser rejects a name as a statement only at the next token, possibly on a later line.
     for (int number = line; number >= source.first_line && number + 2 > line; --number) {
         const std::string_view code = code_of(source.line(number));
         if (!is_value(L, code)) continue;
@@ -61,9 +61,9 @@ std::string bare_value(lua_State* L, const SourceText& source, int line, const l
     return "";
 }
 
-// The line of source that an error is about, with a mark below it.
+// The source line of an error with a mark below it.
 
-/// A name stands there as it is or, when it is a key or a choice, in quotes.
+/// Adds a name, also in quotes, as a key or choice may be written.
 void add_name(std::vector<std::string>& names, std::string_view name) {
     if (!name.empty()) {
         names.insert(names.end(), {std::string(name), fmt::format("\"{}\"", name), fmt::format("'{}'", name)});
@@ -75,12 +75,12 @@ struct Mark {
     std::size_t size = 1;
 };
 
-/// A value of which there may be more than one in a statement.
+/// Returns whether the token is a value, of which a statement may contain several.
 bool is_value(const lua::Token& token) {
     return token.kind == lua::TokenKind::number || token.is("nil") || token.is("true") || token.is("false");
 }
 
-/// Where in the statement the first of the suspects stands. None when nothing is known but the line.
+/// The place of the first suspect in the statement; none if only the line is known.
 std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (const std::string& name : names) {
@@ -95,7 +95,7 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
     return std::nullopt;
 }
 
-/// The line, cut so that the mark is on the screen, and the mark below it.
+/// The line, cut so that the mark is visible, with the mark below it.
 std::string excerpt_of(std::string_view line, int number, Mark mark, const terminal::Display& screen) {
     std::string text = terminal::spelled(text::displayable(line), screen);
     mark.at = terminal::spelled(text::displayable(line.substr(0, mark.at)), screen).size();
@@ -117,7 +117,7 @@ std::string excerpt_of(std::string_view line, int number, Mark mark, const termi
                        carets, screen.colour ? "\x1b[0m" : "");
 }
 
-/// The excerpt with the mark at a place in the text that begins with the line of that number.
+/// The excerpt around the mark, in a text whose first line has this number.
 std::string marked_excerpt(std::string_view text, int number, Mark mark) {
     for (std::size_t end = text.find('\n'); end < mark.at && end != std::string_view::npos; end = text.find('\n')) {
         mark.at -= end + 1;
@@ -134,15 +134,15 @@ bool compiles_so_far(lua_State* L, std::string_view text) {
     return good;
 }
 
-/// The message has the beginning of a malformed number, and of a letter that is not plain its first byte: <\\206>.
+/// Returns whether the token fits the message, which has only the beginning of a malformed number, and only the first
+/// byte of a non-ASCII letter: <\\206>.
 bool may_be(const lua::Token& token, std::string_view near) {
     return token.text == near ||
            (token.kind == lua::TokenKind::number && !near.empty() && token.text.starts_with(near)) ||
            (near.starts_with("<\\") && static_cast<unsigned char>(token.text.front()) >= 0x80);
 }
 
-/// The token that the parser does not accept: the first one of that line and text with which the chunk is wrong
-/// however it goes on.
+/// The token that the parser rejects: the first one on that line with that text after which no continuation compiles.
 std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, int line, std::string_view near) {
     std::string text = source.text;
     if (text.starts_with("#!")) {
@@ -157,7 +157,7 @@ std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, int line
     return std::nullopt;
 }
 
-/// The words of the source that an error may be about, the likeliest first.
+/// Words of the source that an error may be about, the likeliest first.
 std::vector<std::string> suspects(const text::Error& error) {
     std::vector<std::string> names;
     add_name(names, error.option.empty() ? error.culprit : error.option);
@@ -181,13 +181,13 @@ std::vector<std::string> suspects(const lua::LuaMessage& message) {
     return names;
 }
 
-/// "\n  10 | x = sytem{}\n     |     ^^^^^", with the mark below the first of the suspects that stands there. Empty
-/// when the line is not there, or was typed just now and no part of it is known to be the culprit.
+/// "\n  10 | x = sytem{}\n     |     ^^^^^", with the mark below the first suspect found. Empty if the line is
+/// unavailable, or was just typed and has no suspect.
 std::string excerpt(const SourceText& source, int line, const std::vector<std::string>& suspects) {
     const std::string_view statement = source.statement(line);
     auto mark = marked(statement, suspects);
     if (statement.empty() || (!mark && source.text.find('\n') == std::string::npos)) {
-        return "";  // the one line was typed just now
+        return "";  // the only line was just typed
     }
     if (!mark) {
         mark = marked(statement, {"error", "assert"});
@@ -215,7 +215,7 @@ std::string_view statement_of(const std::optional<SourceText>& source, int line)
     return source ? source->statement(line) : std::string_view();
 }
 
-/// The remarks on an error of either kind, of ours or of Lua.
+/// The remarks on an error of ours or of Lua.
 template <class Error>
 lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const std::optional<SourceText>& source,
                      int line) {
@@ -227,7 +227,7 @@ lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const s
     return {advice.end_of_sentence, source ? excerpt(*source, line, names) : "", ""};
 }
 
-/// The message is about what the function at the index has returned.
+/// The remarks on a message about the result of the function at the index.
 lua::Remarks remarks_on_result(const text::Error& error, const SourceText& source, int line) {
     const std::vector<lua::Token> all = lua::tokens(source.text);
     const bool returns = std::any_of(all.begin(), all.end(), [](const lua::Token& t) { return t.is("return"); });
@@ -257,7 +257,7 @@ lua::Remarks first_remarks(lua_State* L, int error, int function) {
     if (facts != nullptr) {
         return remarks(L, frame, *facts, source, message->line);
     }
-    if (const auto syntax = lua::syntax_message(message->words)) {  // of a load() in the chunk
+    if (const auto syntax = lua::syntax_message(message->words)) {  // from a load() in the chunk
         const std::string habit = syntax_habit(L, *syntax, statement_of(source, message->line));
         return {habit, source ? excerpt(*source, message->line, {std::string(syntax->near)}) : "", ""};
     }

@@ -1,5 +1,5 @@
-// What the program says about an error besides its message: the line of source with a mark, a likely spelling, and the
-// time for which M was asked. It reads the facts of our own errors, and takes apart the words of Lua's.
+// Additions to an error message: the source line with a mark, a likely spelling, and the time at which M was evaluated.
+// Reads the facts of our own errors, and parses Lua's.
 #pragma once
 
 #include "lua/error_memory.hpp"
@@ -7,15 +7,15 @@
 
 namespace dinal::errors {
 
-/// About the error value at `index`. To be asked while the functions in which it happened still stand on the stack,
-/// that is in a message handler; later, what is gone is left out.
+/// The remarks on the error value at `index`. Call in a message handler, while the functions of the error are still on
+/// the stack; afterwards parts are missing.
 lua::Remarks remarks_on(lua_State* L, int index);
 
-/// About the message at `index`, of a chunk that did not compile. `file` is its name, nullptr when it was in no file.
+/// The remarks on the message at `index` about a chunk that did not compile. `file` is its name, or nullptr.
 lua::Remarks remarks_on_syntax(lua_State* L, int index, const char* file);
 
-/// The witness of errors in M: nothing is remembered yet about the error value at `error`. When it is a message about
-/// what a function has returned, that one is at `function`; else that is 0.
+/// The witness of errors in M, called once for each error value at `error`. For a message about a function's result,
+/// `function` is the index of that function, otherwise 0.
 lua::Remarks first_remarks(lua_State* L, int error, int function);
 
 }  // namespace dinal::errors

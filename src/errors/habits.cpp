@@ -75,9 +75,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 52> foreign_
     {"save", "; a run is saved by run:save(\"run.csv\")"},
 }};
 
-/// What tokens say in other languages. A word of a pattern is a token; n stands for any name, # for any number, 1 for
-/// either, w for a word of any kind, s for a string, ^ for the beginning. In the cure {n} and its like are what stood
-/// there.
+/// Tokens with a meaning in other languages. Each word of a pattern is a token; n stands for any name, # for any
+/// number, 1 for either, w for any word, s for a string, ^ for the beginning. In the cure {n} etc. stand for the
+/// matched text.
 struct ForeignTokens {
     std::string_view pattern;
     Seen seen;
@@ -182,7 +182,7 @@ bool fits(const lua::Token& token, std::string_view wanted) {
     return token.is(wanted);
 }
 
-/// The cure, if the pattern stands at that place.
+/// The cure if the pattern matches at this place.
 std::string cure_at(const std::vector<lua::Token>& all, std::size_t place, const ForeignTokens& one) {
     std::string_view pattern = one.pattern;
     if (pattern.starts_with("^ ")) {
@@ -201,7 +201,7 @@ std::string cure_at(const std::vector<lua::Token>& all, std::size_t place, const
     return cure;
 }
 
-/// "k = 0,5" in braces is two entries of a table, f(1,43) two arguments.
+/// Remark on a decimal comma, which Lua reads as two values; empty if none.
 std::string decimal_comma(std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 3; i < all.size(); ++i) {
@@ -214,7 +214,7 @@ std::string decimal_comma(std::string_view statement) {
     return "";
 }
 
-/// run:save(run.csv); `name` is what was not found.
+/// Remark on missing quotes: run:save(run.csv). `name` is the missing variable.
 std::string file_without_quotes(std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
@@ -228,7 +228,7 @@ std::string file_without_quotes(std::string_view name, std::string_view statemen
     return "";
 }
 
-/// A number, a string, a list that is called.
+/// Remark on a number, a string or a list that is called.
 std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     if (message.kind == "global" && lua::is_overwritten(L, message.name) && lua::is_of_dinal(L, message.name)) {
         const std::string name(message.name);
@@ -249,7 +249,7 @@ std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     return simple ? "; it is a value and no function: leave out the parentheses" : "";
 }
 
-/// run.energy.total: a function in which something is looked for, where what it gives was meant.
+/// Remark on run.energy.total: a field is read from a function that should be called.
 std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -265,7 +265,7 @@ std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std:
     return "";
 }
 
-/// What Lua has and safe mode has not.
+/// Remark on functions of Lua that safe mode lacks.
 std::string left_out_in_safe_mode(const lua::LuaMessage& message, std::string_view statement) {
     if (!lua::safe_mode() || message.type != "nil") {
         return "";
@@ -355,14 +355,14 @@ std::string foreign_name(std::string_view name) {
     return found == foreign_names.end() ? "" : std::string(found->second);
 }
 
-// Habits from other languages that Lua does not compile. A rule looks at the message, at the token over which the
-// parser stumbled, and at the one before it.
+// Habits from other languages that do not compile. A rule compares the message, the rejected token and the one before
+// it.
 
 namespace {
 
 using Cure = std::pair<std::string_view, std::string_view>;
 
-/// What Lua complains of, "" for anything, and near what: "" for any word.
+/// Lua's complaint ("" for any), and the rejected word ("" for any).
 struct Symptom {
     std::string_view complaint;
     std::string_view near;
@@ -397,7 +397,7 @@ constexpr std::array<Symptom, 25> symptoms = {{
     {"'}' expected", "", "; is a comma missing there?"},
 }};
 
-/// Letters and signs that word processors and books put in place of those that Lua knows.
+/// Typographic characters that replace those of Lua.
 constexpr std::array<Cure, 14> printed_signs = {{
     {"“", "\""},
     {"”", "\""},
@@ -415,11 +415,11 @@ constexpr std::array<Cure, 14> printed_signs = {{
     {"≥", ">="},
 }};
 
-/// "didn't expect" and where: the message, the token, what stands before it.
+/// The message with the rejected token and its context.
 struct Stumble {
     const lua::SyntaxMessage& message;
     std::vector<lua::Token> all = {};
-    std::size_t at = 0;  ///< of the token in `all`; 0 when it is not known or the first
+    std::size_t at = 0;  ///< index of the rejected token in `all`; 0 if unknown or the first
 
     [[nodiscard]] const lua::Token& token() const { return all[at]; }
     [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
@@ -429,7 +429,7 @@ bool is_operand(const lua::Token& token) {
     return token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::number;
 }
 
-/// The token of that text that is likeliest: the last one right behind a name or a number, else the first.
+/// The likeliest token with that text: the last one right behind a name or number, otherwise the first.
 Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement) {
     Stumble stumble{message, lua::tokens(statement)};
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
@@ -451,7 +451,7 @@ std::string printed_sign(const lua::SyntaxMessage& message, std::string_view sta
     return "; names and signs of Lua are in plain letters: theta, pi, omega";
 }
 
-/// How the function on the top of the stack is called: with its options in braces, or in parentheses.
+/// The call of the function on the top of the stack: with braces for options, or parentheses.
 std::string called_as(lua_State* L, std::string_view name) {
     const lua::Documented found = lua::documented(L, -1);
     const lua::Doc* doc = found.member != nullptr ? &found.member->doc : nullptr;
@@ -462,7 +462,7 @@ std::string called_as(lua_State* L, std::string_view name) {
                   : "; a call needs parentheses: " + std::string(name) + "(...)";
 }
 
-/// The same for a global function; "" when there is none of that name.
+/// The same for a global function; "" if there is none.
 std::string call_of_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
     lua_pushlstring(L, name.data(), name.size());
@@ -472,7 +472,7 @@ std::string call_of_global(lua_State* L, std::string_view name) {
     return call;
 }
 
-/// "print x", "run:save name", "retrun x", "def f", "2 x": two words where there should be one.
+/// Remark on two words instead of one: "print x", "run:save name", "retrun x", "def f", "2 x".
 std::string two_words(lua_State* L, const Stumble& stumble) {
     if (stumble.at == 0 || stumble.token().kind == lua::TokenKind::symbol ||
         stumble.before().kind != lua::TokenKind::name) {
@@ -489,7 +489,8 @@ std::string two_words(lua_State* L, const Stumble& stumble) {
     return long_enough && stumble.message.complaint == "syntax error" ? text::did_you_mean(first, lua::keywords()) : "";
 }
 
-/// "if x then" with a slip in `then`; "fucntion(x)", which is a call, so that its end comes as a surprise.
+/// Remark on a misspelt keyword: "if x then" with an error in `then`; "fucntion(x)", which is a call, so that its end
+/// is unexpected.
 std::string misspelt_keyword(const Stumble& stumble) {
     if (stumble.at > 0 && !stumble.message.expected.empty()) {
         const std::array<std::string_view, 1> wanted = {stumble.message.expected};
@@ -511,7 +512,7 @@ std::string misspelt_keyword(const Stumble& stumble) {
     return "";
 }
 
-/// "3t", "2pi"
+/// Remark on a missing *: "3t", "2pi".
 std::string missing_star(const Stumble& stumble) {
     if (stumble.message.complaint != "malformed number") return "";
     std::string_view word = stumble.message.near;
@@ -526,12 +527,12 @@ std::string missing_star(const Stumble& stumble) {
     return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
 }
 
-/// "function(t) 3*t end"
+/// Remark on a missing return: "function(t) 3*t end".
 std::string missing_return(const Stumble& stumble) {
     const auto& all = stumble.all;
     const std::string_view complaint = stumble.message.complaint;
     if (complaint != "unexpected symbol" && complaint != "syntax error") return "";
-    std::size_t body = 0;  // of the innermost function before the place
+    std::size_t body = 0;  // body of the innermost function around the place
     for (std::size_t i = 0; i < stumble.at; ++i) {
         if (!all[i].is("function")) continue;
         while (i < stumble.at && !all[i].is(")")) ++i;

@@ -23,13 +23,13 @@ namespace {
 
 constexpr int most_metatables = 10;  // an __index may lead to itself
 
-/// The keys of the table on the top that are texts.
+/// Adds the string keys of the table on the top.
 void add_keys(lua_State* L, std::vector<std::string>& names) {
     const std::vector<std::string> keys = lua::text_keys(L, -1);
     names.insert(names.end(), keys.begin(), keys.end());
 }
 
-/// Replaces the value on the top by the table in the __index of its metatable; false when there is none.
+/// Replaces the value on the top by the __index table of its metatable; returns false without one.
 bool step_to_index_table(lua_State* L) {
     if (lua_getmetatable(L, -1) == 0) {
         return false;
@@ -41,7 +41,7 @@ bool step_to_index_table(lua_State* L) {
     return lua_istable(L, -1);
 }
 
-/// Calls visit(name) with the value of each local and outer variable of the frame on the top of the stack.
+/// Calls visit(name) with each local variable and upvalue of the frame on the top of the stack.
 template <class Visit>
 void each_variable(lua_State* L, lua_Debug* frame, Visit visit) {
     if (frame == nullptr) {
@@ -70,7 +70,7 @@ std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
     return names;
 }
 
-/// For "x.y.name" or "x.y:name" in the statement: the names that x.y has.
+/// For "x.y.name" or "x.y:name" in the statement: the names of x.y.
 std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
@@ -95,7 +95,7 @@ std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_vi
     return {};
 }
 
-/// Names that the statement itself declares: local x, function(x), for x, { x = 1 }.
+/// Returns whether the statement itself declares the name: local x, function(x), for x, { x = 1 }.
 bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     bool declaring = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -110,8 +110,8 @@ bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     return false;
 }
 
-/// A global that is nil, in the statement: the value of the option that is missing, `option = x`; without one, one with
-/// a likely other spelling or, when it is known that something is nil, any.
+/// A global in the statement that is nil: the value of the missing option, `option = x`; otherwise one with a likely
+/// other spelling, or any if it is known that something is nil.
 Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view option, bool any) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     const std::vector<std::string> local = variables(L, frame);
@@ -133,10 +133,10 @@ Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, st
     return {};
 }
 
-/// How a name stands in what went wrong: 2*rad needs a number there, and math.rad alone is none.
+/// The use of a name: 2*rad needs a number, which math.rad is not.
 enum class Use { any, as_number };
 
-/// Names of that spelling in the libraries: sin is math.sin, rk4 is integrator.rk4. Two at most.
+/// Library functions with that name: sin is math.sin, rk4 is integrator.rk4. Two at most.
 std::string qualified(lua_State* L, std::string_view name, Use use) {
     constexpr std::array<std::string_view, 8> modules = {"excitation", "integrator", "theory", "vector",
                                                          "math",       "string",     "table",  "os"};
@@ -161,7 +161,7 @@ std::string qualified(lua_State* L, std::string_view name, Use use) {
     return count == 1 || count == 2 ? found + "?" : "";
 }
 
-/// Whether the value on the top is one of our objects with a field of that name, which a system has and a run.
+/// Returns whether the value on the top is an object of ours with this field, such as a system or a run.
 bool has_field(lua_State* L, std::string_view name) {
     if (lua_isuserdata(L, -1) == 0) return false;
     const lua::Documented found = lua::documented(L, -1);
@@ -171,7 +171,7 @@ bool has_field(lua_State* L, std::string_view name) {
            });
 }
 
-/// Fields of that spelling of what the user's variables hold: Rd is dry.Rd. Two at most.
+/// Fields with that name in the user's variables: Rd is dry.Rd. Two at most.
 std::string field_of_variable(lua_State* L, std::string_view name) {
     std::vector<std::string> owners;
     lua_pushglobaltable(L);
@@ -191,7 +191,7 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
     return found + "?";
 }
 
-/// What a global name that is nil may have meant.
+/// The likely meanings of an undefined global name.
 std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names, Use use = Use::any) {
     std::string hint = foreign_name(name);
     hint = hint.empty() ? qualified(L, name, use) : hint;
@@ -273,9 +273,9 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
         const bool is_nil = lua_isnil(L, -1), is_table = lua_istable(L, -1);
         const std::vector<std::string> names = field && is_table ? member_names(L) : std::vector<std::string>();
         lua_settop(L, top);
-        std::string told = "'" + std::string(name), hint;
+        std::string whole_name = "'" + std::string(name), hint;
         if (field) {
-            told.append(".").append(all[i + 2].text);
+            whole_name.append(".").append(all[i + 2].text);
             hint = text::did_you_mean(all[i + 2].text, names);
             if (hint.empty() || std::find(names.begin(), names.end(), all[i + 2].text) != names.end()) continue;
         } else {
@@ -283,7 +283,7 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
             if (!is_nil || is_declared(all, name) || std::find(local.begin(), local.end(), name) != local.end())
                 continue;
         }
-        return fmt::format("{}' is nil, so {} is not given{}", told, all[i - 2].text, hint);
+        return fmt::format("{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
     }
     return "";
 }
@@ -328,10 +328,10 @@ namespace {
 
 using Tokens = std::vector<lua::Token>;
 
-/// name(first, rest), as it is written.
+/// The call name(first, rest) as written.
 struct WrittenCall {
     std::string_view first, rest;
-    bool simple = true;  ///< the first is a name, a field or a call, so that a colon may follow
+    bool simple = true;  ///< whether the first is a name, field or call, so that a colon may follow
 };
 
 std::optional<WrittenCall> call_of(std::string_view statement, std::string_view name) {
@@ -369,7 +369,7 @@ bool has_method(lua_State* L, int index, std::string_view name) {
     });
 }
 
-/// Something that is being passed in the innermost calls has such a method.
+/// Returns whether an object among the arguments of the innermost calls has a method of that name.
 bool passes_its_owner(lua_State* L, std::string_view name) {
     constexpr int innermost = 4;
     lua_Debug frame{};
@@ -383,7 +383,7 @@ bool passes_its_owner(lua_State* L, std::string_view name) {
     return false;
 }
 
-/// As a function that Lua can call: the length of its argument. Of objects of ours, so that no user's code runs.
+/// A Lua function for the length of an object of ours, so that no user code runs.
 int length(lua_State* L) {
     lua_pushinteger(L, luaL_len(L, 1));
     return 1;
@@ -393,7 +393,7 @@ int field(lua_State* L) {
     return 1;
 }
 
-/// Replaces the value on the top by its field; no code of a user runs.
+/// Replaces the value on the top by its field; runs no user code.
 void go_to_field(lua_State* L, std::string_view name) {
     if (lua_istable(L, -1)) {
         lua_pushlstring(L, name.data(), name.size());
@@ -411,7 +411,7 @@ void go_to_field(lua_State* L, std::string_view name) {
     }
 }
 
-/// How many elements the list on the top has; none when it is no list. Pops it.
+/// The length of the list on the top, which is popped; none if it is not a list.
 std::optional<lua_Integer> taken_length(lua_State* L) {
     const bool ours = lua_isuserdata(L, -1) != 0 && lua::documented(L, -1).owner != nullptr;
     std::optional<lua_Integer> count;
@@ -427,7 +427,7 @@ std::optional<lua_Integer> taken_length(lua_State* L) {
     return count;
 }
 
-/// The whole number that a token is, or that the variable of this name holds.
+/// The whole number in a token, or in the variable that it names.
 std::optional<lua_Integer> number_of(lua_State* L, lua_Debug* frame, const lua::Token& token) {
     if (token.kind == lua::TokenKind::name) {
         push_variable(L, frame, token.text);
@@ -463,7 +463,7 @@ std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::stri
 
 MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
                                std::string_view statement) {
-    // Lua 5.4.4 says 'integer index', later ones '?'.
+    // Lua 5.4.4 says 'integer index', later versions '?'.
     if (message.type != "nil" || message.kind != "field" || (message.name != "integer index" && message.name != "?")) {
         return {};
     }
@@ -480,7 +480,7 @@ MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMes
         const lua::Token& index = all[i + 1];
         const bool alone = i + 2 < all.size() && all[i + 2].is("]");
         const auto number = alone ? number_of(L, frame, index) : std::nullopt;
-        if (number && *number >= 1 && *number <= *count) continue;  // it is there
+        if (number && *number >= 1 && *number <= *count) continue;  // the element exists
         const std::size_t begin = all[first].at;
         MissingElement found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
                                          text::counted(static_cast<std::size_t>(*count), "element")),

@@ -1,4 +1,4 @@
-// Names that were probably meant: for an error that follows a nil where the user expected something.
+// Names that were probably meant, for errors caused by a nil.
 #pragma once
 
 #include <string>
@@ -11,38 +11,37 @@
 
 namespace dinal::errors {
 
-/// What helps with an error.
+/// A hint for an error.
 struct Advice {
     std::string end_of_sentence;  ///< "; did you mean 'system'?", or ""
-    std::string culprit = {};     ///< what it has found out to be the reason: "; 'tend' is nil"
+    std::string culprit = {};     ///< the cause found: "; 'tend' is nil"
 };
 
-/// `frame` is where it happened, nullptr when that is gone; `statement` its text, as far as it is known.
+/// `frame` is the function of the error, or nullptr; `statement` its text as far as known.
 Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement);
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 
-/// Pushes what the variable holds there: a local one (the innermost of that name), an outer one, a global one.
+/// Pushes the value of a variable in the frame: a local one (the innermost of that name), an upvalue, or a global.
 void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted);
 
-/// The global names that a misspelt one may stand for, as the end of a sentence.
+/// The end of a sentence with similar global names.
 std::string similar_global(lua_State* L, std::string_view name);
 
-/// The names that may be written after a variable of that name and a dot: raw keys, those of its __index tables, and
-/// members. Runs no code of the user. The value is on the top of the stack.
+/// The names that may follow a variable and a dot: raw keys, keys of __index tables, and members, for the value on the
+/// top of the stack. Runs no user code.
 std::vector<std::string> member_names(lua_State* L);
 
-/// "'theta_0' is nil, so theta0 is not given": a global, or a field of a table, that is not there and stands alone as
-/// the value of an option in the text. A field only where another one has nearly its name: it may be left out on
-/// purpose.
+/// "'theta_0' is nil, so theta0 is not given": for an undefined global, or a field, that is the whole value of an
+/// option in the text. A field counts only if another one has a similar name, as it may be missing on purpose.
 std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text);
 
-// What others write as a function, or as a row that is not there: max(v) for v:max(), and how many rows there are.
+// Methods called as functions, and missing elements: max(v) for v:max(), and the length of a list.
 
-/// The method that an argument has and that was called as a function: "; did you mean 'run.theta:max()'?", or "". To
-/// be asked while the call still stands on the stack.
+/// The method of an argument that was called as a function: "; did you mean 'run.theta:max()'?", or "". Call while the
+/// call is still on the stack.
 std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
 
-/// Of an index behind which there is nothing: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
+/// For an index beyond a list: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
 struct MissingElement {
     std::string end_of_sentence, culprit;
 };

@@ -95,7 +95,7 @@ std::optional<SourceText> source_of_frame(lua_State* L, lua_Debug& frame) {
 
 std::optional<SourceText> source_of_file(const std::string& path) {
     std::error_code wrong;
-    if (!std::filesystem::is_regular_file(path, wrong)) return std::nullopt;  // a pipe is read, /dev/zero has no end
+    if (!std::filesystem::is_regular_file(path, wrong)) return std::nullopt;  // /dev/zero has no end
     auto text = files::read_file(path);
     return text ? std::optional(SourceText{std::move(text).value()}) : std::nullopt;
 }

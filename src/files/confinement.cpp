@@ -10,14 +10,14 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path root;    // empty: files are not confined
-fs::path script;  // empty: there is none, or it cannot be found
+fs::path script;  // empty: none, or not found
 
-/// Where the path leads, all links followed; its last name need not exist. Empty when that cannot be said.
+/// The path with all links resolved; its last component need not exist. Empty on failure.
 fs::path real_path(const fs::path& path) {
     std::error_code error;
     const fs::file_status own = fs::symlink_status(path, error);
     if (fs::exists(own)) {
-        const fs::path real = fs::canonical(path, error);  // fails for a link that leads nowhere
+        const fs::path real = fs::canonical(path, error);  // fails for a dangling link
         return error ? fs::path() : real;
     }
     const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : fs::path("."), error);
@@ -34,7 +34,7 @@ void confine_files() {
     std::error_code error;
     root = fs::canonical(".", error);
     if (error) {
-        root = "/nowhere";  // the folder is gone: there is nothing to be read or written
+        root = "/nowhere";  // the folder is gone, so nothing may be accessed
     }
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks = ' ' };
 
-/// The end of the field at the front of `line`: the place of the separator, or the length of the line.
+/// The index of the end of the first field of `line`: the next separator, or the length of the line.
 std::size_t field_end(std::string_view line, Separator separator) {
     bool inside = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
@@ -36,7 +36,7 @@ std::size_t field_end(std::string_view line, Separator separator) {
     return line.size();
 }
 
-/// Whether each comma stands between two digits, as in "0,1\t0,25".
+/// Returns whether each comma is between two digits, as in "0,1\t0,25".
 bool has_decimal_commas_only(std::string_view line) {
     for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
         if (at == 0 || at + 1 == line.size() || !text::is_digit(line[at - 1]) || !text::is_digit(line[at + 1]))
@@ -45,7 +45,7 @@ bool has_decimal_commas_only(std::string_view line) {
     return true;
 }
 
-/// The first of these that stands in the line outside of quotes; nothing in a line of one field.
+/// The first kind of separator outside of quotes in the line; none for a single field.
 std::optional<Separator> separator_in(std::string_view line) {
     std::string bare;
     bool inside = false;
@@ -65,7 +65,7 @@ std::optional<Separator> separator_in(std::string_view line) {
     return std::nullopt;
 }
 
-/// The fields of a line, without the blanks around them; quotes stay.
+/// The fields of a line, without surrounding blanks; quotes stay.
 void split(std::string_view line, Separator separator, std::vector<std::string_view>& fields) {
     fields.clear();
     if (separator == Separator::blanks) {
@@ -79,12 +79,12 @@ void split(std::string_view line, Separator separator, std::vector<std::string_v
         }
         line.remove_prefix(end + 1);
         if (separator == Separator::blanks) {
-            line = text::trimmed(line);  // any number of them is one
+            line = text::trimmed(line);  // several blanks are one separator
         }
     }
 }
 
-/// Whether a field of the line begins with a quote that the line does not close. (One within a word is an inch.)
+/// Returns whether a field begins with a quote that the line does not close. (A quote within a word means inches.)
 bool is_left_open(std::string_view line) {
     const std::size_t last = line.rfind('"');
     if (last == std::string_view::npos || std::count(line.begin(), line.end(), '"') % 2 == 0) return false;
@@ -92,8 +92,7 @@ bool is_left_open(std::string_view line) {
     return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
 }
 
-/// The word in a field: without its quotes, doubled quotes inside made single. The number of the field when it is
-/// empty.
+/// The word in a field, without its quotes and with doubled quotes made single. For an empty field its number.
 std::string name_in(std::string_view field, std::size_t number) {
     const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
     std::string name;
@@ -159,7 +158,7 @@ private:
         std::size_t number;
     };
 
-    /// All lines that are neither blank nor a comment.
+    /// Collects all lines that are neither blank nor comments.
     std::optional<text::Error> collect_rows() {
         while (lines_.next()) {
             if (lines_.number() <= static_cast<std::size_t>(options_.skip)) continue;
@@ -178,7 +177,7 @@ private:
         return std::nullopt;
     }
 
-    /// "sep=;" is for Excel and no line of names.
+    /// Handles "sep=;", a line for Excel.
     bool take_separator_line() {
         if (rows_.empty()) return false;
         constexpr std::string_view key = "sep=";
@@ -192,7 +191,7 @@ private:
         return true;
     }
 
-    /// In a file of tabs too, unless it has decimal points: then 1,5 is a mistake.
+    /// Returns whether commas are decimal: also with tabs, unless there are decimal points, when 1,5 is an error.
     [[nodiscard]] bool decimal_comma() const {
         return separator_ == Separator::semicolon || (separator_ == Separator::tab && !has_points_);
     }
@@ -208,7 +207,7 @@ private:
         });
     }
 
-    /// "0,5" in quotes; with three digits behind it a comma may be one of thousands, unless others tell.
+    /// Handles "0,5" in quotes. Three digits after a comma may be thousands, unless other values decide.
     [[nodiscard]] bool has_decimal_commas_in_quotes() {
         bool tells = false;
         for (const Row& row : rows_) {
@@ -241,7 +240,7 @@ private:
         return !field.empty() && number_in(field).has_value();
     }
 
-    /// What was written last before a logger was switched off.
+    /// Drops the last line if a logger was switched off while writing it.
     void leave_out_cut_line() {
         if (!is_open_ || rows_.size() < 2) return;
         split(rows_.back().text, separator_, fields_);
@@ -250,7 +249,7 @@ private:
         rows_.pop_back();
     }
 
-    /// "t,100,200" is a line of names: in all other rows the first column has numbers.
+    /// Returns whether "t,100,200" is a line of names: the first column has numbers in all other rows.
     [[nodiscard]] bool is_word_above_numbers(std::string_view first) const {
         if (rows_.size() < 2 || first.empty() || is_number(first)) return false;
         std::vector<std::string_view> fields;
@@ -274,7 +273,8 @@ private:
         return std::nullopt;
     }
 
-    /// A line of words and gaps; under each word stand numbers. A column without a unit may have words.
+    /// Returns whether the second line has units: words and gaps, with numbers below each word. A column without a unit
+    /// may have words.
     [[nodiscard]] bool may_be_units() const {
         std::vector<std::string_view> units, fields;
         split(rows_.front().text, separator_, units);
@@ -303,7 +303,7 @@ private:
         }
     }
 
-    /// Takes a row of plain numbers, read where they stand. False when something in it wants a closer look.
+    /// Parses a row of plain numbers in place. Returns false if some field needs a closer look.
     bool take_plain(std::string_view line) {
         const char *at = line.data(), *const last = at + line.size();
         const char mark = static_cast<char>(separator_);
@@ -350,7 +350,7 @@ private:
         return std::nullopt;
     }
 
-    /// A column is known to be of words when all of it was seen, so these are read again.
+    /// Reads word columns again, as they are recognised only at the end.
     void take_words() {
         std::vector<ReadColumn>& columns = result_.columns;
         if (std::none_of(columns.begin(), columns.end(), [](const ReadColumn& c) { return c.of_words; })) return;
@@ -368,7 +368,7 @@ private:
     Lines lines_;
     const std::string& file_;
     const ReadOptions& options_;
-    bool is_open_;  // the text ends in the middle of a line
+    bool is_open_;  // whether the last line has no newline
     Separator separator_ = Separator::blanks;
     bool has_points_ = false, has_quoted_commas_ = false;
     std::vector<Row> rows_;
@@ -404,7 +404,7 @@ text::Expected<Table> table_of(ReadColumns content) {
 
 namespace {
 
-/// A comment may be a whole script: every line of it needs its own sign. A NUL would make the file unreadable.
+/// Writes a comment, possibly a whole script: each line needs its sign. A NUL would make the file unreadable.
 void write_comment(OutputFile& file, std::string text) {
     std::replace(text.begin(), text.end(), '\0', ' ');
     if (text.empty()) {
@@ -433,14 +433,14 @@ text::Expected<Written> write_csv(const std::string& path, std::span<const Named
 
 namespace {
 
-constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25; a power of two copies fast
+constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25; 32 copies fast
 
-/// A column on its way down. Friction, a pulse or a stuck mass repeat a value over many rows: its text is kept then.
+/// The last value of a column with its text. Friction, pulses or a stuck mass repeat values over many rows.
 struct Cell {
-    std::uint64_t bits = 0;  // of the value above; bits, because 0 and -0 are equal but not the same
-    std::size_t length = 0;  // of the kept text; 0 until the value is met a second time
+    std::uint64_t bits = 0;  // the value above; as bits, because 0 and -0 compare equal
+    std::size_t length = 0;  // length of the cached text; 0 until a value occurs twice
     char terminator = '\n';
-    std::string_view gap = {};  // stands for a nan
+    std::string_view gap = {};  // replaces nan
     std::array<char, cell_size> text{};
 };
 
@@ -466,7 +466,7 @@ char* format(char* place, double value, const Cell& cell) {
     return end;
 }
 
-/// Puts the text of a value; returns its end, or null when it is a gap that is refused.
+/// Writes the text of a value; returns its end, or null for a gap that is refused.
 char* put(char* place, double value, Cell& cell, Gaps gaps) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     if (bits != cell.bits) {
@@ -477,7 +477,7 @@ char* put(char* place, double value, Cell& cell, Gaps gaps) {
     if (cell.length == 0) {
         cell.length = static_cast<std::size_t>(format(cell.text.data(), value, cell) - cell.text.data());
     }
-    std::memcpy(place, cell.text.data(), cell_size);  // all of it: a fixed size is two instructions
+    std::memcpy(place, cell.text.data(), cell_size);  // a copy of fixed size takes two instructions
     return place + cell.length;
 }
 
@@ -491,7 +491,7 @@ std::optional<text::Error> write_lines(OutputFile& file, std::span<const NamedCo
     }
     const std::size_t rows = length_of(columns.front());
     std::vector<Cell> cells(columns.size());
-    if (columns.size() == 1) cells.front().gap = "nan";  // an empty line would be no row
+    if (columns.size() == 1) cells.front().gap = "nan";  // an empty line would not be a row
     for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
         cells[i].terminator = separator;
     }

@@ -1,4 +1,4 @@
-// Comma separated values: our own files read back exactly, those of strangers are read when they can be understood.
+// Comma-separated values: own files are read back exactly, others as far as they can be understood.
 #pragma once
 
 #include <functional>
@@ -13,53 +13,53 @@
 
 namespace dinal::files {
 
-/// A column is of numbers when every field of it is one, or empty (nan), or "nan", "inf"; else of words.
+/// A column has numbers if every field is one, or empty (nan), or "nan", "inf"; otherwise words.
 struct ReadColumn {
     std::string name;
     std::vector<double> numbers;
     std::vector<std::string> words;
     bool of_words = false;
     std::string unit = {};
-    std::string fault = {};  ///< about the first field that is no finite number: "run.csv:3: column 2 is empty"
+    std::string fault = {};  ///< describes the first field that is not a finite number: "run.csv:3: column 2 is empty"
 };
 struct ReadColumns {
-    std::vector<ReadColumn> columns;  ///< of one length, each name once
+    std::vector<ReadColumn> columns;  ///< of equal length, with unique names
     std::vector<std::string> comments;
-    std::size_t cut = 0;  ///< the number of the last line, where it ends in the middle and is left out; else 0
+    std::size_t cut = 0;  ///< number of an incomplete last line that was dropped; otherwise 0
 };
 
-/// What a user says of a file that others have written.
+/// A user's instructions for reading a foreign file.
 struct ReadOptions {
-    int skip = 0;                         ///< lines before the names
-    std::vector<std::string> names = {};  ///< of the columns, instead of those in the file
+    int skip = 0;                         ///< lines to skip before the names
+    std::vector<std::string> names = {};  ///< column names that replace those in the file
 };
 
-/// Lines that begin with # are comments and blank lines are skipped. The separator (semicolon, comma, tab or blanks) is
-/// taken from the second line; with semicolons a decimal comma is one. The first line has the names unless it has a
-/// number: then they are "1", "2", ... Where words stand under the names and numbers only in all lines below them, the
-/// words are the units. A number in quotes may have a decimal comma. A last line without its end and with too few
-/// fields was cut off, and is left out. Errors name the file and the line.
+/// Lines beginning with # are comments; blank lines are skipped. The second line determines the separator (semicolon,
+/// comma, tab or blanks); with semicolons, commas are decimal. The first line has the names unless it contains a
+/// number: then they are "1", "2", ... Words under the names are units if all lines below have numbers only. A quoted
+/// number may have a decimal comma. An incomplete last line with too few fields is dropped. Errors name the file and
+/// the line.
 text::Expected<ReadColumns> read_columns(const std::string& path, const ReadOptions& options = {});
 
-/// The same of a text in memory; `name` stands for the file in errors.
+/// The same for text in memory; errors use `name` as the file.
 text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name,
                                           const ReadOptions& options = {});
 
-/// Fails where a field is no finite number.
+/// Fails if a field is not a finite number.
 text::Expected<Table> table_of(ReadColumns content);
 
-/// Comments (each line behind "# "), the line of names, the rows. read_columns gives back the same bits.
+/// Writes comments (each line after "# "), the line of names, and the rows. read_columns restores the same bits.
 text::Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn> columns,
                                   std::span<const std::string> comments = {}, Gaps gaps = Gaps::refused);
 
-// Columns of numbers as lines of text, for the writers of this folder.
+// Columns of numbers as text, for the writers of this folder.
 
-/// A whole file: what `head` writes, then one line for each row, the shortest text of each number that reads back as
-/// the same double, `separator` between. Fails when columns differ in length, or hold a gap that is refused.
+/// Writes a whole file: the output of `head`, followed by a line for each row with the shortest texts that read back
+/// exactly, joined by `separator`. Fails if columns differ in length or contain a refused gap.
 text::Expected<Written> write_rows(const std::string& path, std::span<const NamedColumn> columns, char separator,
                                    const std::function<void(OutputFile&)>& head, Gaps gaps = Gaps::refused);
 
-/// A word that reads back as the same word, and not as a number or a comment.
+/// A word as a field that reads back as the same word, rather than as a number or comment.
 std::string field_of(std::string_view word);
 
 }  // namespace dinal::files

@@ -23,7 +23,7 @@ namespace dinal::files {
 
 namespace {
 
-constexpr std::size_t largest_file = std::size_t{4} << 30;  // /dev/zero never ends
+constexpr std::size_t largest_file = std::size_t{4} << 30;  // limits devices such as /dev/zero
 
 text::Error can_not_read(const std::string& path, const std::string& why) {
     return {.sentence = "cannot read '" + path + "': " + why, .culprit = path};
@@ -88,7 +88,7 @@ bool shall_stop() noexcept {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;  // stays in the second-level cache
-constexpr int most_links = 40;                             // as the kernel has it
+constexpr int most_links = 40;                             // as in the kernel
 
 std::string reason(int error) {
     return std::generic_category().message(error);
@@ -98,7 +98,7 @@ text::Error can_not_write(const std::string& path, const std::string& why) {
     return {.sentence = "cannot write '" + path + "': " + why, .culprit = path};
 }
 
-/// The system would silently take the part before the NUL for the whole name.
+/// The system would silently cut the name at a NUL.
 bool has_nul(const std::string& path) {
     return path.find('\0') != std::string::npos;
 }
@@ -108,7 +108,7 @@ std::string folder_of(const std::string& path) {
     return slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
 }
 
-/// 1 for /dev/stdout and its like. Opening these by name would start again at the beginning of a redirected file.
+/// 1 for /dev/stdout etc. Opening these by name would restart at the beginning of a redirected file.
 std::optional<int> open_descriptor(std::string_view path) {
     if (path == "/dev/stdout") {
         return STDOUT_FILENO;
@@ -129,13 +129,13 @@ std::optional<int> open_descriptor(std::string_view path) {
     return std::nullopt;
 }
 
-/// A new file for the text to wait in, in the folder where it will end. NOTE: open() rather than mkstemp(), so that the
-/// umask and the folder's default rights apply as to any new file.
+/// Creates a temporary file in the destination's folder. NOTE: open() rather than mkstemp(), so that umask and the
+/// folder's default permissions apply.
 int create_temporary(const std::string& folder, std::string& name) {
     static std::atomic<unsigned> serial{0};
     for (int attempt = 0; attempt < 100; ++attempt) {
         name = folder + ".dinal-" + std::to_string(::getpid()) + "-" + std::to_string(++serial) + ".tmp";
-        note_temporary(name);  // before it is there: the signal may come at once
+        note_temporary(name);  // before it exists, as a signal may come at once
         const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             return descriptor;
@@ -164,7 +164,7 @@ text::Expected<OutputFile> OutputFile::create(const std::string& path) {
     std::error_code none;
     for (int link = 0; link < most_links; ++link) {
         if (const std::optional<int> number = open_descriptor(place.native())) {
-            // What was printed before shall stand before.
+            // Earlier output must come first.
             if (std::fflush(*number == STDERR_FILENO ? stderr : stdout) != 0) {
                 return can_not_write(path, reason(errno));
             }
@@ -173,7 +173,7 @@ text::Expected<OutputFile> OutputFile::create(const std::string& path) {
         if (!fs::is_symlink(place, none)) {
             break;
         }
-        place = place.parent_path() / fs::read_symlink(place, none);  // a relative one is seen from the link
+        place = place.parent_path() / fs::read_symlink(place, none);  // a relative target is relative to the link
     }
     const std::string& target = place.native();
     struct stat status {};
@@ -202,7 +202,7 @@ text::Expected<OutputFile> OutputFile::beside(const std::string& target, const s
     if (target.empty() || folder.size() == target.size()) {
         return can_not_write(path, "there is no file name");
     }
-    // A rename needs no right to write the old file, but a write-protected one is meant to stay.
+    // A rename needs no permission to write the old file, but a write-protected file should stay.
     if (old != nullptr && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) {
         return can_not_write(path, reason(errno));
     }
@@ -218,7 +218,7 @@ text::Expected<OutputFile> OutputFile::beside(const std::string& target, const s
     file.temporary_ = temporary;
     file.replaces_ = old != nullptr;
     if (old != nullptr) {
-        // Only root can give a file away; for anyone else the new file is his own, as with every editor.
+        // Only root can change the owner; for others the new file is their own, as with editors.
         [[maybe_unused]] const int owner = ::fchown(descriptor, old->st_uid, old->st_gid);
         if (::fchmod(descriptor, old->st_mode & 0777U) != 0) {
             return can_not_write(path, reason(errno));
@@ -282,7 +282,7 @@ void OutputFile::used(const char* end) {
 void OutputFile::flush() {
     std::size_t done = 0;
     failure_ = failure_ == 0 && shall_stop() ? ECANCELED : failure_;
-    // EINTR is a failure like any other: it is Ctrl-C while a pipe's reader sleeps.
+    // EINTR counts as a failure: it is Ctrl-C while the reader of a pipe sleeps.
     while (failure_ == 0 && done < filled_) {
         const ssize_t count = ::write(descriptor_, buffer_.data() + done, filled_ - done);
         if (count <= 0) {
@@ -345,7 +345,7 @@ std::optional<text::Error> Journal::add(std::string_view line) const {
 
 namespace {
 
-constexpr int slots = 64;  // as many files may be written at once; of more than that some would be left behind
+constexpr int slots = 64;  // number of files tracked at once; further ones would be left behind
 constexpr std::size_t longest_name = 4096;
 
 enum class Use { free, filling, taken };
@@ -365,7 +365,7 @@ extern "C" void end_by_signal(int signal) {
     action.sa_handler = SIG_DFL;
     sigemptyset(&action.sa_mask);
     ::sigaction(signal, &action, nullptr);
-    static_cast<void>(::raise(signal));  // when the handler has returned
+    static_cast<void>(::raise(signal));  // takes effect when the handler has returned
 }
 
 extern "C" void do_nothing(int) {}
@@ -404,7 +404,7 @@ void forget_temporary(const std::string& name) {
 
 void clean_up_on_signals() {
     for (const int signal : {SIGTERM, SIGHUP, SIGQUIT}) install(signal, end_by_signal, SA_RESTART);
-    install(SIGXFSZ, do_nothing, SA_RESTART);  // and the write fails with EFBIG
+    install(SIGXFSZ, do_nothing, SA_RESTART);  // so that the write fails with EFBIG
 }
 
 }  // namespace dinal::files

@@ -30,7 +30,7 @@ std::optional<Integer> parse_integer(std::string_view text) {
     return fault == std::errc() && end == last ? std::optional(value) : std::nullopt;
 }
 
-/// The next value of a line, cut off its front: values are separated by blanks or by a comma. Empty at the end.
+/// Takes the next value off the line: values are separated by blanks or a comma. Empty at the end.
 std::string_view take_value(std::string_view& line) {
     line = text::trimmed(line);
     const std::size_t end = std::min(line.find_first_of(" \t,"), line.size());
@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    /// NPUNT, alone in the first line that is not blank.
+    /// Reads NPUNT, alone in the first line that is not blank.
     std::optional<text::Error> take_count() {
         while (lines_.next()) {
             const std::string_view line = text::trimmed(lines_.text());
@@ -90,7 +90,8 @@ private:
         return text::Error{file_ + ": the file is empty, it should begin with NPUNT, the number of rows"};
     }
 
-    /// All values of a line. A row begins in a new line, as every Fortran READ does, and may go on in further lines.
+    /// Reads all values of a line. A row begins on a new line, like every Fortran READ, and may continue on further
+    /// lines.
     std::optional<text::Error> take_line() {
         std::string_view rest = lines_.text();
         if (text::trimmed(rest).empty()) {
@@ -108,12 +109,12 @@ private:
         return std::nullopt;
     }
 
-    /// One value, which can stand for several: 3*0.0 is three zeros. `full` is how many numbers end the row.
+    /// Reads one value, which may be repeated: 3*0.0 is three zeros. `full` is the number of values in a row.
     std::optional<text::Error> take(std::string_view value, std::size_t full) {
         std::size_t repeats = 1;
         if (const std::size_t star = value.find('*'); star != std::string_view::npos) {
             const std::optional<std::size_t> count = parse_integer<std::size_t>(value.substr(0, star));
-            if (count && *count > 0) {  // otherwise stars stand for a number too wide for its field: no number
+            if (count && *count > 0) {  // stars without a count mark a number too wide for its field
                 repeats = *count;
                 value.remove_prefix(star + 1);
             }
@@ -135,7 +136,7 @@ private:
     Lines lines_;
     const std::string& file_;
     std::uint64_t promised_ = 0;
-    std::size_t row_begin_ = 0;    // the line in which the latest row begins
+    std::size_t row_begin_ = 0;    // line in which the latest row begins
     std::vector<double> numbers_;  // row after row
 };
 

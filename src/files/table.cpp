@@ -7,7 +7,7 @@
 namespace dinal::files {
 namespace {
 
-/// "t, theta, M"; a long list is cut, because a sentence should stay one.
+/// "t, theta, M"; a long list is cut to fit in a sentence.
 std::string list_of(std::span<const std::string> names) {
     constexpr std::size_t most = 12;
     std::string list;

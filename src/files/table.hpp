@@ -1,4 +1,4 @@
-// Named columns of numbers, as they come from a file and go to one.
+// Named columns of numbers, from or for a file.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,25 +15,25 @@ namespace dinal::files {
 struct Table {
     std::vector<std::string> names;     ///< one for each column of `values`
     Eigen::MatrixXd values;             ///< column-major: a column is contiguous
-    std::vector<std::string> comments;  ///< lines, without the sign that makes them comments
+    std::vector<std::string> comments;  ///< lines without comment signs
 };
 
-/// A column to be written: its words, or else its numbers. It refers to them.
+/// A view of a column to be written: its words, or otherwise its numbers.
 struct NamedColumn {
     std::string_view name;
     std::span<const double> values = {};
     std::span<const std::string> words = {};
 };
 
-/// Whether a nan (an empty field) and an infinity may be written.
+/// The treatment of nan (an empty field) and infinity.
 enum class Gaps { refused, written };
 
-/// All columns of a matrix in their order (to write some of them, pick from the result).
+/// All columns of a matrix in order (select from the result to write some).
 std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
                                        const Eigen::Ref<const Eigen::MatrixXd>& values);
 
-/// The index (from 0) of the column with that name, or with that number (from 1, as users count).
-/// Fails with the list of the columns there are, and a suggestion when one is spelt like it.
+/// The index (from 0) of the column with that name or number (from 1).
+/// Fails with the list of columns, and a suggestion if one has a similar name.
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);
 

@@ -21,7 +21,7 @@ std::string_view without_plus(std::string_view field) {
     return plus ? field.substr(1) : field;
 }
 
-/// std::from_chars calls too large and too small by the same name. Too small is rounded: to zero, with its sign.
+/// std::from_chars reports overflow and underflow alike. Underflow is rounded to zero, with its sign.
 std::optional<double> rounded_underflow(std::string_view field) {
     const double value = std::strtod(std::string(field).c_str(), nullptr);
     return std::fabs(value) < 1 ? std::optional(value) : std::nullopt;
@@ -40,7 +40,7 @@ bool is_too_large(std::string_view field) {
     return std::from_chars(field.data(), field.data() + field.size(), value).ec == std::errc::result_out_of_range;
 }
 
-/// 1,5 but not 1,2,3.
+/// Parses 1,5 but not 1,2,3.
 std::optional<double> with_decimal_comma(std::string field) {
     const std::size_t comma = field.find(',');
     if (comma == std::string::npos) return std::nullopt;
@@ -55,7 +55,7 @@ Lines::Lines(std::string_view text) : rest_(text) {
     if (rest_.starts_with(byte_order_mark)) {
         rest_.remove_prefix(byte_order_mark.size());
     }
-    // Looking for both kinds of line end in every line would scan the whole rest for the kind that is absent.
+    // Decided once: searching each line for both kinds of line end would scan the whole rest for the absent one.
     has_lone_cr_ = rest_.find('\n') == std::string_view::npos || rest_.find('\r') != std::string_view::npos;
 }
 
@@ -115,7 +115,7 @@ std::optional<double> parse_fortran_number(std::string_view field) {
             return std::nullopt;
         }
         const bool is_letter = c == 'D' || c == 'd' || c == 'Q' || c == 'q' || c == 'E' || c == 'e';
-        // Exponents of three digits push their letter out: 1.5+300.
+        // Three-digit exponents displace their letter: 1.5+300.
         const bool lost_its_letter = (c == '+' || c == '-') && length > 0 && !has_exponent;
         const bool begins_exponent = !has_exponent && (is_letter || lost_its_letter);
         if (begins_exponent) {

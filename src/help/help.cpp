@@ -34,7 +34,7 @@ std::string text_about_page(lua_State* L) {
                                      : "the tour has pages 1 to " + std::to_string(last) + "\n";
 }
 
-/// "math.sin" for that function of Lua, "" for other values.
+/// "math.sin" for that Lua function, "" for other values.
 std::string name_in_lua(lua_State* L, int index) {
     for (const std::string_view word : lua_words()) {
         const int top = lua_gettop(L);
@@ -58,7 +58,7 @@ std::string text_about_value(lua_State* L, const terminal::Display& screen) {
         return tour_page(1);
     }
     if (lua_isnil(L, 1)) {
-        // help(nothing_of_that_name) comes here.
+        // help(undefined_name) also arrives here.
         return "nil has no help; put the name in quotes: help \"simulate\"\n";
     }
     if (lua_type(L, 1) == LUA_TSTRING) {

@@ -1,4 +1,4 @@
-// Which entries belong to a name or to words that somebody asks help() about.
+// Finds the entries for a name or for words passed to help().
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,19 +18,19 @@
 
 namespace dinal::help {
 
-// Words that are no names of dinal, and that somebody asks help about all the same.
+// Words outside of dinal's names that users ask help about.
 
-/// A few lines about the topic that has most of the words, whose case does not matter; empty if there is none.
+/// Some lines about the topic that shares most words, ignoring case; empty if there is none.
 std::string_view topic(std::string_view words);
 
-/// Our words for those of another language, friction for Reibung; the other words stay.
+/// Translates words of other languages, such as Reibung to friction; others stay.
 std::string in_english(std::string_view words);
 
 namespace {
 
 struct Hit {
     const Section* section;
-    const lua::Member* member;  // none: the section itself
+    const lua::Member* member;  // null: the section itself
 };
 
 std::string hit_text(const Hit& hit, const terminal::Display& screen) {
@@ -41,7 +41,7 @@ std::string hit_line(const Hit& hit, const terminal::Display& screen) {
     return line_about(listed_name(*hit.section, *hit.member), hit.member->doc.summary, screen);
 }
 
-// A user may write sys.simulate, sys:simulate, system:simulate or simulate.
+// Accepts sys.simulate, sys:simulate, system:simulate and simulate.
 bool has_name(const Section& section, const lua::Member& member, std::string_view name) {
     if (member.kind == lua::Kind::metamethod) {
         return false;
@@ -56,7 +56,7 @@ bool has_name(const Section& section, const lua::Member& member, std::string_vie
             (owner == "dinal" && *section.prefix == '\0'));
 }
 
-/// Globals first: `excitation` is the module and its class, although run.excitation is a field, too.
+/// Entries with this name, globals first: `excitation` is the module and its class rather than run.excitation.
 std::vector<Hit> named(std::string_view name) {
     std::vector<Hit> globals;
     std::vector<Hit> others;
@@ -74,20 +74,20 @@ std::vector<Hit> named(std::string_view name) {
     return globals.empty() ? others : globals;
 }
 
-/// Those of a method of an object of the user's own: help "rig:simulate", where rig is his variable.
+/// The methods behind a name that only the user knows: help "rig:simulate", where rig is his variable.
 std::vector<Hit> named_by_method(std::string_view name) {
     const std::size_t separator = name.find_last_of(".:");
     return separator == std::string_view::npos ? std::vector<Hit>{} : named(name.substr(separator + 1));
 }
 
-/// Lower case, and dead_zone is found as "dead zone".
+/// Lower case, with blanks for underscores: "dead zone" finds dead_zone.
 std::string searchable(std::string_view text) {
     std::string result = text::lower(text);
     std::replace(result.begin(), result.end(), '_', ' ');
     return result;
 }
 
-/// Does every word stand somewhere in the text? Both are searchable().
+/// Returns whether each word occurs in the text. Both must be searchable().
 bool has_words(const std::string& text, const std::string& wanted) {
     for (std::size_t at = 0; at < wanted.size();) {
         const std::size_t end = std::min(wanted.find(' ', at), wanted.size());
@@ -107,7 +107,7 @@ std::string option_meanings(const lua::Doc& doc) {
     return text;
 }
 
-/// What `one` says about each call that has an option of this name.
+/// Applies `one` to each call that has an option of this name, and joins the results.
 template <class One>
 std::string about_option(std::string_view name, const One& one) {
     std::string text;
@@ -123,7 +123,7 @@ std::string about_option(std::string_view name, const One& one) {
     return text;
 }
 
-/// Those with the words in their names first.
+/// Entries that contain the words, first those with the words in their names.
 std::vector<Hit> mentioning(std::string_view words) {
     std::vector<Hit> in_name;
     std::vector<Hit> elsewhere;
@@ -144,7 +144,7 @@ std::vector<Hit> mentioning(std::string_view words) {
     return in_name;
 }
 
-/// A name or an option, else one of the longer words of all summaries.
+/// The most similar name or option, otherwise the most similar longer word in the summaries.
 std::string likely(std::string_view word) {
     constexpr std::size_t shortest = 6;
     std::vector<std::string> names;
@@ -229,7 +229,7 @@ std::vector<std::string> help_option_names() {
 
 namespace {
 
-/// Entries, options and mentions; empty when there are none.
+/// Entries, options and mentions; empty without any.
 std::string found_about(std::string_view words, const terminal::Display& screen) {
     constexpr std::size_t most = 10;
     std::string text;
@@ -260,7 +260,7 @@ std::string found_about(std::string_view words, const terminal::Display& screen)
     return text;
 }
 
-/// "how do I fit a record" without the words that every question has.
+/// A question without common words: "how do I fit a record" becomes "fit record".
 std::string without_small_words(std::string_view question) {
     constexpr std::array<std::string_view, 22> small = {"how", "do",   "i",   "a",  "an",   "the", "to",   "can",
                                                         "is",  "are",  "of",  "my", "for",  "in",  "what", "which",
@@ -321,12 +321,12 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
 namespace {
 
 struct Topic {
-    std::string_view words;  // in lower case; one of them is enough
+    std::string_view words;  // words in lower case; one match is enough
     std::string_view text;
-    std::string_view more = {};  // two of them are enough
+    std::string_view more = {};  // two matches are enough
 };
 
-// No line is longer than 77 columns. A test looks for every name that stands here.
+// Lines have at most 77 columns. A test checks every name in these texts.
 constexpr std::array<Topic, 52> topics = {{
     {"degrees degree deg radians radian angle angles",
      "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\nmakes radians of 90 degrees, "
@@ -521,7 +521,7 @@ constexpr std::array<Topic, 52> topics = {{
      "suspends dinal, and fg brings it back. load and excitation.samples read files.\n"},
 }};
 
-/// Words of other languages, and ours for the same.
+/// Words of other languages with their English translations.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign = {{
     {"reibung rozamiento friccion fricción frottement attrito", "friction"},
     {"feder muelle resorte ressort molla", "spring"},
@@ -544,7 +544,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign 
 }};
 
 bool has_word(std::string_view words, std::string_view wanted) {
-    for (std::size_t begin = 0; begin < words.size();) {  // not tokens: a letter of these may be none of Lua
+    for (std::size_t begin = 0; begin < words.size();) {  // not tokens: these letters may be invalid in Lua
         const std::size_t end = std::min(words.find(' ', begin), words.size());
         if (words.substr(begin, end - begin) == wanted) return true;
         begin = end + 1;

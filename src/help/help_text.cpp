@@ -22,7 +22,7 @@ std::string first_sentence(std::string_view summary) {
     return std::string(stop == std::string_view::npos ? summary : summary.substr(0, stop + 1));
 }
 
-/// A line of Lua in rows of `width`: what follows --> begins a new one, the rest is cut between tokens.
+/// A line of Lua in rows of `width`: broken before -->, otherwise between tokens.
 std::string code_in_rows(std::string_view line, std::size_t width) {
     constexpr std::size_t indent = 4;
     std::string rows;
@@ -58,7 +58,7 @@ std::string indented(std::string_view text, std::size_t width) {
     return result;
 }
 
-/// A name, and the text about it in rows of a column of its own, or below the name where the screen is narrow.
+/// A name and its text: in two columns, or one below the other on a narrow screen.
 std::string two_columns(std::string_view name, std::string_view about, std::size_t indent,
                         const terminal::Display& screen) {
     const std::size_t width = text_width(screen);
@@ -91,7 +91,7 @@ std::string doc_text(const lua::Doc& doc, const terminal::Display& screen) {
         screen);
 }
 
-/// Does the text use the name as a name of its own, not as a part of another?
+/// Returns whether the text contains the name as a whole name.
 bool mentions(std::string_view text, std::string_view name) {
     for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
         const std::size_t end = at + name.size();
@@ -115,7 +115,7 @@ public:
     std::vector<std::string> list;
 };
 
-/// A name of one plain word ("system", "v") is too common a word to count as a mention.
+/// Returns whether a name is specific enough for a mention to count: not a single plain word such as "system" or "v".
 bool telling(std::string_view name) {
     return name.find_first_of(".:") != std::string_view::npos;
 }
@@ -136,12 +136,13 @@ std::string listed_name(const Section& section, const lua::Member& member) {
     return written_name(section, member);
 }
 
-// What the entry mentions, what it gives, what mentions it, and its neighbours: nobody has to keep a list of these.
+// Names that the entry mentions, its result's class, entries that mention it, and its neighbours; derived, so that no
+// list needs maintenance.
 std::vector<std::string> see_also(const Section& section, const lua::Member& member) {
     Names names;
     const std::string own = written_name(section, member);
     std::vector<std::string> mentioning;
-    std::vector<std::string> alike;  // those after the member, then those before it
+    std::vector<std::string> alike;  // members after this one, followed by those before it
     std::size_t before = 0;
     for (const Section& other_section : sections()) {
         for (const lua::Member& other : other_section.description->members) {
@@ -159,7 +160,7 @@ std::vector<std::string> see_also(const Section& section, const lua::Member& mem
             }
         }
     }
-    const Section* result = result_class(member.doc.signature);
+    const Section* result = section_of_result(member.doc.signature);
     if (result != nullptr && result->description != section.description) {
         names.add(result->description->name);
     }

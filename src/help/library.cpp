@@ -1,4 +1,4 @@
-// The list of all that Lua can see. A new class is a bind_*.cpp, a line in each of the two lists here, and its tests.
+// The list of everything that Lua sees. A new class is a bind_*.cpp, a line in both lists here, and its tests.
 #include "help/library.hpp"
 
 #include "api/classes.hpp"
@@ -88,7 +88,7 @@ const Section all_sections[] = {
     {"The table dinal", "dinal", &library_class},
 };
 
-// dinal.partial is nil until a run fails, so a name that is not there cannot simply be an error.
+// dinal.partial is nil until a run fails, so it must not be an unknown name.
 int unknown_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING || std::string_view(lua_tostring(L, 2)) == "partial") {
         return 0;
@@ -107,7 +107,7 @@ std::span<const Section> sections() {
 }
 
 void open_library(lua_State* L) {
-    lua::set_library(open_library);  // for the workers of a sweep
+    lua::set_library(open_library);  // for workers of a sweep
     lua::set_witness(L, errors::first_remarks);
     lua::open_coroutines(L);
     lua::open_terminal_output(L);

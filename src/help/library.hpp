@@ -1,4 +1,4 @@
-// The map of the Lua API: everything that Lua can see is registered, and listed in the manual, from here.
+// The map of the Lua API, from which everything is registered and listed in the manual.
 #pragma once
 
 #include <span>
@@ -7,13 +7,13 @@
 
 namespace dinal::help {
 
-/// Makes the table `dinal` (also for require "dinal"), copies its members into _G and tracks coroutines for Ctrl-C.
+/// Makes the table `dinal` (also for require "dinal"), copies its members to _G and tracks coroutines for Ctrl-C.
 void open_library(lua_State* L);
 
-/// Everything that Lua can see, in the order of the manual. A section is a module, a class of objects, or functions.
+/// All sections of the API in the order of the manual. A section is a module, a class or a set of functions.
 struct Section {
     const char* title;   ///< "excitation", "An excitation"
-    const char* prefix;  ///< what stands before a member: "excitation.", "e:", ""
+    const char* prefix;  ///< prefix of a member: "excitation.", "e:", ""
     const lua::Class* description;
 };
 std::span<const Section> sections();

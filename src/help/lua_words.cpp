@@ -9,10 +9,10 @@ namespace dinal::help {
 namespace {
 
 struct Word {
-    std::string_view names;  // the first is how Lua writes it
+    std::string_view names;  // the first is Lua's spelling
     std::string_view signature;
     std::string_view meaning;
-    std::string_view example;  // the lines that it prints stand behind -->, with ", " between them
+    std::string_view example;  // lines of Lua; their output, joined by ", ", follows -->
 };
 
 constexpr std::array<Word, 65> vocabulary = {{

@@ -1,4 +1,4 @@
-// The words and standard functions of Lua, for those who know another language: `?for`, `?math.sin`.
+// Keywords and standard functions of Lua, for users of other languages: `?for`, `?math.sin`.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace dinal::help {
 
-/// A line that says what the word is, and lines that run; empty if Lua has no such word.
+/// An explanation and lines that run; empty if Lua has no such word.
 std::string lua_word(std::string_view word);
 
-/// All such words, "math.cos" among them.
+/// All such words, including "math.cos" etc.
 std::vector<std::string_view> lua_words();
 
 }  // namespace dinal::help

@@ -17,7 +17,7 @@ namespace dinal::help {
 
 namespace {
 
-/// The place of a heading in a page, as GitHub names it.
+/// The anchor of a heading, as GitHub forms it.
 std::string anchor(std::string_view title) {
     std::string place;
     for (const char c : text::lower(title)) {
@@ -46,7 +46,7 @@ const std::vector<Page>& manual_pages() {
         {"theory", "closed forms", {"Theory"}},
         {"data", "vectors and data", {"Vectors", "A vector", "Data", "Named columns"}},
         {"pictures", "pictures and reports", {"Plots", "A picture", "Reports", "A report", "Progress"}},
-        {"program", "the lab, help, the table dinal", {}},  // and all that is in none of the others
+        {"program", "the lab, help, the table dinal", {}},  // and everything that no other page has
     };
     return all;
 }
@@ -59,7 +59,7 @@ const Page& page_of(const Section& section) {
     return found == manual_pages().end() ? manual_pages().back() : *found;
 }
 
-/// What a function draws, where a picture of the documents shows it.
+/// A picture in the documents that shows what a function draws.
 struct Drawing {
     std::string_view name, file, words;
 };
@@ -74,7 +74,7 @@ constexpr Drawing drawings[] = {
      "A map of the amplitude over speed and damping, with lines of folds and Hopf points"},
 };
 
-/// Without the limits of a number, which an error states: "(s, must be positive)" becomes "(s)".
+/// Removes the limits of a number, which error messages state: "(s, must be positive)" becomes "(s)".
 std::string without_limits(std::string meaning) {
     const std::size_t must = meaning.rfind("must ");
     if (must == std::string::npos || !meaning.ends_with(")") || must < 2) return meaning;
@@ -89,7 +89,7 @@ std::string listed(const OptionLine& line) {
     return fmt::format("- `{}`: {}\n", line.name, without_limits(line.meaning));
 }
 
-/// What an option means, without its default and whether it is needed: sys:with has the options of system without them.
+/// The meaning of an option without its default and need: sys:with has the options of system without these.
 std::string sense(const OptionLine& line) {
     std::string meaning = without_limits(line.meaning);
     const std::size_t needed = meaning.rfind("needed)");
@@ -100,7 +100,7 @@ std::string sense(const OptionLine& line) {
 
 /// An option with the number of calls that have it in the same sense.
 struct Listed {
-    std::string sense, words;  ///< words as in the first of the calls
+    std::string sense, words;  ///< the words of the first of these calls
     std::string_view name;
     int calls = 1;
 };
@@ -160,10 +160,10 @@ constexpr Task tasks[] = {
     {"pictures", "plot, run:plot, d:plot, run:phase_plot, run:animate"},
 };
 
-/// Writes entries; a page has no options that stand in `shared`, and an example for each section only.
+/// Writes entries. Pages omit options in `shared`, and have one example for each section.
 struct Writer {
     std::string text;
-    bool all = false;  ///< every entry by itself, with its example
+    bool all = false;  ///< whether every entry is complete, with its example
     std::vector<Listed> shared = {};
 
     void options(const text::Call& call) {
@@ -201,7 +201,7 @@ struct Writer {
         };
         bool any = false;
         for (const lua::Member& member : section.description->members) {
-            // That each object has a text stands on the first page.
+            // tostring of each object is described on the first page.
             if (!in_list(member) || std::string_view(member.doc.signature).starts_with("tostring(")) continue;
             if (!any) text += "\n";
             any = true;
@@ -222,7 +222,7 @@ struct Writer {
     }
 };
 
-/// All names of a section, each with the place where it stands.
+/// All names of a section, each linked to its place.
 std::string index_of(const Section& section, const Page& topic) {
     std::string text = fmt::format("[{}](manual/{}.md#{}):", section.title, topic.name, anchor(section.title));
     for (const lua::Member& member : section.description->members) {

@@ -36,7 +36,7 @@ std::string option_list(std::span<const text::Option> options) {
 std::string signature(const lua::Doc& doc) {
     std::string text = doc.signature;
     for (const text::Call* call : calls_of(doc)) {
-        const bool none = call->options.empty();  // then the blanks around them go, too
+        const bool none = call->options.empty();  // then the blanks around OPTIONS go, too
         const std::size_t place = text.find(options_mark) - (none ? 1 : 0);
         text.replace(place, options_mark.size() + (none ? 2 : 0), option_list(call->options));
     }
@@ -89,7 +89,7 @@ std::vector<OptionLine> option_lines(std::span<const text::Option> options) {
         }
         if (option.range.must != std::string_view(text::any_finite.must)) {
             const std::string_view must = option.range.must;
-            facts.push_back(fmt::format("must {}", must.substr(0, must.find(':'))));  // not why
+            facts.push_back(fmt::format("must {}", must.substr(0, must.find(':'))));  // without the reason
         }
         if (!option.choices.empty()) {
             facts.push_back(fmt::format("\"{}\"", fmt::join(option.choices, "\", \"")));
@@ -115,7 +115,7 @@ char call_bracket(std::string_view signature) {
     return open == std::string_view::npos ? ' ' : signature[open];
 }
 
-const Section* result_class(std::string_view signature) {
+const Section* section_of_result(std::string_view signature) {
     const std::size_t arrow = signature.find("-> ");
     if (arrow == std::string_view::npos) {
         return nullptr;

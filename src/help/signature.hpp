@@ -1,4 +1,4 @@
-// What the signature in a Doc says, for completion and hints: "sys:simulate{ M = 0, t_end, dt | times } -> run".
+// Parses the signatures of a Doc for completion and hints: "sys:simulate{ M = 0, t_end, dt | times } -> run".
 #pragma once
 
 #include <string>
@@ -9,36 +9,36 @@
 
 namespace dinal::help {
 
-/// How a table of options is passed: f{ ... }, f(..., { ... }), or f{ { ... } }, as a curve of a plot.
+/// The way a table of options is passed: f{ ... }, f(..., { ... }), or f{ { ... } } as for a curve of a plot.
 enum class Braces { alone, in_parentheses, nested };
 
-/// The whole signature: the options of the calls stand where the Doc says OPTIONS.
+/// The whole signature, with the options of the calls in place of OPTIONS.
 std::string signature(const lua::Doc& doc);
 
-/// The call whose table of options is passed like this; nullptr when none is.
+/// The call whose options are passed in this way, or nullptr.
 const text::Call* call_with(const lua::Doc& doc, Braces braces);
 
 /// The calls of a Doc.
 std::vector<const text::Call*> calls_of(const lua::Doc& doc);
 
-/// An option as it is listed.
+/// An option for a list.
 struct OptionLine {
     const char* option;
     std::string name;     ///< "dt", "theta0 = 0"
-    std::string meaning;  ///< with its unit and its limits: "time from row to row (time units, must be positive)"
+    std::string meaning;  ///< with unit and limits: "time from row to row (time units, must be positive)"
 };
 std::vector<OptionLine> option_lines(std::span<const text::Option> options);
 
 /// "M = 0, t_end, dt | times"
 std::string option_list(std::span<const text::Option> options);
 
-/// What stands in the brackets of the call: "M = 0, t_end, dt | times".
+/// The text in the brackets of the call: "M = 0, t_end, dt | times".
 std::string parameters(std::string_view signature);
 
-/// The bracket that a call begins with: '{', '(', or ' ' when there is none.
+/// The opening bracket of the call: '{', '(', or ' ' for none.
 char call_bracket(std::string_view signature);
 
-/// The class of the object that a call gives, a field holds or a constructor makes; nullptr when it is none of ours.
-const Section* result_class(std::string_view signature);
+/// The section of the class of a call's result, of a field or of a constructor; nullptr for other types.
+const Section* section_of_result(std::string_view signature);
 
 }  // namespace dinal::help

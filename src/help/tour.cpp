@@ -8,7 +8,7 @@
 namespace dinal::help {
 namespace {
 
-// No line is longer than 77 columns, no page than 20 lines: they are for a terminal of 80 by 24. A test types them all.
+// Lines have at most 77 columns and pages 20 lines, for a terminal of 80 by 24. A test types all of them.
 constexpr std::array<std::string_view, 6> pages = {
     R"(A mass on a spring, with viscous damping C and dry friction: Rd is the
 torque while it slides, Re breakaway torque.

@@ -1,4 +1,4 @@
-// The tour of two minutes that help() starts.
+// The two-minute tour that help() offers.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace dinal::help {
 
 std::size_t tour_pages();
 
-/// Page 1, 2, ... The lines to be typed begin with four blanks and "> ".
+/// Page 1, 2, ... Lines to be typed begin with four blanks and "> ".
 std::string tour_page(std::size_t page);
 
 }  // namespace dinal::help

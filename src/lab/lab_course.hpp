@@ -1,7 +1,7 @@
-// The lab course (src/lab): what belongs to a student number, and the judging of answers, in a Lua state of its own.
+// The lab course (src/lab): tasks of a student number and judging of answers, in a Lua state of its own.
 //
-// The build puts the course into the program scrambled, so that neither a look into the program nor a script shows an
-// answer. It is no secret from those who read its source or take the program apart (docs/lab/instructor.md).
+// The build scrambles the course, so that neither a look into the program nor a script reveals an answer. It is not
+// secret from those who read the source or disassemble the program (docs/lab/instructor.md).
 #pragma once
 
 #include <cstdint>
@@ -15,70 +15,68 @@
 
 namespace dinal::lab {
 
-/// lab.NAME and check.
+/// Registers lab.NAME and check.
 void register_lab(lua_State* L);
 extern const lua::Class lab_module;
 extern const lua::Class check_functions;
 
 class LabCourse {
 public:
-    /// A new state with the course in it. Raises in L when there is no memory for it.
+    /// A new state with the course. Raises an error in L if memory is insufficient.
     explicit LabCourse(lua_State* L);
 
-    /// Calls course.FUNCTION there with so many arguments from the top of L, which it takes, and puts the results in
-    /// their stead; returns how many. Numbers, text, vectors, data and tables of these pass. Fails with the sentence of
-    /// an error there.
+    /// Calls course.FUNCTION with arguments from the top of L, replaces them by the results and returns their number.
+    /// Numbers, text, vectors, data and tables of these are converted. Fails with an error raised there.
     text::Expected<int> call(lua_State* L, const char* function, int arguments);
 
 private:
     std::unique_ptr<lua_State, void (*)(lua_State*)> state_;
 };
 
-/// The student number that the script has set with lab.number; 0: none.
+/// The student number set with lab.number; 0: none.
 [[nodiscard]] std::int64_t lab_number_of(lua_State* L);
 
-/// Whether there can be a student of that number.
+/// Returns whether the number is valid.
 [[nodiscard]] bool is_student_number(std::int64_t number) noexcept;
 constexpr std::int64_t greatest_student_number = 999'999'999;
 
-/// The text of the course as it was built into the program.
+/// The text of the built-in course.
 std::string lab_course_text();
 
-/// A sheet that is not built in: the file's name and its text.
+/// An additional sheet: file name and text.
 struct LabSheet {
     std::string name, text;
 };
-/// Every course that is opened from now on has these sheets as well.
+/// Adds these sheets to every course opened from now on.
 void add_lab_sheets(std::vector<LabSheet> sheets);
 
-/// Returns all answers of a number, for instructors. Fails when there is no such number.
+/// All answers for a student number, for instructors. Fails if the number is invalid.
 text::Expected<std::string> lab_solutions(std::string_view number);
 
-/// The script with which a student begins.
+/// The initial script for a student.
 struct LabStart {
     std::string file, text;
     std::string said;  ///< about the file, in the language of the sheet
 };
-/// That of a sheet, "1" or "hoja-1", and a student number. Fails when there is no such sheet or number.
+/// The script for a sheet, "1" or "hoja-1", and a student number. Fails if either is invalid.
 text::Expected<LabStart> lab_start(const std::string& sheet, std::string_view number);
 
-/// Works the last sheet that was added with twenty student numbers. Returns what a student sees, or fails with the
-/// first fault.
+/// Tests the last added sheet with twenty student numbers. Returns a student's view, or fails with the first fault.
 text::Expected<std::string> lab_sheet_test();
 
 /// The names of all questions, "1a 1b ...".
 text::Expected<std::string> lab_question_names();
 
-/// Notes each judged answer at the end of that file from now on, for this script; the first line says that it has
-/// begun. Returns the reason if the file cannot be written.
-std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script);
+/// Appends each judged answer of this script to the file, after a first line for its start. Returns an error if the
+/// file cannot be written.
+std::optional<text::Error> start_answer_log(const std::string& file, const std::string& script);
 
-/// Wrong values of earlier sessions stand in the file of that name; those of this one are added with Tries::write. If
-/// it cannot be written they count in this session only.
+/// Sets the file of wrong values from earlier sessions; Tries::write also adds those of this one. If the file cannot be
+/// written, they count in this session only.
 enum class Tries { read, write };
 void keep_lab_tries(std::string (*file)(), Tries use);
 
-/// The reason why an answer could not be noted; nothing if all are noted.
+/// The error if an answer could not be stored.
 std::optional<text::Error> lost_lab_mark();
 
 /// The verdict on one answer.
@@ -95,7 +93,7 @@ void note_lab_mark(const LabMark& mark);
 /// The answers of this session in the order in which they were first judged, each with its last verdict.
 const std::vector<LabMark>& lab_answers();
 
-/// The wrong values that earlier sessions kept for this question.
+/// The wrong values of earlier sessions for this question.
 std::vector<double> earlier_wrong_values(std::int64_t number, const std::string& question);
 
 }  // namespace dinal::lab

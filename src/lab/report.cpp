@@ -36,8 +36,7 @@ using namespace api;
 namespace {
 
 constexpr std::size_t most_table_rows = 1000;
-constexpr std::ptrdiff_t most_lines_together =
-    30;  // on one sheet of paper; what is longer would leave half of one empty
+constexpr std::ptrdiff_t most_lines_together = 30;  // fits on one page of A4; a longer text may be split
 
 constexpr const char* page_head = R"(<!DOCTYPE html>
 <html lang="en">
@@ -68,7 +67,7 @@ table:not(:has(tr:nth-child(30))) {{ break-inside: avoid; }}
 <h1>{0}</h1>
 )";
 
-/// Paragraphs of a text that empty lines separate.
+/// The paragraphs of a text, separated by empty lines.
 std::vector<std::string_view> paragraphs(std::string_view text) {
     std::vector<std::string_view> all;
     while (!text.empty()) {
@@ -101,14 +100,14 @@ struct HtmlWriter {
     void operator()(const DataHandle& item) { page += html_of(*item, most_table_rows); }
 };
 
-/// As many backquotes as no line of the text has.
+/// A fence of more backquotes than any line has.
 std::string fence(std::string_view text) {
     std::string marks = "```";
     while (text.find(marks) != std::string_view::npos) marks += '`';
     return marks;
 }
 
-/// The text with its lines and tabs, and no other character that steers what shows it.
+/// The text with newlines and tabs, without other control characters.
 std::string lines_shown(std::string_view text) {
     std::string all;
     while (!text.empty()) {
@@ -120,7 +119,7 @@ std::string lines_shown(std::string_view text) {
     return all;
 }
 
-/// A line that Markdown would read as something else than text stays text.
+/// Escapes Markdown markup in a line.
 std::string plain_markdown(std::string_view text) {
     return text::markdown(lines_shown(text), "\\`*_{}[]#|");
 }
@@ -189,7 +188,7 @@ std::string stem_of(const std::string& script) {
     return ending == ".lua" ? name.substr(0, name.size() - ending.size()) : name;
 }
 
-/// The answers that were judged, as a table; null if there are none.
+/// The judged answers as a table; null if there are none.
 DataHandle verdicts_of_session() {
     const std::vector<LabMark>& answers = lab_answers();
     if (answers.empty()) return nullptr;
@@ -276,7 +275,7 @@ text::Expected<std::string> ScriptReport::save() {
     return name;
 }
 
-// report{ ... }: what a student hands in, collected piece by piece and saved as one file.
+// report{ ... }: a student's report, collected piece by piece and saved as one file.
 
 namespace {
 
@@ -302,7 +301,7 @@ int new_report(lua_State* L) {
     return 1;
 }
 
-/// As print shows it; a table of the user's with what is in it.
+/// The text of a value as print shows it; user's tables with their contents.
 std::string printed(lua_State* L, int index) {
     const bool says_itself = luaL_getmetafield(L, index, "__tostring") != LUA_TNIL;
     lua_pop(L, says_itself ? 1 : 0);
@@ -321,7 +320,7 @@ std::string printed(lua_State* L, int index) {
     return text;
 }
 
-/// A string or a number; all else is an error of the call.
+/// The string or number at `index`; raises an error for other values.
 std::string words_at(lua_State* L, int index, const char* call, const char* what) {
     if (lua_type(L, index) != LUA_TSTRING && lua_type(L, index) != LUA_TNUMBER) {
         lua::raise_got(L, index, call, fmt::format("{}: {} must be text", call, what));
@@ -387,7 +386,7 @@ int add_table(lua_State* L) {
     return 0;
 }
 
-/// r:plot{ ... } takes what plot takes, or a picture.
+/// r:plot{ ... }: takes the arguments of plot, or a picture.
 int add_plot(lua_State* L) {
     const ReportHandle report = report_self(L, "r:plot");
     if (const auto* picture = lua::test<Picture>(L, 2)) {
@@ -415,7 +414,7 @@ int add_animation(lua_State* L) {
     return 0;
 }
 
-/// The script that runs, as text; nothing at the prompt.
+/// The text of the running script; empty at the prompt.
 std::string running_script(lua_State* L) {
     lua_pushglobaltable(L);
     lua_pushliteral(L, "arg");
@@ -433,7 +432,7 @@ std::string running_script(lua_State* L) {
     return name.empty() || !read ? "" : std::move(read).value();
 }
 
-void (*taker)(const Report& report) = nullptr;  // set by --report, before the script runs
+void (*taker)(const Report& report) = nullptr;  // set by --report before the script runs
 
 int save_report(lua_State* L) {
     lua::refuse_in_worker(L, "r:save");

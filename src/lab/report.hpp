@@ -17,18 +17,18 @@ namespace dinal::lab {
 struct ReportHeading {
     std::string text;
 };
-/// Empty lines separate paragraphs.
+/// Paragraphs are separated by empty lines.
 struct ReportText {
     std::string text;
 };
-/// Lines that stay as they are: what was printed, a value, a script.
+/// Preformatted lines: output, a value, a script.
 struct ReportLines {
     std::string text;
-    std::string caption = {};  ///< for what is long: it is folded under this
+    std::string caption = {};  ///< for long texts, which are folded under it
 };
 struct ReportPicture {
-    std::string svg;   ///< empty when it was not drawn
-    std::string text;  ///< the same for those who see no pictures
+    std::string svg;   ///< empty if not drawn
+    std::string text;  ///< the picture as text
     std::string title = {};
 };
 using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, api::DataHandle>;
@@ -40,42 +40,41 @@ struct Report {
 };
 using ReportHandle = std::shared_ptr<Report>;
 
-/// report{ ... }.
+/// Registers report{ ... }.
 void register_report(lua_State* L);
 extern const lua::Class report_functions;
 extern const lua::Class report_class;
 
-/// Calls this with each report that is saved, which then writes no file: --report puts its parts into the page of the
-/// script.
+/// Redirects saved reports to this function instead of files: --report adds their parts to the page of the script.
 void take_saved_reports_by(void (*take)(const Report& report));
 
-/// The picture as a report keeps it.
+/// A picture for a report.
 ReportPicture drawn(const api::Picture& picture);
 ReportPicture drawn(const api::Animation& animation);
 
-/// One page that needs nothing else: pictures are SVG in it, and it prints on A4.
+/// A self-contained page: pictures are inline SVG, printed on A4.
 std::string html_of(const Report& report);
 
-/// The text, and the pictures as files beside it, with their names: `stem`-1.svg ...
+/// A text with its pictures as separate files, with their names: `stem`-1.svg ...
 struct MarkdownReport {
     std::string text;
     std::vector<std::pair<std::string, std::string>> pictures;
 };
 MarkdownReport markdown_of(const Report& report, const std::string& stem);
 
-// --report: what a script prints and draws becomes a page to hand in.
+// --report: turns the output and pictures of a script into a page.
 
-/// While it lives, what is printed on standard output and the pictures that are shown go into a report, in their order.
+/// While it lives, standard output and shown pictures are collected in a report, in their order.
 class ScriptReport {
 public:
-    /// The script, and what it says on standard error, which is collected elsewhere meanwhile.
+    /// `errors`: the script's standard error, collected elsewhere.
     ScriptReport(std::string script, const std::string& errors);
     ~ScriptReport();
     ScriptReport(const ScriptReport&) = delete;
     ScriptReport& operator=(const ScriptReport&) = delete;
 
-    /// Writes it into the current folder: lab.html for ../lab.lua, with the script and what went wrong, if anything, at
-    /// its end. Returns the name. Standard output is what it was from then on.
+    /// Writes the page into the current folder: lab.html for ../lab.lua, with the script and errors at its end, and
+    /// restores standard output. Returns the file name.
     text::Expected<std::string> save();
 
 private:
@@ -85,8 +84,8 @@ private:
     Report report_;
     std::string script_;
     const std::string& errors_;
-    int output_;   // the standard output of before
-    int printed_;  // a file without a name
+    int output_;   // original standard output
+    int printed_;  // an anonymous temporary file
     std::size_t taken_ = 0;
 };
 

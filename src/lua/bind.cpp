@@ -14,9 +14,9 @@ namespace dinal::lua {
 
 namespace {
 
-// Registry key of the table that leads from a function or a module table to its documentation.
+// Registry key of the table that maps functions and module tables to their documentation.
 const char documentation_key = 0;
-// Key, within a metatable, of the Class that made it.
+// Key, within a metatable, of its Class.
 const char class_key = 0;
 
 void push_documentation(lua_State* L) {
@@ -28,12 +28,12 @@ void push_documentation(lua_State* L) {
     }
 }
 
-// documentation[value on the top] = { owner, member }; the value stays.
+// Documents the value on the top as { owner, member }; the value stays.
 void document(lua_State* L, const Class& owner, const Member* member) {
     push_documentation(L);
     lua_pushvalue(L, -2);
     lua_createtable(L, 2, 0);
-    lua_pushlightuserdata(L, const_cast<Class*>(&owner));  // never written through
+    lua_pushlightuserdata(L, const_cast<Class*>(&owner));  // only read
     lua_rawseti(L, -2, 1);
     lua_pushlightuserdata(L, const_cast<Member*>(member));
     lua_rawseti(L, -2, 2);
@@ -68,7 +68,7 @@ std::string suggestion_for_key(lua_State* L, int index, const Class& description
                                              : "";
 }
 
-/// All names that an object of the class has, as the end of a sentence.
+/// The end of a sentence that lists the names of an object of the class.
 std::string names_in(const Class& description) {
     const std::vector<std::string_view> names = visible_names(description);
     return names.empty() ? "" : fmt::format("; it has {}", fmt::join(names, ", "));
@@ -176,14 +176,14 @@ std::string where(lua_State* L) {
 
 void raise(lua_State* L, const text::Error& error) {
     {
-        // Names of columns and files are in it, and a script may print what it has caught.
+        // It may contain names of columns and files, and a script may print caught errors.
         const std::string message = text::harmless(where(L) + error.message());
         remember_facts(L, error);
-        lua_settop(L, 0);  // arguments are of no more use, and make room
+        lua_settop(L, 0);  // arguments are no longer needed
         lua_pushlstring(L, message.data(), message.size());
     }
     lua_error(L);
-    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+    std::terminate();  // lua_error does not return, but is not declared so
 }
 
 void raise(lua_State* L, std::string_view sentence) {
@@ -251,7 +251,7 @@ void note_order(lua_State* L, const NamedNumbers& numbers) {
     if (luaL_newmetatable(L, fmt::format("order {}", fmt::join(names, " ")).c_str()) != 0) {
         set_value(L, "names", names);
         lua_pushnil(L);
-        lua_setfield(L, -2, "__name");  // or tostring would show it
+        lua_setfield(L, -2, "__name");  // otherwise tostring would show it
     }
     lua_setmetatable(L, -2);
 }
@@ -268,7 +268,7 @@ void add_module(lua_State* L, const Class& module) {
     document(L, module, nullptr);
     lua_newtable(L);
     set_metamethods(L, module);
-    lua_pushlightuserdata(L, const_cast<Class*>(&module));  // never written through
+    lua_pushlightuserdata(L, const_cast<Class*>(&module));  // only read
     lua_pushcclosure(L, guarded<index_module>, 1);
     lua_setfield(L, -2, "__index");
     lua_pushlightuserdata(L, const_cast<Class*>(&module));
@@ -326,7 +326,7 @@ void raise_argument(lua_State* L, int index, std::string_view wanted) {
     const std::string call = signature_of_running(L);
     const std::size_t open = call.find('(');
     std::string_view names = std::string_view(call).substr(open == std::string::npos ? call.size() : open + 1);
-    // Before the parentheses of a method stands its object, the first argument.
+    // A method's object is its first argument but stands before the parentheses.
     for (int i = call.find(':') < open ? 2 : 1; i < index; ++i)
         names.remove_prefix(std::min(names.find(", "), names.size() - 2) + 2);
     raise_got(L, index, call,
@@ -368,7 +368,7 @@ void* test(lua_State* L, int index, const void* key) {
 }
 
 void add_class(lua_State* L, const Class& description, const void* key, lua_CFunction collect) {
-    auto* upvalue = const_cast<Class*>(&description);  // never written through
+    auto* upvalue = const_cast<Class*>(&description);  // only read
     lua_newtable(L);
     set_metamethods(L, description);
     push_members(L, description, Kind::method);

@@ -1,7 +1,7 @@
-// How C++ becomes Lua: classes and modules as tables of documented members, typed userdata, errors at the user's line.
+// Binds C++ to Lua: classes and modules as tables of documented members, typed userdata, errors at the user's line.
 //
 // One Lua class is one file bind_x.cpp with one `Class`: name, documentation, members. add_class(), add_module() and
-// add_functions() turn it into metatables and tables; help() and docs/manual.md read the very same tables.
+// add_functions() make metatables and tables from it; help() and docs/manual.md read the same data.
 #pragma once
 
 #include <array>
@@ -28,27 +28,27 @@ struct Display;
 
 namespace dinal::lua {
 
-/// The only place where something that Lua can see is described.
+/// The documentation of a member, stored once.
 struct Doc {
-    const char* signature;  ///< how it is called: "sys:simulate{ OPTIONS } -> run"
+    const char* signature;  ///< calling convention: "sys:simulate{ OPTIONS } -> run"
     const char* summary;    ///< one or more sentences, units included
     const char* example;    ///< Lua that runs on its own; `-->` is followed by what the line prints
-    /// Whose options stand for each OPTIONS of the signature, in this order.
+    /// The options for each OPTIONS in the signature, in this order.
     std::array<const text::Call*, 2> calls = {};
 };
 
 enum class Kind {
     function,    ///< called with a dot: integrator.rk4{...}
     method,      ///< called with a colon: run:at(t)
-    field,       ///< read like a variable; `call` gets the object and pushes one value
-    metamethod,  ///< __add, __len, __call ...: of the objects of a class, or of the table of a module
+    field,       ///< read like a variable; `call` receives the object and pushes one value
+    metamethod,  ///< __add, __len, __call ...: for the objects of a class, or for the table of a module
 };
 
-/// How Lua reaches a member: a_method<at>, a_field<...>, a_function<...>, a_metamethod<...>("__len").
+/// A member's function and kind, made by a_method<at>, a_field<...>, a_function<...> or a_metamethod<...>("__len").
 struct Binding {
     lua_CFunction call;  ///< always guarded<...>
     Kind kind;
-    std::string_view name = {};  ///< of a metamethod; others have it in their signature
+    std::string_view name = {};  ///< for metamethods; others are named in their signature
 };
 
 struct Member {
@@ -67,7 +67,7 @@ struct Member {
         : name(own_name), call(function), kind(how), doc(text) {}
 
 private:
-    /// "at" of "run:at(t) -> theta, velocity".
+    /// Returns "at" for "run:at(t) -> theta, velocity".
     static constexpr std::string_view name_in(std::string_view signature) {
         signature = signature.substr(0, signature.find(" ->"));
         signature = signature.substr(0, signature.find_first_of("({"));
@@ -77,36 +77,36 @@ private:
 
 /// A Lua class or a Lua module.
 struct Class {
-    const char* name;  ///< in sentences: "a system has no field ..."
+    const char* name;  ///< as in "a system has no field ..."
     Doc doc;
     std::span<const Member> members;
-    /// Called with (object, key) for a number key and for a string that names no member: pushes one value and returns
-    /// 1, or returns 0 for "no such field", which then becomes an error with a suggestion.
+    /// Called with (object, key) for a number key, and for strings that name no member. Pushes one value and returns 1,
+    /// or returns 0 for "no such field", which becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
-    /// What the prompt shows for the object at `index`; without it, what tostring says.
+    /// Returns the prompt's text for the object at `index`; by default that of tostring.
     std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
-    /// As other_keys, for strings that go before members.
+    /// Like other_keys, for strings that take precedence over members.
     lua_CFunction first_keys = nullptr;
 };
 
-/// Raises the message of the error as a Lua error, headed by the file and line of the user's code that led here. The
-/// facts of it are remembered (error_memory.hpp) for those who mark the culprit and look for a cure.
+/// Raises a Lua error with the file and line of the user's code in front. Its facts are kept (error_memory.hpp) for
+/// error markers and hints.
 [[noreturn]] void raise(lua_State* L, const text::Error& error);
 [[noreturn]] void raise(lua_State* L, std::string_view sentence);
 
-/// Raises the error as one of that call: "CALL: SENTENCE".
+/// Raises the error with the call in front: "CALL: SENTENCE".
 [[noreturn]] inline void fail(lua_State* L, std::string_view call, text::Error error) {
     raise(L, text::in_call(call, std::move(error)));
 }
 
-/// Raises "WANTED, got VALUE" and the end of the sentence, about the value at `index` that was given to the call.
+/// Raises "WANTED, got VALUE" plus `end`, about the value at `index` in the call.
 [[noreturn]] void raise_got(lua_State* L, int index, std::string_view call, std::string_view wanted,
                             std::string_view end = "");
 
-/// "FILE:LINE: " of the nearest Lua function in the call stack, or "".
+/// "FILE:LINE: " of the innermost Lua function in the call stack, or "".
 std::string where(lua_State* L);
 
-/// The value, or raises its error as one of that call.
+/// Returns the value, or raises its error with the call in front.
 template <class T>
 T value_or_raise(lua_State* L, std::string_view call, text::Expected<T> expected) {
     if (!expected) {
@@ -115,30 +115,30 @@ T value_or_raise(lua_State* L, std::string_view call, text::Expected<T> expected
     return std::move(expected).value();
 }
 
-/// Pushes a text; returns 1, for functions that leave nothing else.
+/// Pushes a text and returns 1, the number of results.
 int push_text(lua_State* L, std::string_view text);
 
 /// Sets a field of the table on the top.
 void set_number(lua_State* L, const char* name, double value);
 
-/// What a value is, for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
+/// Describes a value for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
 std::string describe(lua_State* L, int index);
 
-/// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
+/// Returns whether Lua can call it: a Lua function, a C function, a table or userdata with __call.
 [[nodiscard]] bool is_callable(lua_State* L, int index);
 
-/// A value as it may stand in the user's text, for Error::culprit: "nil", "-1", the string itself; "" for others.
+/// The value as in the user's text, for Error::culprit: "nil", "-1", a string itself; "" for others.
 std::string written(lua_State* L, int index);
 
 namespace detail {
 int raise_message_on_top(lua_State* L);
 [[noreturn]] void raise_no_object(lua_State* L, std::string_view call);
-/// "run:explain()": how the function of ours that runs is called.
+/// The signature of the running function of ours: "run:explain()".
 std::string signature_of_running(lua_State* L);
 void push_message(lua_State* L, const char* text);
 }  // namespace detail
 
-/// Every C++ function that Lua calls goes through here: a C++ exception becomes a Lua error at the user's line.
+/// Wraps every C++ function that Lua calls: a C++ exception becomes a Lua error at the user's line.
 // NOTE: never catch (...): Lua's own errors are C++ exceptions of a private type and must pass.
 template <lua_CFunction function>
 int guarded(lua_State* L) {
@@ -165,7 +165,7 @@ constexpr Binding a_metamethod(std::string_view name) {
 }
 
 namespace detail {
-// The address is the key of the metatable of T in the registry.
+// Its address is the registry key of T's metatable.
 template <class T>
 inline char type_key = 0;
 
@@ -177,7 +177,7 @@ template <class T>
 int collect(lua_State* L) {
     if (auto* object = static_cast<T*>(test(L, 1, &type_key<T>))) {
         std::destroy_at(object);
-        // A finalizer called by hand (debug.getmetatable) must not leave a dead object behind.
+        // A finalizer called by hand (debug.getmetatable) must not leave a dead object.
         lua_pushnil(L);
         lua_setmetatable(L, 1);
     }
@@ -185,7 +185,7 @@ int collect(lua_State* L) {
 }
 }  // namespace detail
 
-/// Gives Lua a new object of a class that add_class<T> has registered. It has one user value.
+/// Pushes a new object of a class registered by add_class<T>. It has one user value.
 template <class T>
 T& push(lua_State* L, T value) {
     static_assert(alignof(T) <= alignof(std::max_align_t));
@@ -197,13 +197,14 @@ T& push(lua_State* L, T value) {
     return *object;
 }
 
-/// The object at `index`, or nullptr when something else stands there.
+/// Returns the object at `index`, or nullptr for anything else.
 template <class T>
 [[nodiscard]] T* test(lua_State* L, int index) {
     return static_cast<T*>(detail::test(L, index, &detail::type_key<T>));
 }
 
-/// The object a method was called on. `call` shows the right way: "sys:simulate{ t_end = 20, dt = 0.01 }".
+/// Returns the object of a method call. `call` is a correct example for the error: "sys:simulate{ t_end = 20, dt = 0.01
+/// }".
 template <class T>
 [[nodiscard]] T& self(lua_State* L, int index, std::string_view call) {
     T* object = test<T>(L, index);
@@ -213,25 +214,24 @@ template <class T>
     return *object;
 }
 
-/// A finite number at `index`; `what` heads the sentence when there is none: "run:at(t): t".
+/// Returns the finite number at `index`; otherwise raises an error that begins with `what`: "run:at(t): t".
 double finite_argument(lua_State* L, int index, std::string_view what);
 
-/// Registers T: its objects look up methods, then fields, then `other_keys`; an unknown name is an error with a
-/// suggestion, and so is any assignment. Leaves the stack as it was.
+/// Registers T. Its objects look up methods, fields, and `other_keys`; an unknown name is an error with a suggestion,
+/// and every assignment is an error. Leaves the stack unchanged.
 template <class T>
 void add_class(lua_State* L, const Class& description) {
     detail::add_class(L, description, &detail::type_key<T>, detail::collect<T>);
 }
 
-/// The library table must be on the top of the stack: sets library[module.name] to a table of the module's functions.
-/// A metamethod "__call" makes the table callable; it gets the table as its first argument. An unknown name is an
-/// error.
+/// Sets library[module.name] to a table of the module's functions, in the library table on the top. A metamethod
+/// "__call" makes that table callable, with itself as first argument. An unknown name is an error.
 void add_module(lua_State* L, const Class& module);
 
-/// The library table must be on the top of the stack: sets the functions themselves.
+/// Sets the functions in the library table on the top.
 void add_functions(lua_State* L, const Class& functions);
 
-/// What is documented about a value, or nullptrs: a function (the member and its owner) or a module or an object.
+/// The documentation of a value, or nullptrs: a function (the member and its owner), a module or an object.
 struct Documented {
     const Class* owner = nullptr;
     const Member* member = nullptr;

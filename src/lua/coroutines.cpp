@@ -1,9 +1,8 @@
-// coroutine.resume, wrap and close: Lua's own functions, framed by a note of which thread runs.
+// coroutine.resume, wrap and close: Lua's own functions, which also record the running thread.
 //
-// A C function may call another one directly, on its own frame: arguments, results, upvalues and errors are the same.
-// So what is called here is what Lua itself provides. Only what coroutine.wrap returns is written anew: Lua's own
-// closes a coroutine that failed before it returns, and in one that was stopped no hook is called any more, so that an
-// endless __close there could not be stopped.
+// A C function may call another one directly on its own frame: arguments, results, upvalues and errors are the same, so
+// Lua's own functions do the work. Only the result of coroutine.wrap is new: Lua's own closes a failed coroutine before
+// it returns, and in a stopped coroutine no hook is called any more, so that an endless __close could not be stopped.
 #include <atomic>
 
 #include "lua/interrupt.hpp"
@@ -12,8 +11,8 @@ namespace dinal::lua {
 
 namespace {
 
-// The same in every lua_State of the process. Atomic, because sweeps within a sweep open states on several threads at
-// once, each of which writes them.
+// Equal in every lua_State of the process. Atomic, because nested sweeps open states on several threads at once, each
+// of which writes them.
 std::atomic<lua_CFunction> original_resume = nullptr;
 std::atomic<lua_CFunction> original_close = nullptr;
 std::atomic<lua_CFunction> original_create = nullptr;
@@ -21,7 +20,7 @@ std::atomic<lua_CFunction> original_create = nullptr;
 int resume(lua_State* L) {
     lua_State* coroutine = lua_tothread(L, 1);
     if (coroutine == nullptr) {
-        return original_resume.load()(L);  // raises its own sentence about the argument
+        return original_resume.load()(L);  // raises Lua's error about the argument
     }
     const RunningThread note(L, coroutine);
     return original_resume.load()(L);
@@ -39,7 +38,7 @@ int close(lua_State* L) {
     return original_close.load()(L);
 }
 
-/// Closes the coroutine that failed and raises its error here, headed by the position of the caller, as Lua does.
+/// Closes the failed coroutine and raises its error here, with the position of the caller in front, as Lua does.
 int raise_error_of(lua_State* L, lua_State* coroutine) {
     int status = lua_status(coroutine);
     if (status != LUA_OK && status != LUA_YIELD && !interrupt_requested()) {

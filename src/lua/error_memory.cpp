@@ -9,19 +9,19 @@
 namespace dinal::lua {
 namespace {
 
-const char memory_key = 0;  // registry key of the ErrorMemory; false once lua_close has taken it
+const char memory_key = 0;  // registry key of the ErrorMemory; false after lua_close
 
-constexpr std::size_t most_facts = 20;  // an error that is kept while so many others are raised is told without a mark
+constexpr std::size_t most_facts = 20;  // an error kept while so many others are raised loses its mark
 
 struct ErrorMemory {
     std::deque<text::Error> facts;  // the latest first
     Witness witness = nullptr;
-    Remarks remarks;            // on the error value that the userdata has as its user value
-    bool is_witnessed = false;  // there is such a value, which may be nil
+    Remarks remarks;            // about the error value stored as the userdata's user value
+    bool is_witnessed = false;  // whether there is such a value, which may be nil
     bool raised_again = false;
 };
 
-/// The finalizer. What the registry has is taken, and not the argument, which is a user's when he calls it by hand.
+/// The finalizer. Takes the registry's object, as the argument is the user's when he calls it by hand.
 int forget(lua_State* L) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &memory_key) == LUA_TUSERDATA) {
         std::destroy_at(static_cast<ErrorMemory*>(lua_touserdata(L, -1)));
@@ -31,7 +31,7 @@ int forget(lua_State* L) {
     return 0;
 }
 
-/// Pushes the memory of this Lua state. nullptr (and false on the stack) while the state is being closed.
+/// Pushes the memory of this Lua state; nullptr, and false on the stack, while the state is being closed.
 ErrorMemory* push_memory(lua_State* L) {
     luaL_checkstack(L, LUA_MINSTACK, "for what is known about an error");
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &memory_key) == LUA_TNIL) {
@@ -54,7 +54,7 @@ ErrorMemory* memory_of(lua_State* L) {
     return memory;
 }
 
-/// The memory, if it is about the error value at the index.
+/// The memory if it is about the error value at the index, otherwise nullptr.
 ErrorMemory* memory_about(lua_State* L, int index) {
     index = lua_absindex(L, index);
     ErrorMemory* memory = push_memory(L);
@@ -68,7 +68,7 @@ ErrorMemory* memory_about(lua_State* L, int index) {
     return same ? memory : nullptr;
 }
 
-/// What the witness says about the error value at the index.
+/// Stores the witness's remarks on the error value.
 void witness(lua_State* L, int error, int function) {
     error = lua_absindex(L, error);
     function = function == 0 ? 0 : lua_absindex(L, function);
@@ -97,10 +97,10 @@ const text::Error* facts_of(lua_State* L, std::string_view message) {
     if (memory == nullptr) {
         return nullptr;
     }
-    const auto told = std::find_if(memory->facts.begin(), memory->facts.end(), [message](const text::Error& error) {
+    const auto fact = std::find_if(memory->facts.begin(), memory->facts.end(), [message](const text::Error& error) {
         return message.find(error.message()) != std::string_view::npos;
     });
-    return told == memory->facts.end() ? nullptr : &*told;
+    return fact == memory->facts.end() ? nullptr : &*fact;
 }
 
 void set_witness(lua_State* L, Witness witness) {
@@ -111,7 +111,7 @@ void set_witness(lua_State* L, Witness witness) {
 
 int witness_error(lua_State* L) {
     lua_settop(L, 1);
-    // NOTE: texts that are equal may be two errors; it is the same one only when it has been raised again.
+    // NOTE: equal texts may be two errors; it is the same one only if it has been raised again.
     ErrorMemory* memory = memory_about(L, 1);
     if (memory != nullptr && memory->raised_again) {
         memory->raised_again = false;

@@ -1,4 +1,4 @@
-// Functions of another language that Lua calls, such as those of Python: what dinal must know of one without a call.
+// Functions of another language that Lua calls, such as Python's: data that dinal needs without calling them.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace dinal::lua {
 
-/// It is the first upvalue of the C function that makes the call, and belongs to the Lua state in which it was made.
+/// The first upvalue of the C function that makes the call; owned by the Lua state in which it was made.
 struct Foreign {
     std::shared_ptr<void> function;
-    int parameters = 1;         ///< that a call must have
+    int parameters = 1;         ///< number of required parameters
     const char* language = "";  ///< "Python"
-    std::uint64_t number = 0;   ///< another one for each that was made in this process
+    std::uint64_t number = 0;   ///< unique in this process
 };
 
-/// Pushes the C function `call` with that upvalue; gives it its number.
+/// Pushes the C function `call` with this upvalue and assigns its number.
 void push_foreign(lua_State* L, Foreign function, lua_CFunction call);
 
-/// That of the function at `index`; nullptr for all others.
+/// The Foreign of the function at `index`, or nullptr.
 [[nodiscard]] const Foreign* foreign(lua_State* L, int index);
 
-/// That of the C function that runs, which push_foreign() has pushed.
+/// The Foreign of the running C function; requires push_foreign().
 [[nodiscard]] inline const Foreign& foreign_here(lua_State* L) {
     return *static_cast<const Foreign*>(lua_touserdata(L, lua_upvalueindex(1)));
 }

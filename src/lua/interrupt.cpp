@@ -31,16 +31,16 @@ static_assert(std::atomic<lua_State*>::is_always_lock_free && std::atomic<Stop>:
 
 std::atomic<Stop> requested = Stop::none;
 std::atomic<bool> armed = false;
-std::atomic<lua_State*> running = nullptr;                          // on the thread of the program
+std::atomic<lua_State*> running = nullptr;                          // on the program's thread
 thread_local std::atomic<lua_State*>* running_in_worker = nullptr;  // on the thread of a WorkerScope
-thread_local const WorkerWatch* watch_of_worker = nullptr;          // likewise
+thread_local const WorkerWatch* watch_of_worker = nullptr;          // on the thread of a WorkerScope
 std::atomic<long> first_signal_ms = 0;                              // 0: none in this chunk
 std::array<char, LUA_IDSIZE + 20> stopping_place{};
 
-// Code that can be stopped has stopped by then; a key that is held down, or a finger that trembles, is faster.
+// Stoppable code has stopped within this time; a key held down repeats faster.
 constexpr long patience_ms = 200;
 
-/// What runs on this thread. A signal handler asks for it, too: the variables above stand from the start.
+/// The Lua thread that runs on this OS thread. Called in signal handlers, so the variables above must be initialised.
 std::atomic<lua_State*>& running_here() noexcept {
     return running_in_worker != nullptr ? *running_in_worker : running;
 }
@@ -57,7 +57,7 @@ void note_place(lua_State* L) {
     }
 }
 
-/// Of the program's own thread: where a worker was is told by nobody.
+/// Main thread only: a worker's position is not reported.
 void note_first_place(lua_State* L) {
     if (running_in_worker == nullptr && stopping_place[0] == '\0') {
         note_place(L);
@@ -73,8 +73,8 @@ void interrupt_hook(lua_State* L, lua_Debug*) {
 }
 
 void set_hook(lua_State* L) {
-    // Count 1, and never taken away before the chunk ends: a loop around pcall is stopped at its next instruction.
-    // Not for calls and returns: a message handler written in C (traceback) must be able to do its work.
+    // Count 1, and kept until the chunk ends: a loop around pcall is stopped at its next instruction. Not for calls and
+    // returns: a message handler in C (traceback) must be able to work.
     lua_sethook(L, interrupt_hook, LUA_MASKCOUNT, 1);
 }
 
@@ -89,13 +89,13 @@ extern "C" void on_signal(int) {
         long first = 0;
         const long now = now_ms();
         if (!first_signal_ms.compare_exchange_strong(first, now) && now - first > patience_ms) {
-            _exit(130);  // the only cure for C code that never returns
+            _exit(130);  // the only way out of C code that never returns
         }
     }
     request_stop(Stop::interrupted);
 }
 
-/// On the thread of a worker. It may have ended what it was to be stopped in; the hook sees that.
+/// Runs on a worker's thread. The worker may have finished its task; the hook checks that.
 extern "C" void on_nudge(int) {
     if (lua_State* L = running_here(); running_in_worker != nullptr && armed && L != nullptr) {
         set_hook(L);
@@ -165,7 +165,7 @@ void raise_interrupted(lua_State* L) {
         lua_pushliteral(L, "limit reached!");
     }
     lua_error(L);
-    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+    std::terminate();  // lua_error does not return, but is not declared so
 }
 
 std::string stopped_at() {
@@ -228,7 +228,7 @@ SignalsForOthers::~SignalsForOthers() {
 
 RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(caller) {
     if (lua_gethook(callee) == interrupt_hook && requested == Stop::none) {
-        lua_sethook(callee, nullptr, 0, 0);  // it was created or stopped while an earlier chunk was being interrupted
+        lua_sethook(callee, nullptr, 0, 0);  // created or stopped while an earlier chunk was being interrupted
     }
     running_here() = callee;
     if (requested != Stop::none && armed) {
@@ -240,7 +240,7 @@ RunningThread::~RunningThread() {
     settle_refusal();
     running_here() = caller_;
     if (requested != Stop::none && armed) {
-        set_hook(caller_);  // the coroutine died of the stop: its caller must, too
+        set_hook(caller_);  // the coroutine was stopped, so its caller is stopped, too
     }
 }
 
@@ -248,13 +248,13 @@ namespace {
 
 using Nanoseconds = std::int64_t;
 constexpr Nanoseconds one_second = 1'000'000'000;
-constexpr Nanoseconds patience = one_second;  // an integration, a sort or a collection of garbage may be on its way
+constexpr Nanoseconds patience = one_second;  // an integration, a sort or a garbage collection may be running
 
-double allowed_time = 0;  // seconds; 0: none
+double allowed_time = 0;  // seconds; 0: no limit
 timer_t timer{};
 pthread_t lua_thread{};
 int nesting = 0;
-std::atomic<Nanoseconds> deadline = 0, latest = 0;  // of processor time, and on the wall; 0: the time does not run
+std::atomic<Nanoseconds> deadline = 0, latest = 0;  // by processor time and by wall time; 0: not running
 static_assert(std::atomic<Nanoseconds>::is_always_lock_free, "a signal handler may use lock-free atomics only");
 
 Nanoseconds now_by(clockid_t clock) {
@@ -268,7 +268,7 @@ bool is_overdue_by(Nanoseconds time) {
     return end != 0 && (now_by(CLOCK_PROCESS_CPUTIME_ID) >= end + time || now_by(CLOCK_MONOTONIC) >= last + time);
 }
 
-/// On the thread of Lua. It asks again: the chunk that was meant may have ended meanwhile.
+/// Runs on Lua's thread. Checks the time again, as the chunk may have ended meanwhile.
 extern "C" void on_alarm(int) {
     if (is_overdue_by(0)) {
         request_stop(Stop::time);
@@ -281,7 +281,7 @@ bool takes_text(int descriptor) {
 }
 
 [[noreturn]] void end_program() {
-    // What the script has printed shall be seen. Not when it is just printing, or when nobody reads.
+    // Writes the script's output, unless stdout is locked or nobody reads it.
     if (takes_text(STDOUT_FILENO) && ftrylockfile(stdout) == 0) {
         static_cast<void>(std::fflush(stdout));
     }
@@ -292,8 +292,8 @@ bool takes_text(int descriptor) {
     _exit(1);
 }
 
-/// On a thread that the timer starts, again and again from the moment at which the time may be over: what it does is
-/// not bound to what is allowed in a signal handler.
+/// Runs on a thread of the timer, repeatedly after the deadline, so it is not restricted to what signal handlers may
+/// do.
 void on_expiry(sigval) {
     if (is_overdue_by(patience)) {
         end_program();
@@ -303,9 +303,9 @@ void on_expiry(sigval) {
     }
 }
 
-/// From now on; 0 stops it.
+/// Starts the timer; 0 stops it.
 void set_timer(Nanoseconds allowed) {
-    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // first: it counts with the deadline
+    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // before the deadline
     deadline = allowed > 0 ? now_by(CLOCK_PROCESS_CPUTIME_ID) + allowed : 0;
     itimerspec times{};
     times.it_value = {allowed / one_second, allowed % one_second};

@@ -15,7 +15,7 @@
 namespace dinal::lua {
 namespace {
 
-/// 256M, as it is typed.
+/// "256M", as in the command line.
 std::string size_text(std::size_t bytes) {
     constexpr std::array<std::pair<std::size_t, char>, 3> units{{{30, 'G'}, {20, 'M'}, {10, 'K'}}};
     for (const auto& [shift, letter] : units) {
@@ -59,7 +59,7 @@ bool takes_more(int descriptor, int wait_ms) {
 }  // namespace
 
 void write_error_in_time(std::string_view text) {
-    // What a pipe takes at once, PIPE_BUF bytes, does not block.
+    // A pipe accepts up to PIPE_BUF bytes without blocking.
     constexpr std::size_t most = 4096;
     constexpr int patient_ms = 500;
     while (!text.empty() && takes_more(STDERR_FILENO, patient_ms)) {

@@ -1,8 +1,8 @@
-// Lua's own headers. Not <lua.hpp>, which says extern "C" around them: luaconf.h itself knows how the C++ build of the
-// library names its functions, on Debian 12 as in C and on Debian 13 as in C++.
+// Lua's own headers rather than <lua.hpp>, which adds extern "C": luaconf.h itself knows how the C++ build of the
+// library names its functions, as in C on Debian 12 and as in C++ on Debian 13.
 #pragma once
 
 #include <lua.h>
-// after lua.h
+// must come after lua.h
 #include <lauxlib.h>
 #include <lualib.h>

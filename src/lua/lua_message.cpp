@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view end_of_chunk = "<eof>";
 
-/// What stands behind the first `head` and before the next `tail`; "" when there is no such place.
+/// The text between the first `head` and the next `tail`; "" if there is none.
 std::string_view between(std::string_view words, std::string_view head, std::string_view tail) {
     const std::size_t at = words.find(head);
     if (at == std::string_view::npos) {

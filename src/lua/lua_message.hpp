@@ -1,5 +1,5 @@
-// What Lua's own error messages say. They are Lua's words and bring no facts, so they are taken apart: here, and
-// nowhere else. What dinal says itself has its facts beside it (text::Error) and is never looked into.
+// Parses Lua's own error messages; nothing else does. Errors of dinal have their facts in text::Error and are never
+// parsed.
 #pragma once
 
 #include <optional>
@@ -8,40 +8,39 @@
 
 namespace dinal::lua {
 
-/// About a chunk that ran: "attempt to call a nil value (global 'sytem')".
+/// A run-time error: "attempt to call a nil value (global 'sytem')".
 struct LuaMessage {
     std::string_view words;
-    std::string_view type = {};  ///< of the value that stood in the way: "nil"
-    std::string_view kind =
-        {};  ///< of the variable that had it: "global", "local", "field", "method", "for iterator" ...
-    std::string_view name = {};                 ///< and its name: "sytem"
-    std::vector<std::string_view> quoted = {};  ///< all that stands in quotes
+    std::string_view type = {};  ///< type of the value at fault: "nil"
+    std::string_view kind = {};  ///< kind of the variable: "global", "local", "field", "method", "for iterator" ...
+    std::string_view name = {};  ///< the variable's name: "sytem"
+    std::vector<std::string_view> quoted = {};  ///< all quoted parts
     bool calls = false;                         ///< "attempt to call"
     bool calculates = false;                    ///< "attempt to perform arithmetic on"
     bool adds_texts = false;                    ///< "attempt to add a 'string' with a 'number'"
-    bool misses_a_value = false;                ///< some nil that has no name here: "(number expected, got nil)"
+    bool misses_a_value = false;                ///< a nil without a name in the message: "(number expected, got nil)"
 };
 LuaMessage running_message(std::string_view words);
 
-/// About a chunk that does not compile: "'}' expected (to close '{' at line 1) near 'print'".
+/// A syntax error: "'}' expected (to close '{' at line 1) near 'print'".
 struct SyntaxMessage {
     std::string_view complaint;      ///< "'}' expected", "unexpected symbol"
-    std::string_view expected = {};  ///< "}", when that alone may go on there
+    std::string_view expected = {};  ///< "}", if it is the only possibility
     std::string_view near = {};      ///< "print"; "<eof>" at the end
-    std::string_view opened = {};    ///< "{", when the message says what is to be closed
+    std::string_view opened = {};    ///< "{", the bracket that is not closed, if known
     int opened_line = 0;
 };
-/// None for other words.
+/// None for other messages.
 std::optional<SyntaxMessage> syntax_message(std::string_view words);
 
-/// A coroutine.yield where there is a C++ function between it and its resume.
+/// Returns whether it is about a coroutine.yield across a C++ function.
 bool is_about_yield(std::string_view message);
 
-/// The chunk ended too early: more lines may complete it, or those of a string in it.
+/// Returns whether the chunk ended too early, so that more lines may complete it or a string in it.
 bool is_about_end(std::string_view message);
 bool is_about_unfinished_string(std::string_view message);
 
-/// The chunk is bytecode, and that is not allowed, or of another Lua.
+/// Returns whether the chunk is bytecode that is forbidden or of another Lua version.
 bool is_about_forbidden_bytecode(std::string_view message);
 bool is_about_foreign_bytecode(std::string_view message);
 

@@ -16,7 +16,8 @@
 
 #include "lua/interrupt.hpp"
 
-// Those of the C library: in what the linker joins with this file, malloc, free and realloc lead to the end of it.
+// The C library's functions: within this program, the linker redirects malloc, free and realloc to the end of this
+// file.
 extern "C" {
 void* plain_malloc(std::size_t size) __asm__("__real_malloc");
 void plain_free(void* block) __asm__("__real_free");
@@ -31,11 +32,11 @@ namespace {
 
 using Bytes = std::int64_t;
 
-// Atomic: workers have Lua states of their own, and take from the same memory.
-std::atomic<Bytes> limit = 0;  // 0: none
-std::atomic<Bytes> taken = 0;  // since there is a limit; what was there before counts negative when it goes
+// Atomic: workers have their own Lua states but share the memory.
+std::atomic<Bytes> limit = 0;  // 0: no limit
+std::atomic<Bytes> taken = 0;  // since the limit was set; freeing older memory makes it negative
 
-/// What the unwinding of a chunk that is stopped may take on top: messages, closing of variables.
+/// Extra memory for the unwinding of a stopped chunk: messages, closing of variables.
 constexpr Bytes slack = Bytes{4} << 20;
 
 bool limited() noexcept {
@@ -50,7 +51,7 @@ void count(Bytes bytes) noexcept {
     taken.fetch_add(bytes, std::memory_order_relaxed);
 }
 
-/// So much more can be had. Always, when no chunk runs: the program itself goes on.
+/// Returns whether this much more is allowed. Always true while no chunk runs: the program itself continues.
 bool allowed(Bytes more) noexcept {
     const Bytes extra = interrupt_requested() ? slack : 0;
     return !chunk_runs() || now_taken() + more <= limit.load(std::memory_order_relaxed) + extra;
@@ -60,13 +61,13 @@ Bytes size_of(void* block) noexcept {
     return block == nullptr ? 0 : static_cast<Bytes>(malloc_usable_size(block));
 }
 
-/// Lua collects its garbage when it is refused memory, and asks again. So a refusal is final when the same is refused
-/// twice, or when something else is asked for.
+/// Returns whether a refusal is final. Lua collects garbage after a refusal and asks for the same size again; so it is
+/// final if that is refused, too, or if another size is requested.
 bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
     return refused_before != 0 && (refused_before != size || !fits);
 }
 
-thread_local std::size_t refused = 0;  // bytes that Lua was refused last; 0: it has got more since
+thread_local std::size_t refused = 0;  // size of Lua's last refused request; 0: satisfied since
 
 void* allocate(void*, void* block, std::size_t, std::size_t size) {
     const Bytes before = size_of(block);
@@ -90,7 +91,7 @@ void* allocate(void*, void* block, std::size_t, std::size_t size) {
     return result;
 }
 
-/// A block of the C library in place of `block`, which may be null; null if the limit does not allow it.
+/// Allocates or reallocates `block`, which may be null; returns null beyond the limit.
 void* counted(std::size_t size, void* block) {
     if (!limited()) return plain_realloc(block, size);
     const Bytes before = size_of(block);
@@ -103,7 +104,7 @@ void* counted(std::size_t size, void* block) {
     return result;
 }
 
-// AddressSanitizer takes far more for itself.
+// AddressSanitizer itself needs far more.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define DINAL_SANITIZED
@@ -115,8 +116,8 @@ constexpr bool is_sanitized = true;
 constexpr bool is_sanitized = false;
 #endif
 
-/// The system refuses what passes the limit by something that is not counted, such as the pages of a picture: twice the
-/// limit, and what the program and its threads take themselves.
+/// Limits the data of the process (RLIMIT_DATA), as some memory is not counted, such as a picture: twice the limit plus
+/// the program's and its threads' own needs.
 void set_backstop(std::size_t bytes) {
     constexpr std::size_t own = std::size_t{128} << 20U, for_a_thread = std::size_t{16} << 20U;
     std::size_t pages = 0;
@@ -168,7 +169,7 @@ void collect_when_tight(lua_State* L) {
     if (!limited()) {
         return;
     }
-    thread_local Bytes after_last = 0;  // what is taken by what is in use cannot be collected again and again
+    thread_local Bytes after_last = 0;  // memory still in use after the last collection: need not be collected again
     const Bytes all = limit.load(std::memory_order_relaxed);
     after_last = std::min(after_last, now_taken());
     if (now_taken() > all / 2 && now_taken() - after_last > all / 8) {
@@ -192,11 +193,11 @@ MemoryCharge::~MemoryCharge() {
     count(-static_cast<Bytes>(bytes_));
 }
 
-// NOTE: not lua_gc(L, LUA_GCSTEP, kilobytes), which exists for this. In generational mode, the one of the program, each
-// step ages the objects that are just being worked with; after two of them they are old, and old garbage is only
-// collected once Lua's own memory has doubled.
+// NOTE: lua_gc(L, LUA_GCSTEP, kilobytes) is meant for this but fails in generational mode, which the program uses: each
+// step ages the objects in use; after two of them they are old, and old garbage is only collected once Lua's own memory
+// has doubled.
 void note_external_memory(lua_State* L, std::size_t bytes) {
-    constexpr std::size_t much = std::size_t{256} << 20U;  // takes longer to fill than a collection does
+    constexpr std::size_t much = std::size_t{256} << 20U;  // filling it takes longer than a collection
     thread_local std::size_t since_collection = 0;
     since_collection += bytes;
     if (since_collection > much && lua_gc(L, LUA_GCISRUNNING) != 0) {
@@ -207,8 +208,8 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
 
 }  // namespace dinal::lua
 
-// Malloc by others than Lua and operator new, which is that of Eigen's matrices: the linker leads their calls here
-// (--wrap in CMakeLists.txt). Libraries that are linked dynamically keep the plain one.
+// malloc outside of Lua, and operator new, which Eigen's matrices use: the linker redirects calls here (--wrap in
+// CMakeLists.txt). Dynamically linked libraries keep the plain one.
 void* counted_malloc(std::size_t size) {
     return dinal::lua::counted(size, nullptr);
 }
@@ -222,8 +223,8 @@ void counted_free(void* block) {
     plain_free(block);
 }
 
-// NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
-// Never inlined: a checker of memory puts its own in their places, and would see half of a pair.
+// NOTE: the array forms end up here. Those for over-aligned types do not; nothing here has such a type.
+// Never inlined: a memory checker replaces these functions, and would otherwise see half of a pair.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     const bool limited = dinal::lua::limited();
     if (limited && !dinal::lua::allowed(static_cast<dinal::lua::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
@@ -232,7 +233,7 @@ void counted_free(void* block) {
     }
     void* block = plain_malloc(std::max<std::size_t>(size, 1));
     if (block == nullptr) {
-        if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the backstop of the system
+        if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the operating system's backstop
         throw std::bad_alloc();
     }
     if (limited) {

@@ -1,8 +1,8 @@
-// How much memory a script may take: Lua's own, and all that C++ takes with `new` on its behalf.
+// The memory limit of a script: Lua's own memory, and C++ memory from `new` on its behalf.
 //
-// Lua's allocator and operator new count into one number. Past the limit an allocation fails while a chunk runs, and
-// the chunk is stopped, so that no pcall can swallow that. Without a limit nothing is counted. Its last function is for
-// the garbage collector, which sees no memory but Lua's.
+// Lua's allocator and operator new share one counter. Beyond the limit an allocation fails while a chunk runs, and the
+// chunk is stopped, so that no pcall can swallow the failure. Without a limit nothing is counted.
+// note_external_memory() serves the garbage collector, which only sees Lua's memory.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace dinal::lua {
 
-/// From now on chunks may take so many bytes more than is taken already. Once, for the whole process.
+/// Allows `bytes` beyond what is allocated now, for the whole process. Call once.
 void set_memory_limit(lua_State* L, std::size_t bytes);
 
-/// Ends the chunk of this thread if Lua was refused memory and has not got it since, by collecting garbage: no pcall
-/// shall go on from there. Called at the instruction after a refusal, and where a chunk or a coroutine ends.
+/// Ends the chunk of this thread if Lua was refused memory and garbage collection did not help: no pcall may continue
+/// from there. Called at the instruction after a refusal, and at the end of a chunk or coroutine.
 void settle_refusal() noexcept;
 
-/// 0 when there is none.
+/// The limit in bytes; 0: none.
 [[nodiscard]] std::size_t memory_limit() noexcept;
 
-/// Bytes until the limit; the largest number when there is none.
+/// Bytes left until the limit; the largest number without one.
 [[nodiscard]] std::size_t memory_left() noexcept;
 
-/// Collects garbage when less than `bytes` are left: objects that are small for Lua may hold much.
+/// Collects garbage if less than `bytes` are left: objects that are small for Lua may own much memory.
 void make_room(lua_State* L, std::size_t bytes);
 
-/// The same when much of what is allowed is taken. Every call of a bound function begins with it.
+/// Collects garbage if much of the limit is used. Every bound function begins with it.
 void collect_when_tight(lua_State* L);
 
-/// Memory that is not taken with `new`, such as an Eigen matrix: counts while it lives.
+/// Counts memory not allocated with `new`, such as an Eigen matrix, during its lifetime.
 class MemoryCharge {
 public:
     MemoryCharge() = default;
@@ -45,8 +45,8 @@ private:
     std::size_t bytes_ = 0;
 };
 
-/// To be called after an object was pushed that holds so many bytes outside of Lua. Collects the garbage when that has
-/// added up: otherwise a loop over long vectors would fill the memory with dead ones, 40 bytes each for Lua.
+/// Reports an object that owns this much memory outside of Lua. Collects garbage when the sum is large: otherwise a
+/// loop over long vectors would fill the memory with dead ones, each of 40 bytes for Lua.
 void note_external_memory(lua_State* L, std::size_t bytes);
 
 }  // namespace dinal::lua

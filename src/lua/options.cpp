@@ -25,7 +25,7 @@ std::string joined(const Names& names, std::string_view last_separator, std::str
     return text;
 }
 
-/// "; did you mean 'theta0' for 'theta' and 't_end' for 'tend'?", of those that have a likely cure.
+/// "; did you mean 'theta0' for 'theta' and 't_end' for 'tend'?", for names that resemble known ones.
 std::string cures(const Names& unknown, const Names& known) {
     std::vector<std::string> words;
     for (const std::string_view name : unknown) {
@@ -35,7 +35,7 @@ std::string cures(const Names& unknown, const Names& known) {
     return words.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(words, " and "));
 }
 
-/// Takes the names out of `unknown` that are right for the neighbour, and says so.
+/// Removes options of the neighbouring call from `unknown`, and says where they belong.
 std::string options_of_neighbour(Names& unknown, const text::Call* neighbour) {
     if (neighbour == nullptr) return "";
     const auto has = [&](std::string_view name) {
@@ -58,7 +58,7 @@ Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index
 
 std::size_t Options::place(std::string_view name) const {
     for (std::size_t i = 0; i < call_.options.size(); ++i) {
-        const char* own = call_.options[i].name;  // few have the first letter: the length of the others is not asked
+        const char* own = call_.options[i].name;  // the first letter rules out most, which saves strlen
         if (!name.empty() && *own == name.front() && name == own) return i;
     }
     return most_options;
@@ -104,7 +104,7 @@ void Options::check_table() {
 }
 
 void Options::refuse(std::vector<std::string_view>& unknown) const {
-    std::sort(unknown.begin(), unknown.end());  // a table has no order, and what is said must be the same each time
+    std::sort(unknown.begin(), unknown.end());  // tables are unordered; the message must always be the same
     Names known;
     for (const text::Option& option : call_.options) known.emplace_back(option.name);
     const std::string names = joined(unknown, " and ", "'"), first(unknown.front());
@@ -122,7 +122,7 @@ void Options::refuse(std::vector<std::string_view>& unknown) const {
 
 void Options::push(std::string_view name) const {
     lua_pushlstring(L_, name.data(), name.size());
-    lua_rawget(L_, index_);  // raw: a metatable must not hide from the check of names
+    lua_rawget(L_, index_);  // raw: a metatable must not hide options from the check of names
 }
 
 const text::Option& Options::row(std::string_view name) const {
@@ -203,7 +203,7 @@ double Options::number_on_top(const text::Option& option) const {
     if (lua_type(L_, -1) != LUA_TNUMBER || std::isnan(number) || (!infinite && std::isinf(number))) {
         wrong(option.name, infinite ? "a number" : "a finite number");
     }
-    return number + 0.0;  // no minus zero: -0.0 * a user's factor means 0, and 1/k must not be -inf
+    return number + 0.0;  // no -0: -0.0 * a user's factor means 0, and 1/k must not be -inf
 }
 
 std::size_t Options::choice_on_top(const text::Option& option) const {

@@ -1,4 +1,4 @@
-// The one table of named options that a constructor or a method takes, checked strictly and once against its rows.
+// The table of named options of a constructor or method, checked strictly and once against its rows.
 #pragma once
 
 #include <bitset>
@@ -11,33 +11,32 @@
 
 namespace dinal::lua {
 
-/// Whatever is wrong is told by a sentence that names the call, the option, its value and what is wanted. Strings are
-/// no numbers.
+/// Errors name the call, the option, its value and the wanted kind. Strings are not converted to numbers.
 class Options {
 public:
-    /// The table at `index`, which must be the last argument. Raises when it is no table, has positional entries or a
-    /// name that is in no row. When the call may be bare, no argument is an empty table; a number or a string is the
-    /// table with the option that it stands for.
+    /// Reads the table at `index`, which must be the last argument. Raises an error if it is not a table, has
+    /// positional entries or an unknown name. If the call may be bare, a missing argument is an empty table, and a
+    /// number or string sets the bare option.
     Options(lua_State* L, int index, const text::Call& call);
 
-    /// Fills what the rows of a T say. Raises when an option is missing, of another kind, or out of its range.
+    /// Fills the options of a T. Raises an error if an option is missing, of another kind, or out of range.
     template <class T>
     void fill(T& object) const {
         fill(&text::detail::owner_tag<T>, &object);
     }
 
-    /// The option was given when the call began.
+    /// Returns whether the option was given when the call began.
     [[nodiscard]] bool has(std::string_view name) const { return given_[place(name)]; }
-    /// Pushes the option as it stands, nil when absent.
+    /// Pushes the option unchanged, nil if absent.
     void push(std::string_view name) const;
-    /// The option as its row wants it, which must not be of the kind `other`.
+    /// The option as declared in its row, which must not be of the kind `other`.
     [[nodiscard]] text::OptionValue value(const text::Option& option) const;
 
-    /// Options of the kind `other`: a number in the range of its row; the finite numbers of a table or a vector, none
-    /// when it is absent.
+    /// For the kind `other`: a number in the range of its row; or the finite numbers of a table or vector, empty if
+    /// absent.
     [[nodiscard]] double number(std::string_view name) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
-    /// An object of one of our classes; the table of options holds it on. nullptr when it is absent and not needed.
+    /// An object of one of our classes, kept alive by the option table; nullptr if absent and optional.
     template <class T>
     [[nodiscard]] const T* object(std::string_view name) const {
         push(name);
@@ -49,16 +48,16 @@ public:
         return found;
     }
 
-    /// What heads all sentences.
+    /// The beginning of all error sentences.
     [[nodiscard]] const char* call() const { return call_.name; }
-    /// The row of an option that there is.
+    /// The row of an existing option.
     [[nodiscard]] const text::Option& row(std::string_view name) const;
 
-    /// Raises the error as one of this call: "CALL: SENTENCE".
+    /// Raises the error with the call in front: "CALL: SENTENCE".
     [[noreturn]] void fail(text::Error error) const;
-    /// The same for what is wrong with that option.
+    /// The same for an error in that option.
     [[noreturn]] void fail(std::string_view option, std::string sentence) const;
-    /// The value, or fails with its error.
+    /// Returns the value, or raises its error.
     template <class T>
     T value_or_fail(text::Expected<T> expected) const {
         if (!expected) {
@@ -76,12 +75,12 @@ private:
     static constexpr std::size_t most_options = 64;
 
     void check_table();
-    /// Raises that the call has no options of these names.
+    /// Raises an error for unknown options.
     [[noreturn]] void refuse(std::vector<std::string_view>& unknown) const;
-    /// Of a row; `most_options` when there is none.
+    /// The index of the option's row; `most_options` if there is none.
     [[nodiscard]] std::size_t place(std::string_view name) const;
     void fill(const void* owner, void* object) const;
-    /// Of that row and those after it that stand instead of it.
+    /// Checks a row and the following rows that are alternatives to it.
     void check_alternatives(std::size_t row) const;
     [[nodiscard]] double number_on_top(const text::Option& option) const;
     [[nodiscard]] std::size_t choice_on_top(const text::Option& option) const;
@@ -89,13 +88,13 @@ private:
     lua_State* L_;
     int index_;
     text::Call call_;
-    std::bitset<most_options + 1> given_;  ///< by row
+    std::bitset<most_options + 1> given_;  ///< whether each row's option was given
 };
 
-/// Called for each table of options, in the function that was called with it.
+/// Called for each table of options, within the function that received it.
 inline void (*look_at_options)(lua_State* L) = nullptr;
 
-/// The table of a call whose options all fill one struct.
+/// Reads a table whose options fill one struct.
 template <class T>
 [[nodiscard]] T read(lua_State* L, int index, const text::Call& call) {
     const Options options(L, index, call);

@@ -62,7 +62,7 @@ private:
         Prototype made;
         string();  // the name of its source
         const std::size_t first_line = size();
-        size();  // the last one
+        size();  // the last line
         made.frame = take(3);
         made.code = take(4 * size());
         each([&] { made.constants.push_back(constant()); });
@@ -81,7 +81,7 @@ private:
         return made;
     }
 
-    /// Steps from one instruction to the next, and lines that are too far for such a step.
+    /// Line steps between instructions, and absolute lines for larger steps.
     void lines(Prototype& made, std::size_t first_line) {
         constexpr signed char too_far = -128;
         const std::string_view steps = take(size());

@@ -1,4 +1,4 @@
-// A compiled Lua function, taken apart: its instructions, constants and lines, as lua_dump writes them.
+// A parsed Lua function: instructions, constants and lines, from lua_dump.
 #pragma once
 
 #include <cstddef>
@@ -12,32 +12,32 @@
 
 namespace dinal::lua {
 
-/// Views are into the text that it was read from.
+/// Its views refer to the dumped text.
 struct Prototype {
     struct Constant {
-        std::uint8_t type;        ///< as Lua numbers them in a dump
+        std::uint8_t type;        ///< Lua's type tag in a dump
         std::string_view number;  ///< eight bytes
         std::string_view text;
     };
     static constexpr std::uint8_t no = 1, yes = 17, integer_number = 3, float_number = 19;
     static constexpr std::uint8_t short_text = 4, long_text = 20;
 
-    std::string_view frame;  ///< three bytes: parameters, whether there are more (...), registers
+    std::string_view frame;  ///< three bytes: number of parameters, whether it has ..., number of registers
     std::string_view code;
     std::vector<Constant> constants;
-    std::vector<std::string_view> variables;  ///< from outside, three bytes each
+    std::vector<std::string_view> variables;  ///< upvalues, three bytes each
     std::vector<Prototype> inner;
-    std::vector<int> lines;               ///< of each instruction
-    std::vector<std::string_view> names;  ///< of the variables
+    std::vector<int> lines;               ///< source line of each instruction
+    std::vector<std::string_view> names;  ///< names of the upvalues
 
     [[nodiscard]] std::size_t size() const { return code.size() / 4; }
     [[nodiscard]] std::uint32_t instruction(std::size_t at) const;
 };
 
-/// The Lua function at the index as lua_dump writes it, with its debug information.
+/// The output of lua_dump for the Lua function at the index, with debug information.
 std::string dumped_function(lua_State* L, int index);
 
-/// None when it is not written as Lua 5.4 writes it.
+/// Parses a dump; none if it is not in the format of Lua 5.4.
 std::optional<Prototype> prototype_in(std::string_view dumped);
 
 }  // namespace dinal::lua

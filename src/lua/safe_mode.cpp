@@ -19,7 +19,7 @@
 namespace dinal::lua {
 namespace {
 
-// ---- what there is
+// ---- what exists
 
 struct Library {
     const char* name;
@@ -56,9 +56,9 @@ std::atomic<lua_CFunction> original_setmetatable = nullptr;
 std::atomic<lua_CFunction> original_xpcall = nullptr;
 std::atomic<lua_CFunction> original_warn = nullptr;
 
-// ---- what is not quite what it is in Lua
+// ---- functions that differ from Lua's
 
-/// Text only: Lua does not check bytecode.
+/// Text only: Lua does not verify bytecode.
 int load(lua_State* L) {
     if (lua_gettop(L) < 3) {
         lua_settop(L, 3);
@@ -68,7 +68,7 @@ int load(lua_State* L) {
     return original_load.load()(L);
 }
 
-/// Without __gc: in a finalizer nothing can stop an endless loop.
+/// Without __gc: nothing can stop an endless loop in a finalizer.
 int set_metatable(lua_State* L) {
     if (lua_type(L, 2) == LUA_TTABLE) {
         lua_pushliteral(L, "__gc");
@@ -81,7 +81,7 @@ int set_metatable(lua_State* L) {
     return original_setmetatable.load()(L);
 }
 
-/// The handler of xpcall, the upvalue. Lua calls it with hooks switched off when what runs is being stopped.
+/// The handler of xpcall, the upvalue. While code is being stopped, Lua calls it with hooks switched off.
 int handle(lua_State* L) {
     if (interrupt_requested()) {
         return 1;
@@ -115,7 +115,7 @@ int collect_garbage(lua_State* L) {
     return 1;
 }
 
-/// Only what is there already. The upvalue is the table of that.
+/// Returns loaded modules only. The upvalue is the table of these.
 int require(lua_State* L) {
     luaL_checkstring(L, 1);
     lua_settop(L, 1);
@@ -129,7 +129,7 @@ int require(lua_State* L) {
     return 1;
 }
 
-/// To a terminal without what would steer it, a title or a cleared screen; to a file or a pipe as it is.
+/// Removes control sequences (titles, a cleared screen) if the stream is a terminal; otherwise writes unchanged.
 void put(std::FILE* stream, std::string_view text) {
     const std::string shown = ::isatty(::fileno(stream)) == 1 ? text::harmless(text) : "";
     if (!shown.empty()) text = shown;
@@ -150,7 +150,7 @@ int print_safely(lua_State* L) {
     return 0;
 }
 
-/// Lua writes it to standard error.
+/// Warns through Lua, which writes to standard error.
 int warn_safely(lua_State* L) {
     for (int i = 1; ::isatty(STDERR_FILENO) == 1 && i <= lua_gettop(L); ++i) {
         std::size_t length = 0;
@@ -162,12 +162,12 @@ int warn_safely(lua_State* L) {
     return original_warn.load()(L);
 }
 
-// ---- io: standard output, error and input, and no files
+// ---- io: standard output, error and input, without files
 //
-// NOTE: Lua's own handles are not given away: with seek, a script could write over what others have written to a file
-// that standard output leads to.
+// NOTE: Lua's own handles are not exposed: with seek, a script could overwrite what others have written to a file to
+// which standard output is redirected.
 
-/// Writes the arguments from `first` on to the stream that the first upvalue names.
+/// Writes the arguments from `first` on to the stream in the first upvalue.
 int write_from(lua_State* L, int first) {
     auto* stream = static_cast<std::FILE*>(lua_touserdata(L, lua_upvalueindex(1)));
     terminal::make_way_for_output(lua_isstring(L, -1) != 0 && std::string_view(lua_tostring(L, -1)).ends_with('\n'));
@@ -179,7 +179,7 @@ int write_from(lua_State* L, int first) {
     return 0;
 }
 
-/// io.write(...); the second upvalue is the stream as Lua sees it, for io.write(1):write(2).
+/// io.write(...); the second upvalue is the stream's Lua table, for io.write(1):write(2).
 int write(lua_State* L) {
     write_from(L, 1);
     lua_pushvalue(L, lua_upvalueindex(2));
@@ -213,7 +213,7 @@ void push_stream(lua_State* L, std::FILE* stream) {
     lua_setfield(L, -2, "flush");
 }
 
-/// io.read is Lua's own: it reads standard input, and gives away nothing but strings and numbers.
+/// io.read is Lua's own: it reads standard input and returns strings and numbers only.
 void push_io(lua_State* L) {
     lua_createtable(L, 0, 4);
     push_stream(L, stderr);
@@ -230,9 +230,9 @@ void push_io(lua_State* L) {
     lua_pop(L, 1);
 }
 
-// ---- putting it together
+// ---- assembly
 
-/// Lua's own function of that name, replaced by ours in the table on the top of the stack.
+/// Replaces the function `name` in the table on the top by ours; returns Lua's own.
 lua_CFunction replace(lua_State* L, const char* name, lua_CFunction ours) {
     lua_getfield(L, -1, name);
     const lua_CFunction original = lua_tocfunction(L, -1);
@@ -242,7 +242,7 @@ lua_CFunction replace(lua_State* L, const char* name, lua_CFunction ours) {
     return original;
 }
 
-/// A new table with the members that are listed, out of the library as Lua makes it.
+/// Pushes a new table with the listed members of a library.
 void push_library(lua_State* L, const Library& library) {
     lua_pushcfunction(L, library.open);
     lua_pushstring(L, library.name);
@@ -255,7 +255,7 @@ void push_library(lua_State* L, const Library& library) {
     lua_remove(L, -2);
 }
 
-/// ("x"):rep(3) must find our table, and nobody may change the metatable of all strings.
+/// Makes ("x"):rep(3) use our table, and hides the metatable that all strings share.
 void guard_strings(lua_State* L) {
     lua_pushliteral(L, "");
     lua_getmetatable(L, -1);
@@ -266,7 +266,7 @@ void guard_strings(lua_State* L) {
     lua_pop(L, 2);
 }
 
-/// The globals and the table of what is loaded become new ones. Nothing leads to the old ones any more.
+/// Replaces the globals and the table of loaded modules by new ones; the old ones become unreachable.
 void replace_globals(lua_State* L) {
     lua_newtable(L);  // loaded
     for (const Library& library : libraries) {
@@ -284,7 +284,7 @@ void replace_globals(lua_State* L) {
 }  // namespace
 
 void open_safe_libraries(lua_State* L) {
-    // Once: a sweep within a sweep opens states while other threads already read files.
+    // Once: a nested sweep opens states while other threads already read files.
     if (!is_safe.exchange(true)) files::confine_files();
     replace_globals(L);
     lua_pushglobaltable(L);

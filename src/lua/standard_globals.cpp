@@ -10,9 +10,9 @@
 namespace dinal::lua {
 namespace {
 
-const char dinal_key = 0;     // in the registry, which a user's `dinal = nil` does not touch
-const char standard_key = 0;  // registry key of a copy of _G as it was at the start
-const char fields_key = 0;    // of a table: a library -> a copy of its fields at the start
+const char dinal_key = 0;     // in the registry, out of reach of a user's `dinal = nil`
+const char standard_key = 0;  // registry key of the initial copy of _G
+const char fields_key = 0;    // in a table of libraries: a copy of each one's initial fields
 
 /// Copies all fields of one table to another.
 void copy_fields(lua_State* L, int from, int to) {
@@ -24,7 +24,7 @@ void copy_fields(lua_State* L, int from, int to) {
     }
 }
 
-/// Of the libraries in the table on the top, which is a copy of _G.
+/// Copies the fields of the libraries in the table on the top, which is a copy of _G.
 void note_fields(lua_State* L) {
     const int globals = lua_gettop(L);
     lua_newtable(L);
@@ -33,7 +33,7 @@ void note_fields(lua_State* L) {
         if (lua_istable(L, -1)) {
             lua_newtable(L);
             copy_fields(L, lua_gettop(L) - 1, lua_gettop(L));
-            lua_rawset(L, globals + 1);  // library -> copy; lua_next goes on from its name
+            lua_rawset(L, globals + 1);  // library -> copy; lua_next continues from its name
             continue;
         }
         lua_pop(L, 1);
@@ -41,7 +41,7 @@ void note_fields(lua_State* L) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, &fields_key);
 }
 
-/// Gives the libraries back what they had at the start.
+/// Restores the initial fields of the libraries.
 void reset_fields(lua_State* L) {
     const int top = lua_gettop(L);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
@@ -99,7 +99,7 @@ bool is_overwritten(lua_State* L, std::string_view name, std::string_view field)
     };
     push_standard_globals(L);
     get(name);
-    if (!field.empty()) {  // the library as it was: its table, and the copy of its fields
+    if (!field.empty()) {  // a library: its initial table, and the copy of its fields
         lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
         lua_pushvalue(L, -2);
         lua_rawget(L, -2);
@@ -155,7 +155,7 @@ std::vector<std::string> users_globals(lua_State* L) {
         }
     }
     lua_settop(L, top);
-    // Of the program, but not there yet when the others were noted.
+    // Made by the program after the others were recorded.
     std::erase_if(names, [](std::string_view name) { return name == "dinal" || name == "arg"; });
     std::sort(names.begin(), names.end());
     return names;
@@ -180,12 +180,12 @@ void reset_globals(lua_State* L) {
 
 namespace {
 
-// Lua's own functions, called on the frame of ours, as in coroutines.cpp, and atomic for the same reason.
+// Lua's own functions, called on our frame as in coroutines.cpp; atomic for the same reason.
 std::atomic<lua_CFunction> original_print = nullptr;
 std::atomic<lua_CFunction> original_write = nullptr;       // io.write
 std::atomic<lua_CFunction> original_file_write = nullptr;  // file:write
 
-/// The cursor will stand at the beginning of a line.
+/// Returns whether the cursor will be at the beginning of a line.
 bool last_ends_line(lua_State* L) {
     return lua_type(L, -1) == LUA_TSTRING && text_at(L, -1).ends_with('\n');
 }
@@ -208,11 +208,11 @@ int file_write(lua_State* L) {
     return original_file_write.load()(L);
 }
 
-/// In the table on the top of the stack, which is taken; if there is one, and if it has the function.
+/// Replaces a function in the table on the top, if both exist, and pops the table.
 void replace(lua_State* L, const char* name, std::atomic<lua_CFunction>& original, lua_CFunction ours) {
     if (lua_istable(L, -1)) {
         lua_getfield(L, -1, name);
-        const bool plain = lua_getupvalue(L, -1, 1) == nullptr;  // those of safe mode are not
+        const bool plain = lua_getupvalue(L, -1, 1) == nullptr;  // those of safe mode have upvalues
         const lua_CFunction present = plain ? lua_tocfunction(L, -1) : nullptr;
         lua_pop(L, plain ? 1 : 2);
         if (present != nullptr && present != ours) {

@@ -81,7 +81,7 @@ private:
         return result;
     }
 
-    /// As Lua reads it: all letters and digits belong to it, also in 0xend.
+    /// Reads a number as Lua does: with all following letters and digits, as in 0xend.
     Token number() {
         const bool hexadecimal = peek(at_) == '0' && (peek(at_ + 1) == 'x' || peek(at_ + 1) == 'X');
         std::size_t end = at_;
@@ -102,7 +102,7 @@ private:
             if (text_[end] == '\n') {
                 return token(TokenKind::string, end, true);
             }
-            const bool gap = text_[end] == '\\' && peek(end + 1) == 'z';  // \z skips white space, newlines too
+            const bool gap = text_[end] == '\\' && peek(end + 1) == 'z';  // \z skips white space, including newlines
             end += text_[end] == '\\' ? 2 : 1;
             while (gap && std::isspace(static_cast<unsigned char>(peek(end))) != 0) {
                 ++end;
@@ -119,7 +119,7 @@ private:
         return token(TokenKind::comment, std::min(text_.find('\n', at_), text_.size()));
     }
 
-    /// The number of = in the long bracket that opens there; -1 when none does.
+    /// The number of = in the long bracket at `open`; -1 if there is none.
     [[nodiscard]] int long_bracket(std::size_t open) const {
         if (peek(open) != '[') {
             return -1;

@@ -1,4 +1,4 @@
-// Lua text cut into tokens: the one place that knows where a string or a comment ends.
+// Splits Lua text into tokens; strings and comments are recognised only here.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,19 @@ enum class TokenKind { name, keyword, number, string, comment, symbol };
 struct Token {
     TokenKind kind = TokenKind::symbol;
     std::string_view text;
-    std::size_t at = 0;  ///< where it begins in the text
-    int line = 1;        ///< on which it begins
-    bool open = false;   ///< a string or a long comment whose end is missing
+    std::size_t at = 0;  ///< index of its first byte
+    int line = 1;        ///< line of its first byte
+    bool open = false;   ///< whether it is a string or long comment without an end
 
     [[nodiscard]] std::size_t end() const { return at + text.size(); }
     [[nodiscard]] bool is(std::string_view other) const { return kind != TokenKind::string && text == other; }
-    /// 1 of a bracket that opens, -1 of one that closes.
+    /// 1 for an opening bracket, -1 for a closing one, otherwise 0.
     [[nodiscard]] int nesting() const {
         return is("(") || is("{") || is("[") ? 1 : is(")") || is("}") || is("]") ? -1 : 0;
     }
 };
 
-/// All tokens of a text, which need not compile; white space is left out. They refer to the text.
+/// All tokens of a text, which need not compile; without white space. They refer to the text.
 std::vector<Token> tokens(std::string_view text);
 
 /// All keywords of Lua.

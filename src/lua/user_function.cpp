@@ -25,9 +25,9 @@ namespace dinal::lua {
 
 namespace {
 
-// ---- The table in which functions get the states of a run: the same all through it, with no other fields than these.
+// ---- The table through which functions receive the states of a run: the same throughout, with a fixed set of fields.
 
-/// Any other name than those in the table of the states.
+/// Raises an error for an unknown state.
 int no_such_state(lua_State* L) {
     const std::vector<std::string> names = text_keys(L, 1);
     lua_settop(L, 2);
@@ -38,8 +38,8 @@ int no_such_state(lua_State* L) {
               .cure = text::did_you_mean(wanted, names)});
 }
 
-/// Pushes a table with a number in each of these fields; any other one is an error that names them: "there is no state
-/// 'x'; there is e".
+/// Pushes a table with a number in each of these fields; other names raise an error: "there is no state 'x'; there is
+/// e".
 void push_state_table(lua_State* L, std::span<const std::string> names, const char* what = "state") {
     lua_createtable(L, 0, static_cast<int>(names.size()));
     lua_createtable(L, 0, 2);
@@ -56,17 +56,16 @@ void push_state_table(lua_State* L, std::span<const std::string> names, const ch
     }
 }
 
-// Of this thread of the operating system, because a Lua state belongs to one; a function that is asked from another
-// thread finds none and gives NaN.
+// Thread local, as a Lua state belongs to one thread; a function called on another thread finds none and returns NaN.
 thread_local CallState* current = nullptr;
 
-/// Where the counters of a thread begin: no two threads that use one Lua state in turn have the same numbers.
+/// The first counter of a thread: threads that use one Lua state in turn have different numbers.
 std::uint64_t counters_of_thread() {
     static std::atomic<std::uint64_t> threads = 0;
     return (threads++ << 40U) + 1;
 }
 
-// Counts what has run in Lua, or may have, on this thread: as long as it stands still, no variable changes.
+// Counts possible executions of Lua code on this thread: while it is constant, no variable has changed.
 thread_local std::uint64_t world = counters_of_thread();
 thread_local std::uint64_t calls = world;
 
@@ -79,7 +78,7 @@ lua_State* main_thread(lua_State* L) {
     return main;
 }
 
-/// How many parameters the function at `index` names; many for `...`, one for a C function.
+/// The number of parameters of the function at `index`; large for `...`, one for a C function.
 int parameter_count(lua_State* L, int index) {
     constexpr int many = 256;
     if (lua_iscfunction(L, index) != 0) {
@@ -98,13 +97,13 @@ bool wants_state(lua_State* L, int index) {
     }
     bool wants = false;
     if (luaL_getmetafield(L, index, "__call") != LUA_TNIL) {
-        wants = lua_type(L, -1) == LUA_TFUNCTION && parameter_count(L, -1) >= 3;  // self is the first
+        wants = lua_type(L, -1) == LUA_TFUNCTION && parameter_count(L, -1) >= 3;  // self is the first parameter
         lua_pop(L, 1);
     }
     return wants;
 }
 
-/// "FILE:LINE: " of where the function on the top of the stack (popped) is defined; of the caller for a C function.
+/// "FILE:LINE: " of the definition of the function on the top (popped); for a C function of its caller.
 std::string definition(lua_State* L) {
     if (lua_type(L, -1) != LUA_TFUNCTION) {
         luaL_getmetafield(L, -1, "__call");
@@ -132,13 +131,13 @@ CallState::CallState(lua_State* L)
                   "which is too much",
                   deepest));
     }
-    luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, not at each value
+    luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, rather than for each value
     current = this;
 }
 
 CallState::~CallState() {
     current = outer_;
-    lua_pushnil(L_);  // an error, be it one that a run got past
+    lua_pushnil(L_);  // forgets the stored error
     lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     for (const int kept : {state_table_, theta_table_, velocity_table_}) luaL_unref(L_, LUA_REGISTRYINDEX, kept);
     for (const int name : names_) luaL_unref(L_, LUA_REGISTRYINDEX, name);
@@ -171,7 +170,7 @@ void CallState::name_bodies(const std::vector<std::string>& names) {
     bodies_ = kept_names(names);
 }
 
-/// The table is always the same one, so that a call costs no memory.
+/// Reuses one table, so that a call needs no memory.
 void CallState::push_table(int table, std::span<const int> names, std::span<const double> values) const {
     lua_rawgeti(L_, LUA_REGISTRYINDEX, table);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -211,7 +210,7 @@ void CallState::raise_error() {
     }
     lua_rawgetp(L_, LUA_REGISTRYINDEX, this);
     lua_error(L_);
-    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+    std::terminate();  // lua_error does not return, but is not declared so
 }
 
 bool is_callable(lua_State* L, int index) {
@@ -243,7 +242,7 @@ bool CallState::read_states(std::span<double> states) const {
     return read_table(state_table_, names_, states);
 }
 
-/// Of several bodies, whose angles and velocities a user may assign to.
+/// For several bodies, whose angles and velocities a user may assign.
 bool CallState::read_motion(std::span<double> states) const {
     const std::size_t bodies = bodies_.size();
     if (bodies == 0) return read_states(states);
@@ -285,7 +284,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     const bool numbers = lua_type(L, -2) == LUA_TNUMBER && lua_type(L, -1) == LUA_TNUMBER;
     const model::State next =
         nothing ? state : model::State{.theta = lua_tonumber(L, -2), .velocity = lua_tonumber(L, -1)};
-    const bool of_bodies = call->has_bodies(states);  // whose angles and velocities are fields
+    const bool of_bodies = call->has_bodies(states);  // angles and velocities are fields
     const bool good = nothing || (numbers && !of_bodies && std::isfinite(next.theta) && std::isfinite(next.velocity));
     std::string wrong;
     if (!good) {
@@ -311,8 +310,8 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
 
 namespace {
 
-/// Replaces the value on the top of the stack by a copy of its own. The table at `seen` leads from tables to their
-/// copies; metatables are shared.
+/// Replaces the value on the top by a deep copy. The table at `seen` maps tables to their copies; metatables are
+/// shared.
 void copy_value(lua_State* L, int seen, int depth) {
     constexpr int deepest = 100;
     const int type = lua_type(L, -1);
@@ -346,7 +345,7 @@ void copy_value(lua_State* L, int seen, int depth) {
     lua_remove(L, table);
 }
 
-/// Called with a table, returns its copy; with a function, a copy of the table that this returns.
+/// Returns a copy of its argument, a table, or of the table that its argument, a function, returns.
 int copied_table(lua_State* L) {
     if (lua_type(L, 1) != LUA_TTABLE) {
         lua_call(L, 0, 1);
@@ -402,7 +401,7 @@ LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
     reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
 }
 
-// Also right while lua_close runs the finalizers: the registry goes last.
+// Valid also while lua_close runs finalizers: the registry goes last.
 LuaFunction::~LuaFunction() {
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
     luaL_unref(main_, LUA_REGISTRYINDEX, start_);
@@ -428,7 +427,7 @@ void LuaFunction::push(lua_State* L) const {
     lua_rawgeti(L, LUA_REGISTRYINDEX, reference_);
 }
 
-/// A finite number on the top of the stack; a string that looks like one is none.
+/// Accepts a finite number on the top; not a string that looks like one.
 bool LuaFunction::is_good(lua_State* L, double& result) const {
     result = lua_tonumber(L, -1);
     return lua_type(L, -1) == LUA_TNUMBER && std::isfinite(result) && (role_.may_be_negative || result >= 0);
@@ -438,7 +437,7 @@ bool LuaFunction::is_allowed(double result) const {
     return std::isfinite(result) && (role_.may_be_negative || result >= 0);
 }
 
-/// What it is called with in a run.
+/// The arguments of a call in a run.
 Arguments LuaFunction::arguments_in(const CallState& call) const {
     Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1,
                     .of_speed = role_.of_speed,
@@ -452,8 +451,8 @@ bool LuaFunction::fits(std::span<const double> states) const {
     return count == 0 || states.size() == count;
 }
 
-/// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
-/// hook looks on, or is to stop what runs.
+/// The formula if all variables that it treats as constant are unchanged; null if Lua must be called, also if a hook is
+/// set.
 model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
     if (lua_gethook(call.L_) != nullptr || start_ != LUA_NOREF) return nullptr;
     const bool is_read = formula() != nullptr;
@@ -485,7 +484,7 @@ void LuaFunction::look_again(const CallState& call) {
     }
 }
 
-/// The first values, and then some of them, are compared with those of Lua.
+/// Compares the first values, and occasionally later ones, with Lua's.
 bool LuaFunction::agrees(double read, CallState& call, double t, const model::State& state,
                          std::span<const double> states) {
     constexpr std::uint64_t first = 3, between = 1024;
@@ -509,7 +508,7 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
     return M;
 }
 
-// lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
+// Uses lua_pcall although Lua's errors would unwind the integrator as well: the rows so far must be kept.
 double LuaFunction::ask(CallState& call, double t, const model::State& state, std::span<const double> states) {
     lua_State* L = call.L_;
     lua_pushcfunction(L, guarded<witness_error>);
@@ -524,7 +523,7 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
     lua_pushnumber(L, t);
     if (feedback_) arguments += call.push_motion(state, states);
     if (const auto* memory = dynamic_cast<const LuaMemory*>(memory_.get())) {
-        lua_settop(L, handler + 5);  // no states are nil
+        lua_settop(L, handler + 5);  // without states this is nil
         memory->push(L);
         arguments = 5;
     }
@@ -569,7 +568,7 @@ void LuaFunction::decide(model::terms::Piece& piece, double t, const model::Stat
     reading_->formula->decide(piece, t, state, states.first(reading_->arguments.state_count()), again);
 }
 
-/// Where the formula has no value beyond its piece, the function itself is called.
+/// Calls the function itself if the formula has no value beyond its piece.
 double LuaFunction::value_on(const model::terms::Piece& piece, double t, const model::State& state,
                              std::span<const double> states, std::vector<double>* margins) {
     double M = failure;
@@ -582,14 +581,14 @@ double LuaFunction::value_on(const model::terms::Piece& piece, double t, const m
     }
     if (margins != nullptr) margins->resize(piece.conditions.size(), model::never);
     if (!is_law()) return std::isfinite(M) ? M : value_with(t, state, states);
-    // Below speed 0 it goes on as its formula does, or nobody knows how. Above, a piece may be negative beyond its end.
+    // Below speed 0 only the formula can continue. Above, a piece may be negative beyond its end.
     const double speed = role_.of_speed ? states.front() : t;
     if (speed < 0 || is_allowed(M)) return M;
     const double own = value_with(t, state, states);
     return std::isfinite(M) && std::isfinite(own) ? M : own;
 }
 
-// Not after Ctrl-C, which means all of it.
+// Not after Ctrl-C, which stops everything.
 bool LuaFunction::may_go_on() {
     if (current == nullptr || interrupt_requested()) {
         return false;
@@ -612,7 +611,7 @@ struct Block {
 };
 }  // namespace
 
-/// Called with the Block; returns nothing, or the first result that is no good.
+/// Receives the Block; returns nothing, or the first invalid result.
 int LuaFunction::fill_protected(lua_State* L) {
     auto& block = *static_cast<Block*>(lua_touserdata(L, 1));
     block.function->push(L);
@@ -660,7 +659,7 @@ std::size_t LuaFunction::ask(CallState& call, std::span<const double> times, std
     return block.filled;
 }
 
-/// The result or the error value stands on the top of the stack.
+/// Stores the invalid result or error value on the top of the stack.
 double LuaFunction::fail(CallState& call, int status, double t) const {
     lua_State* L = call.L_;
     text::Error error;

@@ -1,4 +1,4 @@
-// How values become Lua: numbers, flags, texts, optionals and lists each by themselves, so that a field is one row.
+// Conversion of values to Lua: numbers, flags, texts, optionals and lists, so that a field is one row.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace dinal::lua {
 
-/// What a getter returns that has pushed its value by itself.
+/// The result of a getter that has pushed its value itself.
 struct Pushed {};
 
 /// An argument that can be called.
@@ -24,15 +24,15 @@ struct Callable {
     int index;
 };
 
-/// What becomes a table of numbers by their names. Python keeps their order.
+/// A table of numbers by name; Python keeps their order.
 using NamedNumbers = std::vector<std::pair<const char*, double>>;
 
-/// Gives the table on the top a metatable that has the names in their order, as that of a row of data; one metatable
-/// for all tables of these names.
+/// Gives the table on the top a metatable that stores the order of its names, as for a row of data; tables of the same
+/// names share it.
 void note_order(lua_State* L, const NamedNumbers& numbers);
 
-/// Pushes a number, a flag, a text, a list of such, a table of such by their names, or an object of a class; nil for an
-/// optional that is empty.
+/// Pushes a number, a flag, a text, a list of such, a table of such by name, or an object of a class; nil for an empty
+/// optional.
 template <class Value>
 void push_value(lua_State* L, const Value& value) {
     if constexpr (std::is_same_v<Value, Pushed>) {
@@ -80,7 +80,7 @@ void set_value(lua_State* L, const char* name, const Value& value) {
     lua_setfield(L, -2, name);
 }
 
-/// The string at `index`, or those of a list; none when something else is there or among them.
+/// The string at `index`, or the strings of a list; none if there is anything else.
 inline std::optional<std::vector<std::string>> strings_at(lua_State* L, int index) {
     index = lua_absindex(L, index);
     std::vector<std::string> all;
@@ -95,7 +95,7 @@ inline std::optional<std::vector<std::string>> strings_at(lua_State* L, int inde
     return all;
 }
 
-/// Pushes a copy of the table at `index`, without its places up to `listed`.
+/// Pushes a copy of the table at `index` without its list entries up to `listed`.
 inline void push_copy(lua_State* L, int index, lua_Integer listed = 0) {
     index = lua_absindex(L, index);
     lua_newtable(L);
@@ -108,7 +108,7 @@ inline void push_copy(lua_State* L, int index, lua_Integer listed = 0) {
 }
 
 namespace detail {
-/// The object that the running function was called on.
+/// The object of the running method.
 template <class Object>
 const Object& own(lua_State* L) {
     if (const auto* object = lua::test<Object>(L, 1)) return *object;
@@ -119,12 +119,12 @@ template <class Object, auto get>
 int read_value(lua_State* L) {
     const auto& object = own<Object>(L);
     if constexpr (std::is_invocable_v<decltype(get), lua_State*, const Object&>) {
-        const Object kept = object;  // what is called may drop the last reference
+        const Object kept = object;  // get may drop the last reference
         push_value(L, std::invoke(get, L, kept));
     } else if constexpr (std::is_invocable_v<decltype(get), const Object&>) {
         push_value(L, std::invoke(get, object));
     } else {
-        push_value(L, std::invoke(get, *object));  // a handle, which leads to the object
+        push_value(L, std::invoke(get, *object));  // dereferences a handle
     }
     return 1;
 }
@@ -150,12 +150,12 @@ int read_kept(lua_State* L) {
 }  // namespace detail
 
 namespace detail {
-/// Raises "v:quantile(p): p must be WANTED, got ...", about the argument at `index` of the function that runs.
+/// Raises "v:quantile(p): p must be WANTED, got ..." about the argument at `index` of the running function.
 [[noreturn]] void raise_argument(lua_State* L, int index, std::string_view wanted);
-/// "a vector": the class with this metatable.
+/// "a vector", for the class with this metatable.
 std::string article_and_name(lua_State* L, const void* key);
 
-/// The argument at `index`: a finite number, a string or an object; an optional one may be absent.
+/// Reads the argument at `index`: a finite number, a string or an object; an optional one may be absent.
 template <class T>
 decltype(auto) argument(lua_State* L, int index) {
     if constexpr (requires(T t) { t.has_value(); }) {
@@ -183,7 +183,7 @@ decltype(auto) argument(lua_State* L, int index) {
     }
 }
 
-/// Pushes the result of a function: numbers in a row as a vector; raises an error as one of the call.
+/// Pushes the result of a function, a list of numbers as a vector; raises an error with the call in front.
 template <class Result>
 void push_result(lua_State* L, Result result) {
     if constexpr (std::is_same_v<Result, std::vector<double>>) {
@@ -198,7 +198,7 @@ void push_result(lua_State* L, Result result) {
 
 template <auto function, class Result, class... T, std::size_t... i>
 int call_with_state(lua_State* L, Result (* /*type*/)(lua_State*, T...), std::index_sequence<i...> /*places*/) {
-    // Braces: the object is looked at before its arguments.
+    // Braces guarantee the order: the object is checked before its arguments.
     const std::tuple<decltype(argument<std::remove_cvref_t<T>>(L, 1))...> arguments{
         argument<std::remove_cvref_t<T>>(L, static_cast<int>(i) + 1)...};
     push_result(L, std::apply([L](const auto&... each) { return function(L, each...); }, arguments));
@@ -221,20 +221,20 @@ int called(lua_State* L) {
 }
 }  // namespace detail
 
-/// A method or a function that is a C++ function of the object and its arguments, which are read and checked by their
-/// types.
+/// Binds a C++ function of the object and its arguments as a method or function; arguments are read and checked by
+/// their types.
 template <auto function>
 inline constexpr Binding a_typed_method = a_method<detail::called<function>>;
 template <auto function>
 inline constexpr Binding a_typed_function = a_function<detail::called<function>>;
 
-/// A field that is a member of the C++ object, or what a function makes of it, or of the Lua state and it.
+/// Binds a field: a member of the C++ object, or a function of it, or of the Lua state and it.
 template <class Object, auto get>
 inline constexpr Binding a_value = a_field<detail::read_value<Object, get>>;
-/// The same, made when it is first asked for and then kept with the object, so that a loop over it is no trap.
+/// The same, computed on first use and kept with the object, so that reading it in a loop is cheap.
 template <class Object, auto get>
 inline constexpr Binding a_kept_value = a_field<detail::read_kept<Object, get>>;
-/// A method without arguments.
+/// Binds a method without arguments.
 template <class Object, auto get>
 inline constexpr Binding a_question = a_method<detail::read_value<Object, get>>;
 template <class Object, auto get>

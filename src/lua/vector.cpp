@@ -30,7 +30,7 @@ std::string key_beside_list(lua_State* L, int index) {
         const bool listed = lua_isinteger(L, -2) != 0 && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= n;
         const bool named = lua_type(L, -2) == LUA_TSTRING && is_name(text_at(L, -2));
         const std::string own = listed ? "" : (named ? std::string(text_at(L, -2)) : "[" + describe(L, -2) + "]");
-        if (!listed && (key.empty() || own < key)) key = own;  // the first one, in whatever order Lua has them
+        if (!listed && (key.empty() || own < key)) key = own;  // the alphabetically first, as tables are unordered
         lua_pop(L, 1);
     }
     return key;
@@ -38,7 +38,7 @@ std::string key_beside_list(lua_State* L, int index) {
 
 namespace {
 
-/// "sys:simulate: times[2] = inf must be finite"; `index` is that of the value.
+/// Raises "sys:simulate: times[2] = inf must be finite" about the value at `index`.
 [[noreturn]] void refuse(lua_State* L, int index, std::string_view call, std::string_view option,
                          const std::string& complaint) {
     raise(L, {.sentence = fmt::format("{}{}{}{}", call, option.empty() ? "" : ": ", option, complaint),
@@ -81,7 +81,7 @@ std::vector<double> numbers_that_are(lua_State* L, int index, std::string_view c
     }
     const auto bad = std::find_if_not(numbers.begin(), numbers.end(), allowed);
     if (bad != numbers.end()) {
-        const std::string number = std::isnan(*bad) ? "nan" : fmt::format("{}", *bad);  // whatever its sign
+        const std::string number = std::isnan(*bad) ? "nan" : fmt::format("{}", *bad);  // without its sign
         refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, number));
     }
     return numbers;

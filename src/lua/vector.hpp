@@ -1,4 +1,4 @@
-// A vector of numbers as Lua sees it: immutable, either a view into something that it keeps alive or its own data.
+// Vectors of numbers for Lua: immutable, either a view that keeps its owner alive or with their own data.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,7 @@ public:
         values_ = *own;
         owner_ = own;
     }
-    /// A view of numbers that belong to `owner` (a trajectory). Shared, because a column may outlive the run's
-    /// variable.
+    /// A view of numbers owned by `owner` (a trajectory), which it keeps alive.
     Vector(std::shared_ptr<const void> owner, const double* data, std::size_t size)
         : owner_(std::move(owner)), values_(data, size) {}
 
@@ -36,23 +35,22 @@ private:
     std::span<const double> values_;
 };
 
-/// n zeros. Where memory is limited, garbage makes room for them.
+/// n zeros. With a memory limit, garbage is collected to make room.
 std::vector<double> new_numbers(lua_State* L, std::size_t n);
 
-/// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes;
-/// returns 1, as a function with one result.
+/// Pushes a vector with its own data and reports its size to the garbage collector; returns 1, the number of results.
 int push_vector(lua_State* L, std::vector<double> values);
 
-/// "x" or "[2]": a field of the table at `index` besides 1 to #t, which no list has; empty when there is none.
+/// A key of the table at `index` other than 1 to #t, as "x" or "[2]"; empty for a proper list.
 std::string key_beside_list(lua_State* L, int index);
 
-/// The finite numbers of a table or a vector at `index`, which is that option of the call, or all that it takes. They
-/// head the sentence when there is something else: "sys:simulate: times".
+/// The finite numbers of a table or vector at `index`, the value of an option, or the only argument. Errors begin with
+/// the call and the option: "sys:simulate: times".
 std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option = "");
 
-// Numbers with gaps: nan where nothing was measured.
+// Numbers with gaps: nan marks a missing measurement.
 
-/// The numbers of a table or a vector at `index`, which is that option of the call; nan is one, infinity is not.
+/// The same, but nan is accepted; infinity is not.
 std::vector<double> numbers_with_gaps_at(lua_State* L, int index, std::string_view call, std::string_view option);
 
 }  // namespace dinal::lua

@@ -18,7 +18,7 @@ int refuse_exit(lua_State* L) {
               .call = "os.exit"});
 }
 
-/// Called with the state that is to be like.
+/// Receives the state to be copied.
 int open_worker(lua_State* L) {
     auto* like = static_cast<lua_State*>(lua_touserdata(L, 1));
     lua_settop(L, 0);
@@ -60,7 +60,7 @@ OwnedState new_state_like(lua_State* like) {
     bool good = L != nullptr;
     if (good) {
         void* of_allocator = nullptr;
-        lua_Alloc allocator = lua_getallocf(like, &of_allocator);  // the one that counts, where memory is limited
+        lua_Alloc allocator = lua_getallocf(like, &of_allocator);  // the parent's: counts bytes if limited
         lua_setallocf(L, allocator, of_allocator);
         for (const lua_CFunction step : {guarded<open_worker>, guarded<take_paths>}) {
             lua_pushcfunction(L, step);

@@ -1,4 +1,4 @@
-// Lua states besides that of the program, in which other threads run users' functions.
+// Additional Lua states, in which other threads run users' functions.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace dinal::lua {
 
-/// Tells how the libraries of dinal are opened in a new state. Once, when they are opened in the first.
+/// Sets the function that opens dinal's libraries in a new state. Call once, when they are opened in the first.
 void set_library(void (*open)(lua_State* L)) noexcept;
 
 struct StateCloser {
@@ -15,15 +15,15 @@ struct StateCloser {
 };
 using OwnedState = std::unique_ptr<lua_State, StateCloser>;
 
-/// A new state with all that a script finds in `like` when it begins: the libraries, safe mode and the limit of memory,
-/// the places where modules are looked for. Raises in `like` when there is no memory for it.
+/// A new state equal to `like` at the start of a script: libraries, safe mode, memory limit, module paths. Raises an
+/// error in `like` if memory is insufficient.
 OwnedState new_state_like(lua_State* like);
 
-/// Makes os.exit an error in a state of a worker.
+/// Makes os.exit an error in a worker's state.
 void forbid_exit(lua_State* L);
 
-/// Raises when this is a worker's thread, where nobody could tell whose picture or file it is: "CALL is not possible
-/// within a sweep; ...".
+/// Raises "CALL is not possible within a sweep; ..." on a worker's thread, where pictures and files could not be
+/// attributed.
 void refuse_in_worker(lua_State* L, const char* call);
 
 }  // namespace dinal::lua

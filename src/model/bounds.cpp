@@ -7,13 +7,13 @@ namespace {
 
 constexpr double unit = std::numeric_limits<double>::epsilon();
 
-/// Beyond what doubles hold an end is the greatest of them, so that 1/x stays known.
+/// An end that overflows becomes the greatest double, so that 1/x stays bounded.
 Interval checked(double lo, double hi) {
     constexpr double greatest = std::numeric_limits<double>::max();
     return lo <= hi ? Interval{std::min(lo, greatest), std::max(hi, -greatest)} : anything;
 }
 
-/// By a few roundings, for functions of the C library are not quite monotonic; but they keep the sign.
+/// Widens by a few roundings, as functions of the C library are not quite monotonic; they do keep the sign.
 Interval wider(Interval a) {
     constexpr double part = 1e-15;
     const Interval known = checked(a.lo, a.hi);
@@ -30,7 +30,7 @@ double at(Op op, double a, double b = 0) {
     return apply(op, a, b, result) ? result : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Of a rising function.
+/// The image under a rising function.
 Interval ends(Op op, const Interval& a) {
     return {at(op, a.lo), at(op, a.hi)};
 }
@@ -57,7 +57,7 @@ Interval power(const Interval& a, const Interval& b) {
 
 constexpr double half_turn = 3.14159265358979323846;
 
-/// Of a sine whose greatest and least values lie at half turns, from `shift` of one.
+/// The image under a sine or cosine with extremes at (n - shift) half turns.
 Interval wave(Op op, const Interval& a, double shift) {
     constexpr double far = 1e6, margin = 1e-9;
     if (!(a.hi - a.lo < 2 * half_turn) || std::fabs(a.lo) > far || std::fabs(a.hi) > far) {
@@ -78,7 +78,7 @@ Interval tangent(const Interval& a) {
     return a.hi - a.lo < half_turn && (below.lo > 0 || below.hi < 0) ? wider(ends(Op::tan, a)) : anything;
 }
 
-/// Of whole numbers that differ, which come from steps, so a crude answer will do.
+/// Operations on whole numbers that differ over the interval. These come from steps, so crude bounds are enough.
 Interval of_whole(Op op, const Interval& a, const Interval& b) {
     constexpr double exact = 0x1p53;
     Interval r = anything;
@@ -108,7 +108,7 @@ Interval of_whole(Op op, const Interval& a, const Interval& b) {
     return std::max(std::fabs(r.lo), std::fabs(r.hi)) < exact ? r : anything;
 }
 
-/// On several pieces.
+/// Operations that are smooth on pieces only.
 Interval fold(Op op, const Interval& a, const Interval& b) {
     const double size = std::max(std::fabs(b.lo), std::fabs(b.hi));
     const bool known = std::isfinite(a.lo) && std::isfinite(a.hi) && (b.lo > 0 || b.hi < 0);
@@ -169,7 +169,7 @@ Interval image(Op op, const Interval& a, const Interval& b) {
         case Op::log2:
         case Op::log10:
         case Op::asin:
-            return wider(ends(op, a));  // NaN at an end: outside of where it is defined
+            return wider(ends(op, a));  // NaN at an end: outside of the domain
         case Op::acos:
             return wider(ends(op, {a.hi, a.lo}));
         case Op::atan2:
@@ -216,7 +216,7 @@ std::optional<double> decision_over(Op op, const Interval& a, const Interval& b)
 
 namespace {
 
-/// exp(x) - 1 of what is no less than x.
+/// An upper bound of exp(x) - 1.
 double grows(double x) {
     return std::expm1(x * (1 + 8 * unit));
 }
@@ -305,7 +305,7 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
     const double c = at(op, a.disc.c, b.disc.c);
     Slot result{image(op, a.disc, b.disc, c), {}, 0, false};
     if (!ranges_) return result;
-    const bool square = op == Op::multiply && &a == &b;  // which is never negative
+    const bool square = op == Op::multiply && &a == &b;  // a square is never negative
     result.range = square ? image(Op::power, a.range, Interval{2, 2}) : image(op, a.range, b.range);
     if (a.apart > 0 || b.apart > 0) {
         const auto most = [](const Slot& s) { return std::max(std::fabs(s.range.lo), std::fabs(s.range.hi)); };
@@ -323,13 +323,13 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
     return result;
 }
 
-/// The result there, and beyond the piece.
+/// The result of a folding operation whose decision is held, also beyond the piece.
 Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) const {
     if (op == Op::abs) return decision < 0 ? combined(Op::negate, a, a) : a;
     if (op == Op::floor_divide) return number(decision);
     if (op != Op::modulo && op != Op::fmod) return number(from_whole(static_cast<std::int64_t>(decision)));
     Slot rest = combined(Op::subtract, a, combined(Op::multiply, number(decision), b));
-    rest.disc.c = std::fma(-decision, b.disc.c, a.disc.c);  // exact, as the operation itself is
+    rest.disc.c = std::fma(-decision, b.disc.c, a.disc.c);  // exact, like the operation itself
     const double rounded = 4 * unit * std::max(std::fabs(a.range.lo), std::fabs(a.range.hi));
     rest.range.lo -= rounded, rest.range.hi += rounded;
     return rest;
@@ -337,8 +337,8 @@ Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) 
 
 Walk::Result Walk::run(std::optional<std::size_t> condition) {
     constexpr Result undecided{{std::numeric_limits<double>::quiet_NaN(), never}, never, anything};
-    const auto told = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
-    loosest_ = 0;
+    const auto as_result = [](const Slot& s) { return Result{s.disc, s.apart, s.range}; };
+    greatest_relative_radius_ = 0;
     for (std::size_t place = 0;;) {
         const Formula::Step& s = formula_->steps()[place];
         const Slot &a = slots_[s.a], &b = slots_[s.b];
@@ -347,9 +347,9 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
         if (s.op == Op::jump) {
             place = s.yes;
         } else if (s.op == Op::give) {
-            return told(a);
+            return as_result(a);
         } else if (s.op == Op::give_whole && a.constant) {
-            return told(number(static_cast<double>(to_whole(a.disc.c))));
+            return as_result(number(static_cast<double>(to_whole(a.disc.c))));
         } else if (s.op >= Op::give) {
             return undecided;
         } else if (s.op == Op::move) {
@@ -367,9 +367,9 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
             } else {
                 const bool quotient = s.op == Op::modulo || s.op == Op::fmod || s.op == Op::floor_divide;
                 const Slot decider = compares || quotient ? combined(compares ? Op::subtract : Op::divide, a, b) : a;
-                if (condition == place) return told(decider);
+                if (condition == place) return as_result(decider);
                 const double part = decider.apart > 0 ? never : decider.disc.r / std::fabs(decider.disc.c);
-                loosest_ = std::max(loosest_, part == part ? part : never);
+                greatest_relative_radius_ = std::max(greatest_relative_radius_, part == part ? part : never);
             }
             if (!decision) return undecided;
             if (compares) {

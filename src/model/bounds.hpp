@@ -1,6 +1,6 @@
-// What the program of a formula gives for many numbers at once: for all real ones of an interval, or for all complex
-// ones of a disc. Where a function is analytic and bounded on a disc about a stretch, its values at Chebyshev nodes
-// tell all of it, to an error that falls as a power of the radius.
+// Runs the program of a formula on sets: real intervals or complex discs. A function that is analytic and bounded on a
+// disc around a stretch is determined by its values at Chebyshev nodes, with an error that falls as a power of the
+// radius.
 #pragma once
 
 #include <cmath>
@@ -13,28 +13,28 @@
 
 namespace dinal::model::bounds {
 
-/// What a program computes from doubles between lo and hi lies between its bounds: rounding keeps the order.
+/// Encloses all results of a program for doubles between lo and hi; rounding keeps the order.
 struct Interval {
     double lo = 0, hi = 0;
 
     [[nodiscard]] bool is_one() const { return std::bit_cast<std::uint64_t>(lo) == std::bit_cast<std::uint64_t>(hi); }
-    /// No number, too.
+    /// Returns whether nothing is known; the result may also be NaN.
     [[nodiscard]] bool is_anything() const { return lo == -never && hi == never; }
 };
 inline constexpr Interval anything{-never, never};
 
-/// The results of an operation, whole numbers as floats. A condition has none.
+/// Encloses the results of an operation, whole numbers as floats. Not for conditions.
 Interval image(Op op, const Interval& a, const Interval& b);
 
-/// decision_of() this condition where it is the same for all; none where it is not, or where that is not known.
+/// Returns decision_of() the condition if it is the same for all arguments; none if it differs or is unknown.
 std::optional<double> decision_over(Op op, const Interval& a, const Interval& b);
 
-/// All complex numbers that are no farther than r from a real one.
+/// The complex numbers within the distance r of the real number c.
 struct Disc {
     double c = 0, r = 0;
 };
 
-/// A few roundings more than r, and those of the centre c.
+/// Enlarges r by its own rounding and that of the centre c.
 inline double outward(double r, double c) {
     constexpr double few = 16 * std::numeric_limits<double>::epsilon();
     const double more = r * (1 + few) + few * std::fabs(c) + std::numeric_limits<double>::min();
@@ -42,37 +42,37 @@ inline double outward(double r, double c) {
     return more;
 }
 
-/// The results of an operation that gives c for the centres; not finite where it may not be analytic.
+/// Encloses the results of an operation whose result at the centres is c; not finite if it may not be analytic.
 Disc image(Op op, const Disc& a, const Disc& b, double c);
 
-/// Runs a program on discs. Its conditions are decided by intervals of the real numbers, or by a piece that the
-/// function is held to. What hardly changes on the stretch while its disc is huge, as the foot of a narrow pulse, is
-/// taken for a constant, and the rest of it stands apart.
+/// Runs a program on discs. Conditions are decided by real intervals, or by a piece that fixes them. A value that
+/// hardly changes on the stretch although its disc is huge, such as the foot of a narrow pulse, is replaced by a
+/// constant with the deviation `apart`.
 class Walk {
 public:
-    /// Without `ranges` what is not held is decided as it is for the centres.
+    /// Without `ranges`, conditions that no piece fixes are decided at the centres.
     void begin(const Formula& formula, const terms::Piece* piece, bool ranges);
-    /// A register of what the function is given: the numbers near a stretch, and the real ones on it.
+    /// Sets an argument of the function: its complex neighbourhood and its real values on the stretch.
     void set(std::size_t place, const Disc& disc, const Interval& range) { slots_[place] = {disc, range, 0, false}; }
     void set(std::size_t place, double value) { slots_[place] = number(value); }
 
     struct Result {
-        Disc disc;     ///< the centre is no number where some condition is not decided
-        double apart;  ///< on the stretch it is farther off what the disc holds by this at most
+        Disc disc;     ///< NaN centre: some condition is undecided
+        double apart;  ///< bound of the deviation from the disc on the stretch
         Interval range;
     };
-    /// What was set is gone then. With a `condition`, a step that is held: of the difference that it compares, or of
-    /// what it folds, in its periods.
+    /// Runs once; the arguments are overwritten. With `condition`, a step whose decision is held, returns the compared
+    /// difference, or the folded argument in periods.
     Result run(std::optional<std::size_t> condition = {});
-    /// The greatest radius, as a part of the centre, of what decided conditions that are held.
-    [[nodiscard]] double loosest() const { return loosest_; }
+    /// The greatest ratio of radius to centre among the deciders of held conditions.
+    [[nodiscard]] double greatest_relative_radius() const { return greatest_relative_radius_; }
 
 private:
     struct Slot {
         Disc disc;
         Interval range;
         double apart = 0;
-        bool constant = true;  ///< the bits of the centre, which may be those of a whole number
+        bool constant = true;  ///< whether only the bits of the centre count, which may be a whole number
     };
     [[nodiscard]] static Slot number(double bits) { return {{bits, 0}, {bits, bits}}; }
     [[nodiscard]] Slot combined(Op op, const Slot& a, const Slot& b) const;
@@ -81,7 +81,7 @@ private:
     const Formula* formula_ = nullptr;
     const double* held_ = nullptr;
     bool ranges_ = false;
-    double loosest_ = 0;
+    double greatest_relative_radius_ = 0;
     std::vector<Slot> slots_{};
 };
 

@@ -13,7 +13,7 @@ concept WithClosedForm = requires(const T& term, double inside, ClosedForm& sum)
     term.closed_form(inside, sum);
 };
 
-/// Polynomials of so many coefficients are shifted without asking for memory.
+/// The most coefficients that are shifted without allocation.
 constexpr std::size_t max_powers = 16;
 
 }  // namespace
@@ -23,7 +23,8 @@ void ClosedForm::add_powers(double at, std::span<const double> coefficients) {
     const std::size_t n = coefficients.size();
     reach(n - 1);
     const double shift = since(at);
-    // Horner's scheme with a remainder kept at each step: the coefficients about the origin, the constant one first.
+    // Horner's scheme with a remainder kept at each step yields the coefficients about the origin, the constant one
+    // first.
     std::array<double, max_powers> carried{};
     std::vector<double> many;
     double* c = carried.data();
@@ -38,7 +39,8 @@ void ClosedForm::add_powers(double at, std::span<const double> coefficients) {
     }
 }
 
-/// The phase at the origin is a sum in two doubles: far from `at` its rounding would be that of the time.
+/// The phase at the origin is summed in two doubles: far from `at`, one double would add an error as large as that of
+/// the time.
 void ClosedForm::add_sine(double amplitude, double omega, double at, double phase) {
     const auto [angle, small] = terms::angle_at(time_, rest_, omega, at, phase);
     const double s = std::sin(angle), c = std::cos(angle), a = gain_ * amplitude;
@@ -52,7 +54,7 @@ void ClosedForm::add_sine(double amplitude, double omega, double at, double phas
 
 void ClosedForm::add_exponential(double amplitude, double rate, double at) {
     const double amount = terms::Exponential::grown(gain_ * amplitude, rate * since(at));
-    if (amount == 0) return;  // what has decayed to nothing must not keep the arcs short
+    if (amount == 0) return;  // a decayed part must not keep the arcs short
     exponentials_.push_back({rate, amount});
     fastest_ = std::max(fastest_, std::fabs(rate));
     growth_ = std::max(growth_, rate);

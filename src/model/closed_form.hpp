@@ -1,7 +1,7 @@
 // M on a smooth stretch as a formula: powers, sines and exponentials of the time since a moment in that stretch.
 //
-// Each native term that has one says it in its own file: `closed_form(inside, sum)` adds to `sum` what the term is on
-// the stretch between its breaks in which the time `inside` lies. A term without that question has no closed form.
+// A native term with a closed form has a function `closed_form(inside, sum)` in its file. It adds to `sum` the term on
+// the stretch between two breaks that contains the time `inside`.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace dinal::model {
 
-/// A sum of c_n tau^n, of p sin(omega tau) + q cos(omega tau) and of a exp(rate tau), for a time tau counted from its
-/// origin, which is a double and what that lacks.
+/// A sum of c_n tau^n, of p sin(omega tau) + q cos(omega tau) and of a exp(rate tau). tau is the time since the origin,
+/// which is a sum of two doubles.
 class ClosedForm {
 public:
-    /// Nothing yet, counted from `time` + `rest`.
+    /// Clears the sum; the origin is `time` + `rest`.
     void begin(double time, double rest) {
         time_ = time, rest_ = rest;
         powers_.resize(1);
@@ -24,12 +24,12 @@ public:
         sines_.clear(), exponentials_.clear();
         fastest_ = growth_ = 0;
     }
-    /// What terms say is this many times as much, from here on.
+    /// Multiplies all terms added from now on.
     void set_gain(double gain) { gain_ = gain; }
 
-    // What a term says.
+    // Called by terms.
     void add_constant(double level) { powers_[0] += gain_ * level; }
-    /// `level` at the time `at`, and from there a straight line.
+    /// A straight line with `level` at the time `at`.
     void add_line(double at, double level, double slope) {
         reach(1);
         powers_[0] += gain_ * (level + slope * since(at));
@@ -46,25 +46,25 @@ public:
     [[nodiscard]] std::span<const double> powers() const { return powers_; }
     struct Sine {
         double omega;
-        double in_phase, quadrature;  ///< of sin(omega tau) and cos(omega tau)
+        double in_phase, quadrature;  ///< factors of sin(omega tau) and cos(omega tau)
     };
     [[nodiscard]] std::span<const Sine> sines() const { return sines_; }
     struct Exponential {
         double rate, amount;
     };
     [[nodiscard]] std::span<const Exponential> exponentials() const { return exponentials_; }
-    /// Of those and these.
+    /// The number of sines and exponentials.
     [[nodiscard]] std::size_t turning_parts() const { return sines_.size() + exponentials_.size(); }
 
-    /// At the origin.
+    /// M at the origin.
     [[nodiscard]] double value() const;
     [[nodiscard]] double value(double tau) const;
     /// The first and the second derivative at the origin.
     [[nodiscard]] double slope() const;
     [[nodiscard]] double bend() const;
-    /// The greatest of its frequencies and rates (per time unit), 0 for a polynomial.
+    /// The greatest frequency or rate (per time unit), 0 for a polynomial.
     [[nodiscard]] double fastest() const { return fastest_; }
-    /// How long its fastest growing part takes to grow by e; `never` without one.
+    /// The time in which the fastest growing part grows by e; `never` if none grows.
     [[nodiscard]] double grows_in() const { return growth_ > 0 ? 1 / growth_ : never; }
 
 private:
@@ -80,11 +80,11 @@ private:
     double fastest_ = 0, growth_ = 0;
 };
 
-/// Whether M has a closed form on each of its smooth stretches.
+/// Returns whether M has a closed form on each of its smooth stretches.
 bool has_closed_form(const Excitation& excitation);
 
-/// The closed form from `time` on, up to the next break after it, counted from `time` + `rest`. Only for an excitation
-/// that has one.
+/// Computes the closed form from `time` up to the next break, with the origin `time` + `rest`. Requires
+/// has_closed_form(excitation).
 void closed_form(const Excitation& excitation, double time, double rest, ClosedForm& sum);
 
 }  // namespace dinal::model

@@ -6,7 +6,7 @@
 namespace dinal::model {
 namespace {
 
-/// From when on the term is constant, and whether it is 0 then.
+/// The time from which a term is constant, and whether it is 0 then.
 struct Settled {
     double time;
     bool at_zero;
@@ -64,17 +64,17 @@ Components::Components(std::vector<Component> all) {
     stretch_ = places_->all;
 }
 
-std::size_t Components::first() const {
+std::size_t Components::first_place() const {
     return static_cast<std::size_t>(stretch_.data() - places_->all.data());
 }
 
-bool Components::take_after(std::size_t count) const {
-    std::size_t last = first() + stretch_.size();
+bool Components::claim_after(std::size_t count) const {
+    std::size_t last = first_place() + stretch_.size();
     return places_->all.size() - last >= count && places_->last.compare_exchange_strong(last, last + count);
 }
 
-bool Components::take_before(std::size_t count) const {
-    std::size_t begin = first();
+bool Components::claim_before(std::size_t count) const {
+    std::size_t begin = first_place();
     return begin >= count && places_->first.compare_exchange_strong(begin, begin - count);
 }
 
@@ -83,17 +83,17 @@ Components Components::joined(const Components& a, const Components& b) {
     if (n == 0 || m == 0) {
         return n == 0 ? b : a;
     }
-    if (m <= n && a.take_after(m)) {
+    if (m <= n && a.claim_after(m)) {
         std::copy(b.stretch_.begin(), b.stretch_.end(),
-                  a.places_->all.begin() + static_cast<std::ptrdiff_t>(a.first() + n));
-        return {a.places_, a.first(), n + m};
+                  a.places_->all.begin() + static_cast<std::ptrdiff_t>(a.first_place() + n));
+        return {a.places_, a.first_place(), n + m};
     }
-    if (n <= m && b.take_before(n)) {
-        const std::size_t first = b.first() - n;
+    if (n <= m && b.claim_before(n)) {
+        const std::size_t first = b.first_place() - n;
         std::copy(a.stretch_.begin(), a.stretch_.end(), b.places_->all.begin() + static_cast<std::ptrdiff_t>(first));
         return {b.places_, first, n + m};
     }
-    // Twice as many places, free ones on both sides: a sum may grow at either end.
+    // Twice as many places, with free ones on both sides: a sum may grow at either end.
     const std::size_t first = (n + m) / 2;
     const auto places = std::make_shared<Places>(std::vector<Component>(2 * (n + m)), first, first + n + m);
     const auto middle =

@@ -1,4 +1,4 @@
-// The components of a sum, one after the other in memory. Sums that grow out of one another share them.
+// The components of a sum, contiguous in memory; sums derived from one another share them.
 #pragma once
 
 #include <atomic>
@@ -12,26 +12,25 @@
 
 namespace dinal::model {
 
-/// gain * term for from <= t < to, else 0
+/// gain * term for from <= t < to, otherwise 0
 struct Component {
     double gain = 1;
     Term term;
     double from = -never, to = never;
 };
 
-/// From when on it is known to be constant for ever; `never` when that is not known.
+/// The time from which it is constant for ever; `never` if unknown.
 double constant_from(const Component& component);
 /// The first time after t at which it or a derivative of it jumps; `never` if there is none.
 double next_break(const Component& component, double t);
-/// What must be looked at closely in it, as far as the window shows it; empty (from >= to) when there is nothing.
+/// Its finest detail within the window; empty (from >= to) if there is none.
 terms::Detail detail_of(const Component& component);
 
-/// A list that never changes. Joining two costs what the shorter one is long, on average over a sum that grows term by
-/// term, and copying one costs nothing.
-// The places for components are shared: a list sees a stretch of them. Where there is a free place beside the stretch
-// of the longer list, the shorter one is written there, which no other list sees; else both move to new and more
-// places. A place is taken once, also when two threads want it. What is written lives as long as any list with these
-// places.
+/// An immutable list. Copies cost nothing; joining two costs the length of the shorter one, amortised over a sum that
+/// grows term by term.
+// The storage is shared: a list is a range of it. The shorter list is written beside the range of the longer one if
+// there is free space, which no other list sees; otherwise both move to larger storage. A place is claimed only once,
+// also by concurrent threads, and lives as long as any list that uses the storage.
 class Components {
 public:
     Components() = default;
@@ -44,16 +43,16 @@ private:
     struct Places {
         Places(std::vector<Component> places, std::size_t begin, std::size_t end)
             : all(std::move(places)), first(begin), last(end) {}
-        std::vector<Component> all;            // as many as there will ever be
-        std::atomic<std::size_t> first, last;  // taken: [first, last)
+        std::vector<Component> all;            // all places, free or taken
+        std::atomic<std::size_t> first, last;  // the taken range [first, last)
     };
     Components(std::shared_ptr<Places> places, std::size_t first, std::size_t count);
 
-    /// The place of this list's first component.
-    [[nodiscard]] std::size_t first() const;
-    /// Takes `count` free places beside this list.
-    [[nodiscard]] bool take_after(std::size_t count) const;
-    [[nodiscard]] bool take_before(std::size_t count) const;
+    /// The index of this list's first component in the storage.
+    [[nodiscard]] std::size_t first_place() const;
+    /// Claim `count` free places behind or before this list; return false if they are taken.
+    [[nodiscard]] bool claim_after(std::size_t count) const;
+    [[nodiscard]] bool claim_before(std::size_t count) const;
 
     std::shared_ptr<Places> places_;
     std::span<const Component> stretch_;

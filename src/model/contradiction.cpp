@@ -8,7 +8,7 @@ namespace dinal::model {
 
 std::string sentence(const Contradiction& found) {
     std::string first = fmt::format("{:.6g}", found.first), again = fmt::format("{:.6g}", found.again);
-    if (first == again) {  // to the last digit then
+    if (first == again) {  // alike with six digits: show all digits
         first = fmt::format("{}", found.first);
         again = fmt::format("{}", found.again);
     }

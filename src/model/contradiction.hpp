@@ -1,21 +1,21 @@
-// What a user's function said that its arguments do not explain: one value, and later another for the same arguments.
+// A user's function that returned two values for the same arguments.
 #pragma once
 
 #include <string>
 
 namespace dinal::model {
 
-/// M must be a function of what it is given. This one remembers something, or rolls dice.
+/// M must depend on its arguments only; this one has a memory or uses random numbers.
 struct Contradiction {
-    std::string who;       ///< as users call it: "M"
-    const char* argument;  ///< what `at` is: "t"
+    std::string who;       ///< the function's name for the user: "M"
+    const char* argument;  ///< the name of the argument `at`: "t"
     double at = 0;
-    double first = 0, again = 0;  ///< what it gave, and what it gave when it was asked again
+    double first = 0, again = 0;  ///< the value returned first, and later for the same argument
 };
 
-/// "M depends on more than its arguments: at t = 3.25 it gave 0.5 and, asked again, 0.7"
+/// "M depends on more than its arguments: at t = 3.25 it returned 0.5 and, evaluated again, 0.7"
 std::string sentence(const Contradiction& found);
-/// The same, and what to do about it.
+/// The same, followed by the remedy.
 std::string sentence_with_cure(const Contradiction& found);
 
 }  // namespace dinal::model

@@ -1,5 +1,5 @@
-// Terms of M with a memory: a controller that samples, a relay, one with a dead time. What they give depends on the
-// run so far, so only a run can ask them; everywhere else they add and scale like any other term.
+// Terms of M with a memory: sampled controllers, relays and delays. Their values depend on the history, so only a run
+// can evaluate them; everywhere else they add and scale like other terms.
 #pragma once
 
 #include <algorithm>
@@ -17,36 +17,35 @@ namespace dinal::model {
 
 class Controller : public terms::UserFunction {
 public:
-    std::shared_ptr<terms::UserFunction> function;  ///< of t, theta, velocity, states; none where a relay needs none
+    std::shared_ptr<terms::UserFunction> function;  ///< function of t, theta, velocity, states; null if not needed
 
-    /// Outside of a run there is no value.
+    /// No value exists outside of a run.
     double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }
     void forget_failure() final {
         if (function != nullptr) function->forget_failure();
     }
 };
 
-/// Asked once at each instant at + n every, in order; what it says acts `delay` later and is held until the next.
+/// Evaluated once at each instant at + n every, in order. The value acts after `delay` and is held until the next one.
 struct SampledController final : Controller {
     double every = 0, delay = 0;
     double at = 0;
-    bool carried = false;  ///< to a worker of a sweep, and not made there
-    mutable std::optional<std::uint64_t> first =
-        {};                                ///< what it remembered before its first run, if a run changes that
-    mutable const void* latest = nullptr;  ///< its last run
+    bool carried = false;                             ///< whether it is a copy in a worker of a sweep
+    mutable std::optional<std::uint64_t> first = {};  ///< its memory before the first run, if runs change it
+    mutable const void* latest = nullptr;             ///< the run that used it last
 };
 
-/// Two levels with hysteresis: past `off`, seen from `on`, it gives levels[1], back past `on` levels[0].
+/// Two levels with hysteresis: passing `off` (coming from `on`) switches to levels[1], passing `on` back to levels[0].
 struct RelayController final : Controller {
     enum class Of { theta, velocity, state, function };
     double on = 0, off = 0;
     std::array<double, 2> levels{};
     Of of = Of::theta;
-    std::string state;  ///< the name, of a state
+    std::string state;  ///< the state's name, for Of::state
     bool starts_on = true;
 };
 
-/// The same relay, with this function in the place of its own.
+/// A copy of the relay with `own` as its function.
 inline std::shared_ptr<RelayController> copied(const RelayController& relay, std::shared_ptr<terms::UserFunction> own) {
     auto copy = std::make_shared<RelayController>();
     copy->function = std::move(own);
@@ -55,19 +54,19 @@ inline std::shared_ptr<RelayController> copied(const RelayController& relay, std
     return copy;
 }
 
-/// A function of what was measured `by` ago; before the start that is the initial state.
+/// A function of the state at the time t - `by`; before the start that is the initial state.
 struct DelayedController final : Controller {
     double by = 0;
 };
 
-/// The controller that this component is, nullptr when it is none.
+/// The component as a controller of this class, or nullptr.
 template <class C = Controller>
 const C* controller_of(const Component& component) {
     const auto* scripted = std::get_if<Scripted>(&component.term);
     return scripted == nullptr ? nullptr : dynamic_cast<const C*>(scripted->function.get());
 }
 
-/// Whether a controller of this kind is in M, or any.
+/// Returns whether M contains a controller of this class (by default any).
 template <class C = Controller>
 bool has_memory(const Excitation& excitation) {
     const auto& components = excitation.components();

@@ -1,5 +1,5 @@
-// What acts on a system in a run, and from where it starts: M, surfaces that move, a support that shakes, states of its
-// own, and events that a user wants located.
+// The drive of a system in a run: M, moving surfaces, a shaking support, states of its own, wanted events, and the
+// initial state.
 #pragma once
 
 #include <algorithm>
@@ -14,27 +14,27 @@
 
 namespace dinal::model {
 
-/// A variable that is integrated with the motion: d/dt = rate(t, theta, velocity, states).
+/// A variable integrated with the motion: d/dt = rate(t, theta, velocity, states).
 struct OwnState {
     std::string name;
     double start = 0;
     std::shared_ptr<terms::UserFunction> rate;
 };
 
-/// What a user does at one of his events.
+/// A user's action at one of his events.
 class EventAction {
 public:
     EventAction() = default;
     EventAction(const EventAction&) = delete;
     EventAction& operator=(const EventAction&) = delete;
     virtual ~EventAction() = default;
-    /// Changes the state, and the states; false when it failed (and its owner knows why).
+    /// Changes the motion and the states; returns false if it failed (the owner knows why).
     virtual bool act(double t, State& state, std::span<double> states) = 0;
 };
 
 enum class Crossing { up, down, both };
 
-/// Told where `when` passes zero.
+/// Located where `when` passes zero.
 struct WantedEvent {
     std::string name;
     std::shared_ptr<terms::UserFunction> when;
@@ -43,13 +43,13 @@ struct WantedEvent {
     std::shared_ptr<EventAction> act = {};
 };
 
-/// All that acts on a system in a run, and the state from which it starts.
+/// Everything that acts on a system in a run, and its initial state.
 struct Drive {
-    /// The drive of one body.
+    /// A drive of a single body.
     Drive(Excitation M = {}, const State& start = {})  // NOLINT(google-explicit-constructor): M alone is a drive
         : loads{std::move(M)}, belts(1), theta0{start.theta}, velocity0{start.velocity} {}
 
-    /// Several bodies at rest, on which nothing acts.
+    /// A drive without loads, all bodies at rest.
     [[nodiscard]] static Drive at_rest(std::size_t bodies, std::size_t joints) {
         Drive drive;
         drive.loads.resize(joints), drive.belts.resize(joints);
@@ -58,16 +58,16 @@ struct Drive {
     }
 
     std::vector<Excitation> loads;  ///< M of each body and link
-    /// The velocity of the surface that the dry friction of each body and link acts against, rad per time unit.
+    /// The velocity of the surface against which the dry friction of each body and link acts, rad per time unit.
     std::vector<Excitation> belts;
     Excitation base = {};  ///< acceleration of the support, rad per time unit^2; angles are relative to it
     std::vector<OwnState> states = {};
     std::vector<WantedEvent> events = {};
-    std::vector<double> theta0, velocity0;  ///< of each body
+    std::vector<double> theta0, velocity0;  ///< one for each body
 
-    // The parts that concern one body, or the first.
+    // For a single body, or the first one.
     [[nodiscard]] const Excitation& M() const { return loads.front(); }
-    /// Of what acts on all bodies.
+    /// The sum of all loads.
     [[nodiscard]] Excitation sum_of_loads() const {
         Excitation sum;
         for (const Excitation& load : loads) sum = sum + load;
@@ -77,7 +77,7 @@ struct Drive {
     [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }
     void start_at(const State& state) { theta0.front() = state.theta, velocity0.front() = state.velocity; }
 
-    /// More than loads acts, or is asked for.
+    /// Returns whether anything except loads acts or is requested.
     [[nodiscard]] bool has_more() const {
         return !states.empty() || !events.empty() || !base.components().empty() ||
                std::any_of(belts.begin(), belts.end(),

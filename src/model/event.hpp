@@ -1,5 +1,5 @@
-// What can happen to a mass, or between two: at velocity zero, at a wall, by a controller that switches, where a
-// contact opens or closes, or as a user has said.
+// Events of a body or a contact: at velocity zero, at a wall, when a relay switches, when a contact opens or closes, or
+// as defined by a user.
 #pragma once
 
 #include <string_view>
@@ -7,18 +7,18 @@
 namespace dinal::model {
 
 enum class EventKind {
-    turn,      ///< the velocity passes zero and the motion goes on the other way
+    turn,      ///< the velocity passes zero and the motion reverses
     stick,     ///< the velocity reaches zero and stays there
     slip,      ///< breakaway: |M - k theta| has passed Re
-    rest,      ///< a stick that nothing can end any more
-    impact,    ///< a wall turned it back
-    switched,  ///< a relay took its other level
-    user,      ///< what a user asked for, by its name
-    opened,    ///< nothing presses on the contact any more
-    closed,    ///< something presses on it again
-    released,  ///< an elastic wall pushes no more
+    rest,      ///< a stick that nothing can end
+    impact,    ///< a wall reversed the motion
+    switched,  ///< a relay changed its level
+    user,      ///< a zero of a user's `when`
+    opened,    ///< nothing presses on the contact any longer
+    closed,    ///< the contact is pressed together again
+    released,  ///< an elastic wall no longer pushes
     slider_sticks,
-    slider_slips,  ///< of a Jenkins element, whose contact has none of its own
+    slider_slips,  ///< slip of a slider in a Jenkins element; the contact as a whole does not slip
 };
 inline constexpr int event_kind_count = 12;
 
@@ -50,19 +50,19 @@ constexpr std::string_view name(EventKind kind) {
     return "";
 }
 
-/// From here on the mass stands.
+/// Returns whether the mass stands after the event.
 constexpr bool is_stop(EventKind kind) {
     return kind == EventKind::stick || kind == EventKind::rest;
 }
 
-/// The velocity is exactly 0 at a turn, stick, slip or rest: that against what it slides on.
+/// At a turn, stick, slip or rest the velocity is exactly 0, relative to the sliding surface.
 struct Event {
     double t = 0;
     EventKind kind = EventKind::turn;
     double theta = 0;
-    double M = 0;   ///< the excitation at t, from the right: with k theta it explains the decision
-    int user = -1;  ///< of a user's event: which one
-    int where = 0;  ///< the joint whose theta and velocity these are; a relay's body
+    double M = 0;   ///< excitation just after t; with k theta it explains the decision
+    int user = -1;  ///< index of a user's event
+    int where = 0;  ///< the joint of theta and velocity; for a relay its body
     double velocity = 0;
 };
 

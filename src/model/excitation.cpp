@@ -11,11 +11,11 @@ namespace {
 
 enum class Side { before, at, after };
 
-/// A step to the side that is small against every number the function may have computed with, but that rounding in
-/// its own arithmetic (t - delay, t % period) cannot swallow.
+/// A time step large enough to survive the rounding in the function's own arithmetic (t - delay, t % period), and small
+/// against all numbers involved.
 double hair(double t, double delay) {
     constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
-    constexpr double smallest = 1e-300;  // at t = 0: still a normal number, so that sin(w t) / t is exact there
+    constexpr double smallest = 1e-300;  // at t = 0: a normal number, so that sin(w t) / t is exact there
     return std::max(smallest, few_ulps * std::max({std::fabs(t), std::fabs(t - delay), std::fabs(delay)}));
 }
 
@@ -32,8 +32,8 @@ double ask(const Scripted& s, double t, const State& state, Side side) {
     return 0;
 }
 
-/// The sum of all components. A component that is off (gain 0, outside its window) is not asked; a failed script ends
-/// the sum, so that no other script is called after it.
+/// The sum of all components. Inactive components (gain 0, outside their window) are not evaluated. A script that fails
+/// ends the sum, so that no other script is called after it.
 template <Side side>
 double sum_of(std::span<const Component> components, double t, const State& state) {
     const double native_t = side == Side::before ? std::nextafter(t, -never) : t, rest = t - native_t;
@@ -67,7 +67,7 @@ bool is_script(const Component& c) {
     return std::holds_alternative<Scripted>(c.term);
 }
 
-/// What a user may not say about a term.
+/// Returns an error if the term's numbers are invalid.
 template <class T>
 std::optional<text::Error> complaint(const T& term) {
     if constexpr (requires { term.complaint(); }) {

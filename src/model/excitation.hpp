@@ -1,6 +1,6 @@
-// M(t): a flat sum of small value terms, native or scripted, each knowing its value, its breaks and whole blocks.
+// M(t): a sum of terms, native or scripted. Each term knows its value, its breaks, and whole blocks of values.
 //
-// Every term is continuous from the right: at a break, value(t) is already the new level.
+// Terms are continuous from the right: at a break, value(t) is already the new level.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +16,20 @@
 
 namespace dinal::model {
 
-/// Times that lie about a middle in the same way again and again, as the nodes of panels do.
+/// Times with fixed relative positions about a middle, such as the nodes of panels.
 struct Spread {
-    /// What a sine makes of these distances from the middle.
+    /// sin and cos of omega times the distances from the middle.
     struct Turn {
         double omega = 0, half = 0;
         std::vector<double> sine{}, cosine{};
     };
 
-    std::span<const double> places;   ///< from -1 to 1, the same on both sides of 0
-    std::size_t first = 0;            ///< the place of the first time that is asked for
-    double middle = 0, rest = 0;      ///< the time of place 0, and what was rounded off it
-    double half = 0;                  ///< from there to place 1
-    std::span<const double> rests{};  ///< what was rounded off each time, for the terms that tell such times apart
-    std::vector<Turn> turns{};        ///< of each sine in its turn: as a rule those of the times before
+    std::span<const double> places;   ///< from -1 to 1, symmetric about 0
+    std::size_t first = 0;            ///< index of the first requested time in `places`
+    double middle = 0, rest = 0;      ///< time of place 0 and its rounding error
+    double half = 0;                  ///< the distance from place 0 to place 1
+    std::span<const double> rests{};  ///< rounding errors of the times, for terms that resolve them
+    std::vector<Turn> turns{};        ///< cached for each sine
     std::size_t next_turn = 0;
 
     const Turn& turn(double omega);
@@ -45,38 +45,38 @@ public:
     [[nodiscard]] double value(double t, const State& state = {}) const;
     /// The limit from the left: differs from value(t) only where M jumps.
     [[nodiscard]] double value_before(double t, const State& state = {}) const;
-    /// The limit from the right: value(t), but a scripted function is asked a hair later, since its author may have
-    /// written `t > 0.5` as well as `t >= 0.5`.
+    /// The limit from the right: value(t), but scripted functions are evaluated slightly later, since their authors may
+    /// have written `t > 0.5` as well as `t >= 0.5`.
     [[nodiscard]] double value_after(double t, const State& state = {}) const;
     /// The first time after t at which M or a derivative of it jumps; `never` if there is none.
     [[nodiscard]] double next_break(double t) const;
-    /// From when on M is known to be constant for ever; `never` when that is not known.
+    /// The time from which M is constant for ever; `never` if unknown.
     [[nodiscard]] double constant_from() const;
-    /// What |M| never exceeds; `never` when that is not known.
+    /// An upper bound of |M|; `never` if unknown.
     [[nodiscard]] double most() const;
-    /// How far from t one may look at M at times that are at most `spacing` of this length apart, and overlook no
-    /// detail of a smooth term; `never` when there is none ahead.
+    /// The longest step from t over which samples at most `spacing` times the step apart miss no detail of a smooth
+    /// term; `never` if no detail lies ahead.
     [[nodiscard]] double view(double t, double spacing) const;
-    /// The detail between two times that must be looked at most closely.
+    /// The detail between two times that needs the closest sampling.
     [[nodiscard]] terms::Detail finest_detail(double from, double to) const;
-    /// M needs theta and velocity.
+    /// Returns whether M depends on theta or velocity.
     [[nodiscard]] bool has_feedback() const;
     [[nodiscard]] bool has_script() const;
-    /// All of it is known at times between two doubles.
+    /// Returns whether all terms can be evaluated at times between two doubles.
     [[nodiscard]] bool tells_rests() const;
-    /// out[i] = value(times[i]); not for feedback. Returns how many were filled: fewer when one is not finite.
+    /// out[i] = value(times[i]); not for feedback. Returns how many values were computed: fewer if one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 
-    /// After a value that was not finite: whether the functions in it may be asked again, at other times.
+    /// After a value that was not finite: returns whether the functions in M may be evaluated at other times.
     [[nodiscard]] bool may_go_on() const;
-    /// Calls it with each function of the user's.
+    /// Calls `call` with each user function.
     void each_function(const std::function<void(UserFunction&)>& call) const;
 
     [[nodiscard]] Excitation scaled(double gain) const;
     [[nodiscard]] Excitation delayed(double delay) const;
-    /// 0 outside from <= t < to.
+    /// The same, but 0 outside from <= t < to.
     [[nodiscard]] Excitation windowed(double from, double to) const;
-    /// The same with another in place of every user's function.
+    /// The same with every user function replaced.
     using FunctionChange = std::function<std::shared_ptr<UserFunction>(const std::shared_ptr<UserFunction>&)>;
     [[nodiscard]] Excitation with_functions(const FunctionChange& other) const;
     friend Excitation operator+(const Excitation& a, const Excitation& b);
@@ -85,7 +85,7 @@ public:
 
 private:
     explicit Excitation(Components components) : components_(std::move(components)) {}
-    /// The same with every component changed.
+    /// The same with `change` applied to every component.
     template <class Change>
     [[nodiscard]] Excitation changed(Change change) const;
 

@@ -1,4 +1,4 @@
-// M at many times at once, as stepping loops want it.
+// M at many times at once, for stepping loops.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ std::size_t add(const T& term, const Component& c, std::span<const double> times
     return n;
 }
 
-/// Whether the times lie `spacing` apart to within their own rounding.
+/// Returns whether the times are `spacing` apart to within their rounding.
 bool evenly_spaced(std::span<const double> times, double spacing) {
     const double first = times.front();
     const double rounding =
@@ -39,8 +39,8 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
     return worst <= rounding;
 }
 
-/// What comes of the addition theorem for a sine of this peak: never above that, as of sin() itself. A load of
-/// amplitude Re that rounding lifted would end a stick.
+/// The addition theorem for a sine, limited to its peak as sin() is: a load of amplitude Re exceeded by rounding would
+/// end a stick.
 struct Sum {
     double sine, cosine, peak;
     Sum(double amplitude, const terms::Angle& angle) : peak(std::fabs(amplitude)) {
@@ -52,8 +52,8 @@ struct Sum {
     }
 };
 
-/// The same at times about a middle, where a turn from there is known. The ends, at which one panel meets the next, are
-/// what the term says.
+/// The same at times about a middle, with tabulated sines of the distances. The end points, which adjacent panels
+/// share, are evaluated directly so that both agree.
 std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                       Spread& spread) {
     const Spread::Turn& turn = spread.turn(h.omega);
@@ -67,8 +67,8 @@ std::size_t add_about(const Harmonic& h, const Component& c, std::span<const dou
     return n;
 }
 
-/// At evenly spaced times, as a stepping loop has them, a sine costs two products by the addition theorem:
-/// sin(a + b) with `a` at every sixteenth time and `b` from a table of sixteen. Good to the rounding of the times.
+/// At evenly spaced times a sine costs two products by the addition theorem: sin(a + b) with `a` at every sixteenth
+/// time and `b` from a table of sixteen. Accurate to the rounding of the times.
 std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                 Spread* spread) {
     constexpr std::size_t stride = 16;
@@ -94,7 +94,7 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
     return n;
 }
 
-/// In blocks, which are short enough for the stack.
+/// Evaluates in blocks small enough for the stack.
 std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out,
                 const Spread* /*spread*/) {
     constexpr std::size_t block = 128;
@@ -129,7 +129,7 @@ auto script_count(std::span<const Component> components) {
                          [](const Component& c) { return std::holds_alternative<Scripted>(c.term); });
 }
 
-/// Two scripts take turns, so that neither is called for times after the other has failed.
+/// Evaluates both scripts at one time after the other, so that neither is called for times after the other has failed.
 std::size_t fill_in_turn(const Excitation& excitation, std::span<const double> times, std::span<double> out) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         out[i] = excitation.value(times[i]);

@@ -8,7 +8,7 @@ namespace dinal::model {
 
 namespace {
 
-/// Whether these are whole parts of `common`.
+/// Returns whether all are integer fractions of `common`.
 bool fit(const std::vector<double>& periods, double common) {
     return std::all_of(periods.begin(), periods.end(), [common](double period) {
         const double n = common / period;
@@ -27,7 +27,7 @@ double period_from(const Excitation& excitation, double t) {
         periods.push_back(period);
     }
     if (periods.empty()) return 0;
-    constexpr int most_beats = 60;  // of the slowest term: a longer period explains nothing
+    constexpr int most_beats = 60;  // periods of the slowest term; a longer common period is of no use
     const double longest = *std::max_element(periods.begin(), periods.end());
     for (int n = 1; n <= most_beats; ++n) {
         if (fit(periods, n * longest)) return n * longest;

@@ -1,12 +1,12 @@
-// What can be known about M without asking for its values: that it is constant, its period, that it depends on motion.
+// Properties of M that are known without its values: the common period.
 #pragma once
 
 #include "model/excitation.hpp"
 
 namespace dinal::model {
 
-/// The shortest period that all terms have in common from time t on; 0 when a term has none, or none is known, or M is
-/// constant from then on. A feedback counts by the period that its user has named.
+/// The shortest common period of all terms from time t on; 0 if there is none, it is unknown, or M is constant from t
+/// on. A feedback has the period that its user declared.
 double period_from(const Excitation& excitation, double t);
 
 }  // namespace dinal::model

@@ -1,6 +1,6 @@
-// Dry friction as a value: the torque that brakes a sliding mass, and the torque that a standing one can be held by.
+// Dry friction as a value: the braking torque while sliding and the torque limit while sticking.
 //
-// A law is a struct of model/laws (FrictionLaw says what it must answer); a Friction is any of them, cheap to copy.
+// A law is a struct in model/laws that satisfies FrictionLaw; a Friction holds any of them and is cheap to copy.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace dinal::model {
 
-/// Which way the mass moves. `stuck` is exact: velocity 0, theta constant.
+/// The direction of motion. `stuck` is exact: velocity 0, theta constant.
 enum class Motion : int { backward = -1, stuck = 0, forward = 1 };
 
 constexpr double sign_of(Motion motion) {
@@ -29,23 +29,24 @@ inline Motion motion_of(double velocity) {
     return velocity > 0 ? Motion::forward : velocity < 0 ? Motion::backward : Motion::stuck;
 }
 
-/// `way` is forward or backward. Torques are magnitudes: friction is against the motion, whatever its law.
+/// `way` is forward or backward. Torques are magnitudes: friction opposes the motion, whatever its law.
 template <class Law>
 concept FrictionLaw = requires(const Law& law, Motion way, double speed) {
-    /// Against a motion this way at this speed; no more than holding(way) at speed 0, where it is the limit from above.
-    /// An integrator looks a little beyond the end of a motion: below speed 0 it wants the smooth continuation.
+    /// The braking torque at this speed; at speed 0, where it is the limit from above, at most holding(way). Must be
+    /// smooth for small negative speeds: trial steps overshoot zero.
     { law.sliding(way, speed) } -> std::same_as<double>;
-    /// The most that sticking can hold against a pull this way.
+    /// The largest pull this way that sticking can hold.
     { law.holding(way) } -> std::same_as<double>;
     { Law::depends_on_speed } -> std::convertible_to<bool>;
-    /// What is wrong with its numbers, for the person who gave them.
+    /// An error if its numbers are invalid.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
 };
 
-/// Speeds between two corners of a law, on which it is one smooth formula.
+/// A range of speeds between two corners of a law, on which it is smooth.
 struct SpeedRange {
     double from = 0, to = std::numeric_limits<double>::infinity();
-    /// The formula is torque + slope (speed - from). Else it is sliding(), which goes on smoothly beyond both ends.
+    /// Whether the formula is torque + slope (speed - from). Otherwise it is sliding(), which continues smoothly beyond
+    /// both ends.
     bool straight = false;
     double torque = 0, slope = 0;
 
@@ -54,26 +55,25 @@ struct SpeedRange {
 
 // A law may also have
 //     std::string lua_text() const;   the Lua expression that makes it again
-// and, the same both ways, what lets an integrator pass all its corners at sight instead of looking for them:
-//     std::size_t ranges() const;                 how many there are, from speed 0 on and without gaps
+// and, for both directions alike, what lets an integrator predict its corners instead of searching for them:
+//     std::size_t ranges() const;                    their number, from speed 0 on and without gaps
 //     model::SpeedRange range(std::size_t i) const;
 //     double slope(double speed) const;              on ranges that are not straight: its derivative,
-//     double scale(double speed) const;              and over which change of speed from here a polynomial of degree 16
-//                                                    follows it to twelve digits, about
+//     double scale(double speed) const;              the change of speed from here over which a polynomial of
+//                                                    degree 16 follows it to about twelve digits
 
-/// For a law's complaint(): what is wrong with a sliding torque Rd and a holding torque Re. `of` stands before their
-/// names: "forward.".
+/// An error if a sliding torque Rd and a holding torque Re are invalid. `of` precedes their names: "forward.".
 std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double Re);
 
 class Friction {
 public:
-    /// None.
+    /// No friction.
     Friction() = default;
     template <FrictionLaw Law>
     Friction(const Law& law)  // NOLINT(google-explicit-constructor): a law is a friction
         : law_(std::make_shared<const Held<Law>>(law)) {}
 
-    /// The same law under this constant normal load, which multiplies its torques; a negative one counts as 0.
+    /// The same law with its torques multiplied by a constant normal load; a negative load counts as 0.
     [[nodiscard]] Friction under(double normal) const {
         Friction loaded = *this;
         loaded.normal_ = std::max(0.0, normal);
@@ -88,16 +88,16 @@ public:
     /// Returns whether it never lets the contact slip backward.
     [[nodiscard]] bool is_one_way() const { return std::isinf(holding(Motion::backward)); }
     [[nodiscard]] bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
-    /// Rd; the greater one of a law with other numbers each way, at speed 0 where a law has no Rd of its own.
+    /// Rd; of a direction-dependent law the greater one; for a law without Rd its torque at speed 0.
     [[nodiscard]] double kinetic() const;
-    /// 0: it does not name its corners.
+    /// The number of smooth ranges; 0 if the law does not declare them.
     [[nodiscard]] std::size_t ranges() const { return law_ ? law_->ranges() : 0; }
     [[nodiscard]] SpeedRange range(std::size_t i) const {
         SpeedRange range = law_->range(i);
         range.torque *= normal_, range.slope *= normal_;
         return range;
     }
-    /// The range of this speed; of a corner, the one above it.
+    /// The range that contains this speed; at a corner, the upper one.
     [[nodiscard]] std::size_t range_of(double speed) const {
         std::size_t low = 0, high = ranges();
         while (high - low > 1) {
@@ -111,18 +111,18 @@ public:
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
-    /// The Lua expression that makes the law again, without its normal load; empty when it knows none.
+    /// The Lua expression that makes the law again, without its normal load; empty if there is none.
     [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
-    /// Nothing brakes and nothing holds: velocity zero means nothing.
+    /// Returns whether nothing brakes or holds, so that velocity zero is not special.
     [[nodiscard]] bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
-    /// The greater torque of both ways.
+    /// The greater sliding torque of both directions, at speed 0.
     [[nodiscard]] double greatest_sliding() const {
         return std::max(sliding(Motion::forward, 0), sliding(Motion::backward, 0));
     }
     [[nodiscard]] double greatest_holding() const {
         return std::max(holding(Motion::forward), holding(Motion::backward));
     }
-    /// The law itself, without its normal load, if it is of this kind.
+    /// The law without its normal load if it is a `Law`, otherwise nullptr.
     template <FrictionLaw Law>
     [[nodiscard]] const Law* as() const {
         const Any* law = law_.get();
@@ -189,7 +189,7 @@ private:
         }
         Law law;
     };
-    std::shared_ptr<const Any> law_;  // shared by the copies of a system, which never change it
+    std::shared_ptr<const Any> law_;  // shared by copies of a system; never changed
     double normal_ = 1;
 };
 

@@ -1,4 +1,4 @@
-// Everything that a user wrote as a function and that hangs in a value of the model: one walk for all who must meet it.
+// Visits every user function inside a value of the model.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace dinal::model {
 
-// The value with what `other` gives in the place of each function, a shared pointer, and of each excitation in it.
+// The value with each user function and each excitation replaced by `other`'s result.
 
 Friction with_functions(const Friction& law, auto&& other) {
     const auto* own = law.as<laws::UserLaw>();
@@ -34,7 +34,7 @@ Oscillator with_functions(const Oscillator& system, auto&& other) {
     OscillatorParameters parameters = system.parameters();
     if (parameters.friction) parameters.friction = with_functions(*parameters.friction, other);
     parameters.spring = with_functions(parameters.spring, other);
-    return Oscillator::make(parameters).value();  // as it was made once, so it is right
+    return Oscillator::make(parameters).value();  // valid, as the original was
 }
 
 SystemHandle with_functions(const SystemHandle& rig, auto&& other) {

@@ -1,10 +1,10 @@
-// A system as the integrators see it: a linear part, a constant friction each way, and a remainder for all else.
+// A system as the integrators see it: a linear part, a constant friction each way, and a remainder.
 //
 //     I theta'' + C theta' + k theta = M - braking(way) - remainder(way, state)    while it moves this way
 //
-// The remainder is what friction has beside its constant, and a spring of its own beside k theta. This is the one place
-// where a model is lowered. An integrator solves the linear part and the constant its own fast way; a remainder that is
-// not empty is asked along with a feedback.
+// The remainder is the friction beyond its constant, and a nonlinear spring. Models are lowered only here. An
+// integrator solves the linear part with the constant in its own fast way and evaluates a non-empty remainder along
+// with feedback.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace dinal::model {
 class Lowered {
 public:
     /// The system must outlive it.
-    Lowered(const Oscillator& system)  // NOLINT(google-explicit-constructor): the same system, seen from closer by
+    Lowered(const Oscillator& system)  // NOLINT(google-explicit-constructor): a view of the same system
         : inertia_(system.inertia()), damping_(system.damping()), stiffness_(system.stiffness()) {
         const Friction& law = system.friction();
         for (const Motion way : {Motion::backward, Motion::forward}) {
@@ -31,33 +31,33 @@ public:
     [[nodiscard]] double inertia() const { return inertia_; }
     [[nodiscard]] double damping() const { return damping_; }
     [[nodiscard]] double stiffness() const { return stiffness_; }
-    /// The constant torque of friction while the mass moves this way, with the sign of the motion; 0 while stuck.
+    /// The constant friction torque while moving this way, with the sign of the motion; 0 while stuck.
     [[nodiscard]] double braking(Motion way) const { return braking_[index(way)]; }
-    /// The most that sticking can hold against a pull this way.
+    /// The largest pull this way that sticking can hold.
     [[nodiscard]] double holding(Motion way) const { return holding_[index(way)]; }
     [[nodiscard]] double greatest_holding() const {
         return std::max(holding(Motion::forward), holding(Motion::backward));
     }
-    /// Velocity zero means something: the friction law must be asked there. Without it the mass swings through.
+    /// Returns whether friction must be evaluated at velocity zero; otherwise the mass swings through.
     [[nodiscard]] bool dry() const { return dry_; }
 
     [[nodiscard]] bool has_remainder() const { return friction_ != nullptr || spring_ != nullptr; }
-    /// What the linear part and the constant torque leave out. Only while moving.
+    /// The torque beyond the linear part and the constant. Only while moving.
     [[nodiscard]] double remainder(Motion way, const State& state) const {
         return friction_remainder(way, state) + spring(state.theta);
     }
     [[nodiscard]] bool has_spring() const { return spring_ != nullptr; }
-    /// Of the friction alone, 0 at velocity zero.
+    /// The friction part of it, 0 at velocity zero.
     [[nodiscard]] double friction_remainder(Motion way, const State& state) const {
         if (friction_ == nullptr) return 0;
         const double sign = sign_of(way);
         return sign * friction_->sliding(way, sign * state.velocity) - braking(way);
     }
-    /// The torque of the spring besides k theta, against theta where it is positive.
+    /// The nonlinear spring torque, positive against theta.
     [[nodiscard]] double spring(double theta) const { return spring_ == nullptr ? 0 : spring_->torque(theta); }
-    /// What it has stored, torque times rad.
+    /// The energy stored in that spring, torque times rad.
     [[nodiscard]] double spring_energy(double theta) const { return spring_ == nullptr ? 0 : spring_->energy(theta); }
-    /// All that springs pull back with: k theta and that.
+    /// The torque of all springs, k theta included.
     [[nodiscard]] double pull_back(double theta) const {
         return spring_ == nullptr ? stiffness_ * theta : stiffness_ * theta + spring_->torque(theta);
     }

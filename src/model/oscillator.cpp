@@ -42,7 +42,7 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.walls_ = p.walls;
     if (auto wrong = p.units.complaint()) return *wrong;
     if (!p.units.usual()) o.units_ = std::make_shared<const Units>(p.units);
-    // Overflows where something is added to it.
+    // Margin against overflow when angles are added.
     constexpr double room = 1e6;
     const double from = o.has_spring() ? o.stiffness() : o.inertia();
     if (!std::isfinite(room * o.breakaway() / from) || !std::isfinite(room * o.kinetic_friction() / from)) {
@@ -58,7 +58,7 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
                                     p.inertia, p.damping),
             .option = "I"};
     }
-    // Integrators bound motions by the fourth power of the frequency.
+    // Integrators use the fourth power of the frequency as a bound.
     if (!std::isnormal(std::pow(o.natural_frequency(), 4)) || !std::isnormal(std::pow(o.natural_period(), 4)) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
@@ -83,8 +83,8 @@ double Oscillator::natural_period() const {
     return 2 * std::numbers::pi / natural_frequency();
 }
 
-// sqrt(I) sqrt(k) and not sqrt(I k): the product may overflow where its root does not. When I k is a square that
-// doubles hold, the single root is exact, and a critical system shows zeta = 1.
+// sqrt(I) sqrt(k) rather than sqrt(I k): the product may overflow although its root does not. If I k is a perfect
+// square, the single root is exact and a critical system shows zeta = 1.
 double Oscillator::damping_ratio() const {
     if (!has_spring()) return damping_ > 0 ? unlimited : 0;
     const double product = inertia_ * stiffness_;
@@ -101,7 +101,7 @@ std::optional<double> Oscillator::damped_frequency() const {
 Regime Oscillator::regime() const {
     if (damping_ == 0) return Regime::undamped;
     if (!has_spring()) return Regime::overdamped;
-    // C/2 against I (k/(C/2)): the squares could overflow or vanish, these quotients do not where it matters.
+    // Compares C/2 with I (k/(C/2)): the squares could overflow or vanish.
     const double half = damping_ / 2;
     const double square = half * half;
     const double product = inertia_ * stiffness_;

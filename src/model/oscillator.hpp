@@ -3,8 +3,7 @@
 //     I theta'' + C theta' + Rd sgn(theta') + k theta = M(t)    while moving, or at theta' = 0 when |M - k theta| > Re
 //     theta' = 0                                                while theta' = 0 and |M - k theta| <= Re
 //
-// A spring of its own (model/spring.hpp) pulls back besides k theta, wherever k theta stands; walls (model/walls.hpp)
-// throw the mass back.
+// A nonlinear spring (model/spring.hpp) adds its torque to k theta; walls (model/walls.hpp) reflect the mass.
 // theta in rad, time and torque in any consistent units. docs/theory.md has the derivations.
 #pragma once
 
@@ -23,18 +22,18 @@
 
 namespace dinal::model {
 
-/// What a user says about a system.
+/// The parameters of a system as given by a user.
 struct OscillatorParameters {
     double inertia = 0;                     ///< I, moment of inertia
     double stiffness = 0;                   ///< k, torque per rad
     double damping = 0;                     ///< C, torque per rad/time
     double kinetic_friction = 0;            ///< Rd, torque of dry friction while moving
-    std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
-    std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
-    double normal = 1;                      ///< constant load that multiplies the torques of friction
-    Spring spring = {};                     ///< besides k theta
+    std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; by default Rd
+    std::optional<Friction> friction = {};  ///< a law that replaces Coulomb's; Rd and Re are then ignored
+    double normal = 1;                      ///< constant load that multiplies the friction torques
+    Spring spring = {};                     ///< a nonlinear spring in addition to k theta
     std::optional<Walls> walls = {};        ///< end stops
-    Units units = {};                       ///< words, on which nothing depends
+    Units units = {};                       ///< words only: no number depends on them
 };
 
 inline constexpr text::Option mechanical_options[] = {
@@ -74,7 +73,7 @@ struct State {
     double velocity = 0;
 };
 
-/// How the free system without dry friction would move.
+/// The type of free motion without dry friction.
 enum class Regime { undamped, underdamped, critical, overdamped };
 std::string_view name(Regime regime);
 
@@ -88,23 +87,23 @@ public:
     [[nodiscard]] double stiffness() const { return stiffness_; }
     [[nodiscard]] double damping() const { return damping_; }
     [[nodiscard]] const Friction& friction() const { return friction_; }
-    /// The one besides k theta.
+    /// The nonlinear spring in addition to k theta.
     [[nodiscard]] const Spring& spring() const { return spring_; }
-    /// The end stops, if it has some.
+    /// The end stops, if any.
     [[nodiscard]] const std::optional<Walls>& walls() const { return walls_; }
-    /// For people only.
+    /// Words for output only.
     [[nodiscard]] const Units& units() const;
-    /// What is derived from k alone holds: there is k, and no other spring.
+    /// Returns whether k is the only spring, so that quantities derived from k are valid.
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
-    /// After a torque that was no number: whether what a user has written of the system may be asked again.
+    /// After a torque that was not finite: returns whether the user's functions may be evaluated again.
     [[nodiscard]] bool may_go_on() const;
-    /// Rd under the normal load, as are all torques of friction here.
+    /// Rd under the normal load, as all friction torques here.
     [[nodiscard]] double kinetic_friction() const { return friction_.kinetic(); }
-    /// Re; of a law with other numbers each way the greater one.
+    /// Re; of a direction-dependent law the greater one.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 
-    /// Without k nothing swings by itself: no natural frequency, period or damping ratio, and nowhere to rest in
-    /// particular.
+    /// Returns whether k > 0. Without k there is no natural frequency, period, damping ratio or preferred place of
+    /// rest.
     [[nodiscard]] bool has_spring() const { return stiffness_ > 0; }
     /// w0 = sqrt(k / I), rad per time unit; 0 without a spring.
     [[nodiscard]] double natural_frequency() const;
@@ -114,7 +113,7 @@ public:
     [[nodiscard]] double damping_ratio() const;
     /// w1 = w0 sqrt(1 - zeta^2); none unless the system swings (zeta < 1).
     [[nodiscard]] std::optional<double> damped_frequency() const;
-    /// Decided on C^2 against 4 I k, so that an exactly critical system is called so.
+    /// Compares C^2 with 4 I k, so that an exactly critical system is recognised.
     [[nodiscard]] Regime regime() const;
     /// Re / k: without excitation the mass can stay anywhere with |theta| <= this. Infinite without a spring.
     [[nodiscard]] double dead_zone() const { return has_spring() ? breakaway() / stiffness_ : unlimited; }
@@ -128,7 +127,7 @@ public:
     /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
     [[nodiscard]] double characteristic_torque(const State& initial) const;
 
-    /// What makes it again, another law than Coulomb's included.
+    /// The parameters that make it again, the friction law included.
     [[nodiscard]] OscillatorParameters parameters() const;
 
 private:
@@ -141,7 +140,7 @@ private:
     Friction friction_;
     Spring spring_;
     std::optional<Walls> walls_;
-    std::shared_ptr<const Units> units_;  // none: the usual ones
+    std::shared_ptr<const Units> units_;  // null: the usual ones
 };
 
 }  // namespace dinal::model

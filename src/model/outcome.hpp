@@ -1,4 +1,4 @@
-// How a run ended. One list holds the outcomes and their sentences, so that neither can be forgotten.
+// The outcomes of a run. One list holds them and their sentences, so that neither can be forgotten.
 #pragma once
 
 #include <string_view>
@@ -23,7 +23,7 @@ enum class Outcome {
 #undef DINAL_OUTCOME
 };
 
-/// It came to the end of its window.
+/// Returns whether the run reached the end of its window.
 constexpr bool is_whole(Outcome outcome) {
     return outcome == Outcome::reached_end || outcome == Outcome::at_rest || outcome == Outcome::stuck_at_end;
 }

@@ -1,6 +1,6 @@
-// A spring besides k theta, as a value: the torque with which it pulls back at an angle, and the energy that it stores.
+// A nonlinear spring in addition to k theta, as a value: its torque at an angle, and its stored energy.
 //
-// A kind of spring is a struct of model/springs (SpringLaw says what it must answer); a Spring is any of them, cheap to
+// A kind of spring is a struct in model/springs that satisfies SpringLaw; a Spring holds any of them and is cheap to
 // copy.
 #pragma once
 
@@ -14,25 +14,25 @@
 
 namespace dinal::model {
 
-/// theta in rad; the torque acts against it where it is positive: I theta'' = ... - torque(theta).
+/// theta in rad; a positive torque acts against theta: I theta'' = ... - torque(theta).
 template <class Law>
 concept SpringLaw = requires(const Law& law, double theta) {
     { law.torque(theta) } -> std::same_as<double>;
-    /// The integral of the torque from 0 to theta; NaN where it cannot be had.
+    /// The integral of the torque from 0 to theta; NaN if it cannot be computed.
     { law.energy(theta) } -> std::same_as<double>;
-    /// What is wrong with its numbers, for the person who gave them.
+    /// An error if its numbers are invalid.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
-    /// It pulls back alike on both sides.
+    /// Returns whether it acts alike on both sides.
     { law.is_odd() } -> std::same_as<bool>;
-    /// After a torque that was no number: whether it may be asked again.
+    /// After a torque that was not finite: returns whether it may be evaluated again.
     { law.may_go_on() } -> std::same_as<bool>;
-    /// The Lua expression that makes it again; empty when it knows none.
+    /// The Lua expression that makes it again; empty if there is none.
     { law.lua_text() } -> std::same_as<std::string>;
 };
 
 class Spring {
 public:
-    /// None.
+    /// No spring.
     Spring() = default;
     template <SpringLaw Law>
     Spring(const Law& law)  // NOLINT(google-explicit-constructor): a law is a spring
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] bool is_odd() const { return !law_ || law_->is_odd(); }
     [[nodiscard]] bool may_go_on() const { return !law_ || law_->may_go_on(); }
     [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
-    /// The law itself, if it is of this kind.
+    /// The law if it is a `Law`, otherwise nullptr.
     template <SpringLaw Law>
     [[nodiscard]] const Law* as() const {
         const AnySpring* law = law_.get();
@@ -80,7 +80,7 @@ private:
         [[nodiscard]] std::string lua_text() const override { return law.lua_text(); }
         Law law;
     };
-    std::shared_ptr<const AnySpring> law_;  // shared by the copies of a system, which never change it
+    std::shared_ptr<const AnySpring> law_;  // shared by copies of a system; never changed
 };
 
 }  // namespace dinal::model

@@ -24,7 +24,7 @@ System as_system(const Oscillator& body) {
 text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint) {
     const Joint& own = system.joints[joint];
     OscillatorParameters parameters;
-    constexpr double none = 1e-100;  // of a body that is moved
+    constexpr double none = 1e-100;  // inertia of a body with prescribed motion
     parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
     if (parameters.inertia == 0) parameters.inertia = none;
     parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;

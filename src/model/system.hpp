@@ -1,11 +1,11 @@
-// Several bodies that turn about one axis, and what acts between them: the general system, of which one mass on the
-// ground is the smallest.
+// The general system: several bodies that turn about one axis, and the joints between them. One mass on the ground is
+// the smallest one.
 //
 //     I_i theta_i'' = M_i - I_i a - sum over its joints of the torques that they take
 //
-// A joint is a place where torque acts: a body against the ground, or a link. Its angle is a weighted sum of the angles
-// of its bodies, and a torque T on that angle acts on each of them times its weight. A joint has what a system of one
-// body has: stiffness, damping, a spring, dry friction, walls.
+// A joint is a place where torque acts: a body against the ground, or a link. Its angle is a weighted sum of body
+// angles; a torque T on it acts on each body times its weight. A joint has the elements of a one-body system:
+// stiffness, damping, a spring, dry friction, walls.
 #pragma once
 
 #include <algorithm>
@@ -29,35 +29,35 @@
 
 namespace dinal::model {
 
-/// Dry friction whose torques may depend on anything.
+/// Dry friction with variable torques.
 struct ContactFriction {
-    Friction law = {};  ///< where the rest is empty
-    /// Instead of the law's torque while sliding: of (speed, t, theta, velocity, states). The speed is the first of the
-    /// states that it is given.
+    Friction law = {};  ///< used unless the members below replace it
+    /// Replaces the law's sliding torque: a function of (speed, t, theta, velocity, states), where the speed is passed
+    /// as the first state.
     std::shared_ptr<UserFunction> function = {};
-    std::vector<laws::Jenkins> sliders = {};  ///< beside the law
-    std::vector<Friction> listed = {};        ///< the laws of a list, of which law and sliders were made
-    /// Instead of the law's numbers, backward and forward.
+    std::vector<laws::Jenkins> sliders = {};  ///< Jenkins elements in parallel with the law
+    std::vector<Friction> listed = {};        ///< the user's list of laws, from which law and sliders were made
+    /// Replace the law's numbers, backward and forward.
     std::array<std::optional<Excitation>, 2> sliding = {}, holding = {};
-    /// What multiplies both torques, and counts as 0 where it is negative.
+    /// Multiplies all torques; negative values count as 0.
     std::optional<Excitation> normal = {};
 
-    /// Bristles, which have a state of their own, and neither stick nor slip.
+    /// The law's bristle model, which never sticks or slips exactly; otherwise nullptr.
     [[nodiscard]] const laws::Bristle* bristle() const { return law.as<laws::Bristle>(); }
-    /// Nothing but the law, and that without a state.
+    /// Returns whether there is only the law, without internal state.
     [[nodiscard]] bool is_constant() const {
         return bristle() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
                !holding[1];
     }
-    /// The law, or another torque, can make the contact stick.
+    /// Returns whether no torque can make the contact stick.
     [[nodiscard]] bool none() const { return is_constant() && law.none(); }
-    /// Returns whether friction is what an Oscillator can have.
+    /// Returns whether an Oscillator can have this friction.
     [[nodiscard]] bool is_plain() const { return is_constant() && is_of_numbers(); }
-    /// Its torques have an Rd and an Re: it is no freewheel, and there are no sliders behind springs.
+    /// Returns whether the torques are given by Rd and Re: no freewheel, no sliders behind springs.
     [[nodiscard]] bool is_of_numbers() const { return sliders.empty() && !law.is_one_way(); }
 };
 
-/// The given motion of a body: its angle, or its velocity.
+/// The prescribed motion of a body: its angle or its velocity.
 struct Moved {
     bool by_angle = true;
     Excitation motion;
@@ -66,7 +66,7 @@ struct Moved {
 
 struct Body {
     std::string name;
-    double inertia = 1;  ///< may be 0 where it is moved
+    double inertia = 1;  ///< may be 0 if its motion is prescribed
     std::optional<Moved> moved = {};
 };
 
@@ -76,17 +76,17 @@ struct Weight {
 };
 
 struct Joint {
-    std::string name;                  ///< of the link, or of the body whose joint with the ground it is
+    std::string name;                  ///< name of the link, or of the body on the ground
     std::vector<Weight> of{Weight{}};  ///< a link between two bodies: {a, 1}, {b, -1}
     double stiffness = 0, damping = 0;
     Spring spring = {};
     ContactFriction friction = {};
-    std::optional<Walls> walls = {};  ///< rigid ones
-    std::optional<Walls> stops = {};  ///< elastic ones
-    bool rigid = false;               ///< holds its angle, whatever that takes
+    std::optional<Walls> walls = {};  ///< rigid walls
+    std::optional<Walls> stops = {};  ///< elastic walls
+    bool rigid = false;               ///< whether it holds its angle with any torque needed
 
     [[nodiscard]] std::size_t first() const { return of.front().body; }
-    /// Returns the weighted sum of what its bodies have, such as their angles.
+    /// Returns the weighted sum of body values, such as angles.
     template <class Values>
     [[nodiscard]] double sum(const Values& of_bodies) const {
         double total = 0;
@@ -97,15 +97,15 @@ struct Joint {
         return std::any_of(of.begin(), of.end(), [body](const Weight& weight) { return weight.body == body; });
     }
     [[nodiscard]] const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
-    /// Returns whether it is what an Oscillator can be.
+    /// Returns whether an Oscillator can represent this joint.
     [[nodiscard]] bool is_plain() const { return friction.is_plain() && !stops; }
     /// Returns whether it links two bodies without a gear.
     [[nodiscard]] bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
-    /// Returns whether sums of what its bodies have are rounded where they are 0.
+    /// Returns whether weighted sums can be rounded (a weight other than 1 or -1).
     [[nodiscard]] bool is_weighted() const {
         return std::any_of(of.begin(), of.end(), [](const Weight& weight) { return std::fabs(weight.by) != 1; });
     }
-    /// Returns the acceleration of its angle for a torque of 1 on it while nothing else acts.
+    /// Returns the angular acceleration caused by a torque of 1 on the joint alone.
     [[nodiscard]] double lightness(const std::vector<Body>& bodies) const {
         double total = 0;
         for (const auto& [body, by] : of) total += by * by / bodies[body].inertia;
@@ -115,14 +115,14 @@ struct Joint {
 
 struct System {
     std::vector<Body> bodies;
-    /// Each body's with the ground, in their order, and then the links.
+    /// First each body's joint with the ground, in their order, then the links.
     std::vector<Joint> joints;
-    /// Functions are given theta and velocity by the names of the bodies: as states, all angles, all velocities, and
-    /// then the states of the run. Else there is one body, and they are given its state.
+    /// Whether user functions receive all angles and velocities by the bodies' names, as states before the run's own.
+    /// Otherwise there is one body, and they receive its theta and velocity.
     bool named = true;
     Units units = {};
 
-    /// One body without a name, of which an Oscillator says all.
+    /// Returns whether it is one unnamed body that an Oscillator represents completely.
     [[nodiscard]] bool is_plain() const { return !named && joints.front().is_plain(); }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     [[nodiscard]] bool has_moved() const {
@@ -134,7 +134,7 @@ struct System {
     }
     /// "motor - 10 load"
     [[nodiscard]] std::string angle_in_words(const Joint& joint) const;
-    /// Of each body on the stiffness around it, the others being at rest; infinite where there is none.
+    /// The period of each body on the stiffness around it, with the others at rest; infinite without stiffness.
     [[nodiscard]] std::vector<double> natural_periods() const {
         std::vector<double> stiffness(bodies.size(), 0), periods;
         for (const Joint& joint : joints) {
@@ -152,14 +152,14 @@ struct System {
     }
 };
 
-/// This body on the ground, without a name.
+/// The system of one unnamed body on the ground.
 System as_system(const Oscillator& body);
 
-/// A body or link by itself. Of a link, whose bodies turn against each other, that is what both are when they are free.
-/// Fails where its numbers are beyond what a system may have.
+/// A body or link seen by itself; for a link, the relative motion of its otherwise free bodies. Fails if its numbers
+/// are out of range.
 text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint);
 
-// Shared, because its runs keep it.
+// Shared, because runs keep it.
 using SystemHandle = std::shared_ptr<const System>;
 
 }  // namespace dinal::model

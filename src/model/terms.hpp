@@ -1,4 +1,4 @@
-// The list of what an excitation can be made of: a term is a file in model/terms and a row here.
+// The list of terms of an excitation: each is a file in model/terms and a row here.
 #pragma once
 
 #include <variant>

@@ -22,7 +22,7 @@ std::string time_word(const Units& units) {
     return units.t.empty() ? "time" : units.t;
 }
 
-/// Their names and words, in the order of the rows.
+/// The names and units, in the order of the rows.
 template <class Of>
 auto named_units(Of& units) {
     return std::array{std::pair{std::string_view("theta"), &units.theta}, std::pair{std::string_view("t"), &units.t},
@@ -32,7 +32,7 @@ auto named_units(Of& units) {
 }  // namespace
 
 std::optional<text::Error> Units::complaint() const {
-    if (usual()) return std::nullopt;  // as nearly all are, and systems are made by the million
+    if (usual()) return std::nullopt;  // the common case; systems are made by the million
     constexpr std::size_t longest = 24;
     for (const auto& [name, word] : named_units(*this)) {
         const bool plain = text::displayable(*word) == *word && word->find_first_of("\",\\") == std::string::npos;
@@ -66,7 +66,7 @@ std::string Units::stiffness() const {
 }
 
 std::string Units::energy() const {
-    return M.empty() || theta.empty() || theta == "rad" ? M : M + " " + theta;  // a rad is a number
+    return M.empty() || theta.empty() || theta == "rad" ? M : M + " " + theta;  // rad is dimensionless
 }
 
 std::string Units::in_words() const {

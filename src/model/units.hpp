@@ -1,5 +1,4 @@
-// What a user measures the angle, the time and the torque in: words for cards, columns and axes. No number depends on
-// them.
+// The units of a user's angle, time and torque: words for cards, columns and axes. No number depends on them.
 #pragma once
 
 #include <optional>
@@ -13,15 +12,15 @@ namespace dinal::model {
 
 struct Units {
     std::string theta = "rad";
-    std::string t = {};  ///< none: time units
-    std::string M = {};  ///< none: a torque without a unit
+    std::string t = {};  ///< empty: time units
+    std::string M = {};  ///< empty: a torque without unit
 
-    /// Nothing but the angle has a unit, and that is rad.
+    /// Returns whether no units were given: the angle in rad, the rest unnamed.
     [[nodiscard]] bool usual() const { return theta == "rad" && t.empty() && M.empty(); }
-    /// Why one of them cannot stand in a line of text.
+    /// An error if a unit cannot appear in a line of text.
     [[nodiscard]] std::optional<text::Error> complaint() const;
 
-    // What follows from them; what needs an M that has none is empty.
+    // Derived units; those that need M are empty without it.
     [[nodiscard]] std::string speed() const;
     [[nodiscard]] std::string frequency() const;
     [[nodiscard]] std::string inertia() const;
@@ -31,13 +30,13 @@ struct Units {
     /// "s", or "time units"
     [[nodiscard]] std::string times() const { return t.empty() ? "time units" : t; }
 
-    /// "theta in m, t in s, M in N"; empty for the usual ones.
+    /// "theta in m, t in s, M in N"; empty for the usual units.
     [[nodiscard]] std::string in_words() const;
     /// "{ theta = \"m\", t = \"s\" }"
     [[nodiscard]] std::string lua_text() const;
-    /// The line of a file in which they stand.
+    /// The line of a file that stores them.
     [[nodiscard]] std::string in_file() const;
-    /// What such a line among these says; the usual ones without it.
+    /// Reads such a line among these; the usual units without one.
     static Units from_file(std::span<const std::string> lines);
 };
 

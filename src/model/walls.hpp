@@ -1,5 +1,5 @@
-// End stops: two walls, or one, between which the mass moves. Rigid ones leave a part of its velocity after an impact,
-// elastic ones push back: the torque k x + C x' at the depth x, where that is positive.
+// End stops: one or two walls that limit the motion. Rigid ones keep the fraction `restitution` of the speed at an
+// impact; elastic ones push back with the torque k x + C x' at the depth x, if positive.
 #pragma once
 
 #include <limits>
@@ -11,24 +11,24 @@ namespace dinal::model {
 
 /// velocity+ = -restitution velocity-, against the ground.
 struct Walls {
-    double lower = -std::numeric_limits<double>::infinity();     ///< rad; -infinity is none
-    double upper = std::numeric_limits<double>::infinity();      ///< rad, above lower; infinity is none
+    double lower = -std::numeric_limits<double>::infinity();     ///< rad; -infinity: no lower wall
+    double upper = std::numeric_limits<double>::infinity();      ///< rad, above lower; infinity: no upper wall
     double restitution = 1;                                      ///< 0 ... 1
     double stiffness = std::numeric_limits<double>::infinity();  ///< torque per rad; infinite: rigid
     double damping = 0;                                          ///< torque time per rad, of elastic walls
 
-    /// The wall in the way of a motion towards positive angles, or of the other one.
+    /// The angle of the wall on this side (positive or not).
     [[nodiscard]] double at(int side) const { return side > 0 ? upper : lower; }
     [[nodiscard]] bool alike() const { return lower == -upper; }
     [[nodiscard]] bool is_elastic() const { return stiffness < std::numeric_limits<double>::infinity(); }
-    /// The torque that the wall on this side takes from what presses on it there.
+    /// The torque of the elastic wall on this side, against the depth.
     [[nodiscard]] double torque(int side, double theta, double velocity) const {
         return stiffness * (theta - at(side)) + damping * velocity;
     }
 
-    /// What is wrong with them, for the person who gave them.
+    /// An error if their numbers are invalid.
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    /// What is wrong with a start there.
+    /// An error if a motion cannot start at theta.
     [[nodiscard]] std::optional<text::Error> crossed_by(double theta) const;
     /// "{ lower = -0.8, upper = 0.8, restitution = 0.7 }"
     [[nodiscard]] std::string lua_text() const;

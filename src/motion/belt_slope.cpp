@@ -16,12 +16,12 @@ BeltSlope belt_slope(const model::Excitation& belt, double t, double stretch) {
     using namespace chebyshev;
     if (belt.constant_from() <= t) return {0, 0};
     constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
-    constexpr double clearly_worse = 8;  // two looks on, what is no smoother in shorter stretches is worse by 16
-    constexpr int most_looks = 23;       // down to 1e-14 of the stretch
-    constexpr double roundings = 256;    // in a slope at the end of a polynomial of this degree
+    constexpr double clearly_worse = 8;  // a jump doubts 16 times more after two more steps
+    constexpr int most_looks = 23;       // down to 1e-14 of `stretch`
+    constexpr double roundings = 256;    // bound of the rounding of a slope at the end of a polynomial of this degree
     const double next = belt.next_break(t);
     BeltSlope best{0, model::never};
-    // A jump that nobody announced is no part of the slope before it.
+    // An unannounced jump must not enter the slope before it.
     double h = std::min(stretch, (next - t) / 2);
     for (int look = 0; look < most_looks; ++look) {
         Samples values{};

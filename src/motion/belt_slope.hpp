@@ -1,4 +1,4 @@
-// How fast a belt changes its velocity, which carries or throws off a mass that is stuck to it.
+// The acceleration of a belt, which carries or throws off a mass stuck to it.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 namespace dinal::motion {
 
 struct BeltSlope {
-    double rate, doubt;  ///< in velocities per time unit; what of it may be rounding, or the belt's own noise
-    /// Nearer to zero by the doubt.
+    double rate, doubt;  ///< velocity per time unit; `doubt` is its error from rounding or the belt's own noise
+    /// The rate moved towards zero by the doubt.
     [[nodiscard]] double sure() const { return std::copysign(std::max(0.0, std::fabs(rate) - doubt), rate); }
 };
 
-/// Part of the time scale of a motion: the stretch in which a belt may be differentiated.
+/// The stretch over which a belt is differentiated, as a part of the motion's time scale.
 inline constexpr double belt_stretch = 0.05;
 
-/// The velocity at t, from the right where it is known to break.
+/// The belt's velocity at t; at a known break the limit from the right.
 [[nodiscard]] double belt_from(const model::Excitation& belt, double t);
 
-/// From the right, by the derivative of a polynomial through `stretch`, or less where that is not smooth: right to some
-/// twelve digits.
+/// The right-hand slope at t from a polynomial through `stretch` time units, fewer if the belt is not smooth there;
+/// good to about twelve digits.
 [[nodiscard]] BeltSlope belt_slope(const model::Excitation& belt, double t, double stretch);
 
 }  // namespace dinal::motion

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The ends, times between them, and the events with the times just before them, where velocity and M may jump.
+/// The ends, times between them, events, and the times just before events, where velocity and M may jump.
 std::vector<double> first_times(const Trajectory& run, double from, double to) {
     constexpr int intervals = 1000;
     std::vector<double> times;
@@ -26,7 +26,7 @@ std::vector<double> first_times(const Trajectory& run, double from, double to) {
     return times;
 }
 
-/// Of each column the differences that no picture shows.
+/// The invisible deviation of each column.
 std::vector<double> invisible(const std::vector<double>& values, std::size_t width) {
     constexpr double part = 1e-3, rounding = 1e-12;
     std::vector<double> all;
@@ -54,7 +54,7 @@ BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : ru
     }
 }
 
-/// A function of the user's may use a variable that was changed since.
+/// Returns false if a user's function now returns other values, as it may if it reads a variable that has changed.
 bool BetweenRows::agrees_with_rows(Eigen::Index column) const {
     if (!M_->has_script()) return true;
     constexpr Eigen::Index looks = 20;
@@ -105,8 +105,8 @@ double BetweenRows::interpolated(Eigen::Index column, double t) const {
 }
 
 Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
-    constexpr std::size_t enough = 100'000;  // times; one more pass may double them
-    constexpr double part = 0.381966;        // the golden section: no swing is as long as such parts of all intervals
+    constexpr std::size_t enough = 100'000;  // times; one more pass may double their number
+    constexpr double part = 0.381966;        // the golden section never falls into step with the motion
     const double shortest = 1e-5 * (to - from);
     const std::size_t width = columns_.size();
     std::vector<double> times = first_times(run_, from, to), values;
@@ -116,7 +116,7 @@ Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) co
         append_values(times[i], values);
     }
     const std::vector<double> small = invisible(values, width);
-    std::vector<char> straight(times.size(), 0);  // from a time to the next one
+    std::vector<char> straight(times.size(), 0);  // whether each interval is drawn straight
     straight.back() = 1;
     while (times.size() < enough && std::find(straight.begin(), straight.end(), 0) != straight.end()) {
         std::vector<double> more_times, more_values;

@@ -1,4 +1,4 @@
-// The motion between the rows of a run, for pictures and spectra: rows may be too far apart to show its swings.
+// The motion between the rows of a run, for plots and spectra: rows may be too far apart to show its swings.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,16 +16,15 @@ public:
     /// Keeps references to both. M is the excitation if t, theta and velocity determine it, otherwise null.
     BetweenRows(const Trajectory& run, const model::Excitation* M);
 
-    /// The run kept its motion; otherwise only its rows are known.
+    /// Returns whether the run kept its motion; otherwise only its rows are known.
     [[nodiscard]] bool any() const { return !columns_.empty(); }
-    /// The columns that are known at any time.
+    /// The columns that can be evaluated at any time.
     [[nodiscard]] const std::vector<Eigen::Index>& columns() const { return columns_; }
     /// Appends the values of these columns; nan where the motion cannot be evaluated.
     void append_values(double t, std::vector<double>& values) const;
 
-    /// The run with other rows: at its events between two times, and so close that straight lines between them look
-    /// like the motion. Other columns are interpolated between the rows of the run. The run as it is if the monitor
-    /// says no.
+    /// The run between two times with rows at its events, and so close that straight lines between them look like the
+    /// motion. Other columns are interpolated. Returns the run unchanged if the monitor stops it.
     [[nodiscard]] Trajectory drawn(double from, double to, const Monitor& monitor) const;
 
 private:

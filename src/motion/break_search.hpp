@@ -1,4 +1,4 @@
-// Where a function that is smooth but for jumps and kinks has one of them, found to rounding from its values alone.
+// Locates a jump or kink of an otherwise smooth function to rounding, from its values alone.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace dinal::motion {
 
-/// No jump is located nearer than this part of the stretch that is searched; only beside t = 0 doubles lie closer.
+/// The resolution of a located jump, as a part of the searched interval; it matters only near t = 0, where doubles are
+/// denser.
 inline constexpr double nearest_jump = 0x1p-100;
 
-/// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
-/// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
+/// Returns the first double at which f has its value at b rather than at a. Near t = 0 the search ends at nearest_jump.
 template <class F>
 double jump_between(double a, double fa, double b, double fb, const F& f) {
     const double smallest = (b - a) * nearest_jump;
@@ -35,7 +35,7 @@ namespace detail {
 
 constexpr double few_roundings = 64 * std::numeric_limits<double>::epsilon();
 
-/// Three values, evenly spaced, and how far the middle one is from the straight line.
+/// Three values at evenly spaced times, and the distance of the middle one from the straight line.
 struct Triple {
     double a, fa, middle, fm, b, fb;
     [[nodiscard]] double bend() const { return std::fabs(fa - 2 * fm + fb); }
@@ -44,7 +44,7 @@ struct Triple {
     }
 };
 
-/// The half of the triple (left, middle or right) that bends most; two new values.
+/// The half of the triple (left, middle or right) that bends most; evaluates f twice.
 template <class F>
 Triple most_bent_half(const Triple& t, const F& f) {
     const double q1 = t.a + (t.middle - t.a) / 2, q3 = t.middle + (t.b - t.middle) / 2;
@@ -55,11 +55,11 @@ Triple most_bent_half(const Triple& t, const F& f) {
     return side.bend() >= centre.bend() ? side : centre;
 }
 
-/// The jump between a and b, if halving shows that it is one: the values at both ends of a jump stay apart, whatever
-/// else f does there comes together. One value for each halving.
+/// The jump between a and b, if bisection confirms it: across a jump the values stay apart, elsewhere their difference
+/// shrinks. One value for each halving.
 template <class F>
 std::optional<double> find_jump(double a, double fa, double b, double fb, const F& f) {
-    constexpr int judged_at = 7, judged_again_at = 21;  // halvings after which
+    constexpr int judged_at = 7, judged_again_at = 21;  // the halvings after which it is judged
     const double at_first = std::fabs(fb - fa);
     for (int i = 1; i <= judged_again_at; ++i) {
         const double middle = a + (b - a) / 2;
@@ -70,7 +70,7 @@ std::optional<double> find_jump(double a, double fa, double b, double fb, const 
         } else {
             a = middle, fa = fm;
         }
-        // Of a smooth f half of the difference is left each time, of a kink, too.
+        // The difference halves each time if f is smooth or has a kink.
         const bool judged = i == judged_at || i == judged_again_at;
         if (judged && !(std::fabs(fb - fa) > at_first / 8)) return {};
     }
@@ -79,8 +79,8 @@ std::optional<double> find_jump(double a, double fa, double b, double fb, const 
 
 }  // namespace detail
 
-/// The jump or kink of f that shows most in its values at increasing times, if halving the interval around it shows
-/// that it is one: there the second difference stays (jump) or halves (kink), elsewhere it falls to a quarter.
+/// The most visible jump or kink of f in its values at increasing times, if bisection confirms it: the second
+/// difference stays (jump) or halves (kink), while that of a smooth f falls to a quarter.
 template <class F>
 std::optional<double> find_break(std::span<const double> times, std::span<const double> values, const F& f) {
     std::size_t worst = 0;
@@ -91,7 +91,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
         if (bend > most) worst = i, most = bend;
     }
     if (worst == 0) return {};
-    // A jump, or one of both edges of something narrow: between the two values that differ most.
+    // A jump, or one edge of something narrow: between the two values that differ most.
     const bool left = std::fabs(values[worst] - values[worst - 1]) >= std::fabs(values[worst + 1] - values[worst]);
     const std::size_t before = left ? worst - 1 : worst;
     if (std::fabs(values[before + 1] - values[before]) >
@@ -102,7 +102,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     const double a = times[worst - 1], b = times[worst + 1], middle = a + (b - a) / 2;
     detail::Triple t{a, values[worst - 1], middle, f(middle), b, values[worst + 1]};
 
-    constexpr int judged_at = 7;        // halvings after which
+    constexpr int judged_at = 7;        // the halvings after which it is judged
     constexpr double smooth = 0x1p-10;  // a kink still bends by 2^-7 or more, a smooth f by 2^-14
     const double at_first = std::max(t.bend(), most);
     if (at_first <= 64 * t.noise()) return {};
@@ -118,18 +118,18 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     return t.middle;
 }
 
-/// The breaks that were passed last. Of a staircase, a square wave or a train of pulses the next one can be foreseen.
+/// The breaks passed last, to predict the next one of a staircase, a square wave or a train of pulses.
 class PassedBreaks {
 public:
     void pass(double t) {
         std::rotate(last_.begin(), last_.begin() + 1, last_.end());
         last_.back() = t;
     }
-    /// Where the next jump of f is, if the last ones come again after one, two or three of them, and f jumps there:
-    /// some six values, where finding it anew takes sixty. f is not asked behind `end`.
+    /// Returns the next jump of f if the last breaks repeat after one, two or three of them and f does jump at the
+    /// predicted time. Costs about six values instead of sixty. Does not evaluate f beyond `end`.
     template <class F>
     [[nodiscard]] std::optional<double> next(double end, const F& f) const {
-        constexpr double known_to = 8 * std::numeric_limits<double>::epsilon();  // of the time
+        constexpr double known_to = 8 * std::numeric_limits<double>::epsilon();  // relative accuracy of a break's time
         const std::size_t latest = last_.size() - 1;
         for (std::size_t after = 1; 2 * after <= latest; ++after) {
             const double period = last_[latest] - last_[latest - after],

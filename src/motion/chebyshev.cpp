@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t half = degree / 2;
 
-// Terms of even k are even functions and those of odd k odd ones, so each transform falls into two of half the size.
+// Terms of even k are even functions, those of odd k odd ones: each transform splits into two of half the size.
 
 template <std::size_t rows, std::size_t columns>
 using Matrix = std::array<std::array<double, columns>, rows>;
@@ -28,7 +28,7 @@ constexpr Matrix<half + 1, columns> polynomials(std::size_t parity) {
 constexpr auto even_terms = polynomials<half + 1>(0);
 constexpr auto odd_terms = polynomials<half>(1);
 
-/// Row i: the same term at all nodes.
+/// Row i: one term at all nodes.
 template <std::size_t columns>
 constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& terms) {
     Matrix<columns, half + 1> m{};
@@ -40,14 +40,14 @@ constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& term
 constexpr auto even_at = turned(even_terms);
 constexpr auto odd_at = turned(odd_terms);
 
-/// Row j: the weight of f(x_j) + f(-x_j), or of the difference, in the coefficients of that parity.
+/// Row j: the weights of f(x_j) + f(-x_j), or of the difference, in the coefficients of that parity.
 template <std::size_t columns>
 constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
     Matrix<half + 1, columns> m{};
     for (std::size_t j = 0; j <= half; ++j) {
         for (std::size_t i = 0; i < columns; ++i) {
             const std::size_t k = 2 * i + parity;
-            // Of the sum over all points both end points count half, and the middle is in f(x) + f(-x) twice.
+            // Both end points count half in the sum over all points; f(x) + f(-x) contains the middle twice.
             const double share = (j == 0 || j == half ? 1.0 : 2.0) * (k == 0 || k == degree ? 0.5 : 1.0);
             m[j][i] = share * terms[j][i] / static_cast<double>(degree);
         }
@@ -81,7 +81,7 @@ Series<points> fit(const Samples& f) {
 }
 
 Samples at_nodes(const Series<points>& c) {
-    // All nodes side by side, which the processor does by twos.
+    // All nodes side by side, so that the compiler vectorises.
     std::array<double, half + 1> even{}, odd{};
     for (std::size_t i = 0; i < half; ++i) {
         for (std::size_t j = 0; j <= half; ++j) {

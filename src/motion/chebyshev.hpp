@@ -47,7 +47,7 @@ Series<points> fit(const Samples& f);
 /// The values at the nodes.
 Samples at_nodes(const Series<points>& c);
 
-/// A longer series as it looks at the nodes, where its last terms are like lower ones: T17 like T15, T18 like T14.
+/// A longer series as its values at the nodes show it: there its last terms equal lower ones, T17 = T15, T18 = T14.
 template <std::size_t n>
 Series<points> folded(const Series<n>& c) {
     static_assert(n > points && n <= 2 * degree);
@@ -61,9 +61,8 @@ Samples at_nodes(const Series<n>& c) {
     return at_nodes(folded(c));
 }
 
-/// Clenshaw's sum, of the even and of the odd terms by themselves: T(2k) = Tk(y) and T(2k+1) = x Pk(y) with y = 2 x^2 -
-/// 1, P0 = 1, P1 = 2 y - 1 and the recurrence of Tk. Two chains of half the length, neither of which waits for the
-/// other.
+/// Clenshaw's sum, for even and odd terms separately: T(2k) = Tk(y) and T(2k+1) = x Pk(y) with y = 2 x^2 - 1, P0 = 1,
+/// P1 = 2 y - 1 and the recurrence of Tk. The two chains of half the length run in parallel.
 template <std::size_t n>
 double value(const Series<n>& c, double x) {
     const double y = 2 * x * x - 1, twice = 2 * y;
@@ -80,7 +79,7 @@ double value(const Series<n>& c, double x) {
     return ((c[0] - even_before) + y * even) + x * (odd - odd_before);
 }
 
-/// f(0) + f(1) + ... + f(n - 1), in four sums side by side: one addition does not wait for the last one.
+/// f(0) + f(1) + ... + f(n - 1), in four parallel sums: an addition need not wait for the one before.
 template <std::size_t n, class F>
 double sum_of(F f) {
     std::array<double, 4> sums{};
@@ -121,7 +120,7 @@ Series<n - 1> derivative(const Series<n>& f) {
     return d;
 }
 
-/// Exactly, from Tj Tk = (T(j+k) + T|j-k|)/2.
+/// The exact product, from Tj Tk = (T(j+k) + T|j-k|)/2.
 template <std::size_t n, std::size_t m>
 Series<n + m - 1> product(const Series<n>& f, const Series<m>& g) {
     Series<n + m - 1> c{};
@@ -141,9 +140,9 @@ double size(const Series<n>& c) {
     return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]); });
 }
 
-/// The last two coefficients: about what a series that has decayed is off by. Of jumps that come evenly every second
-/// one is zero, and sometimes the last: so the two before are to be small as well, which those of a smooth function are
-/// by far.
+/// The size of the last two coefficients, about the error of a series that has decayed. Evenly spaced jumps make every
+/// second coefficient zero, sometimes the last one; so the two before are included, which are far smaller for a smooth
+/// function.
 inline double tail(const Series<points>& c) {
     constexpr double by_far = 1e-4;
     const double before = std::max(std::fabs(c[degree - 3]), std::fabs(c[degree - 2]));

@@ -1,4 +1,4 @@
-// A run's states at some of its steps, from which any part of it can be run again: run:at() replays from here.
+// A run's states at some of its steps. run:at() replays a part of the run from the nearest one.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace dinal::motion {
 
-/// Evenly spaced checkpoints in bounded memory: when full, every second one is dropped. A Checkpoint is an
-/// integrator's own record of where it is, with the number of its `step`.
+/// Evenly spaced checkpoints in bounded memory: when full, every second one is dropped. A Checkpoint is an integrator's
+/// own record of its state, with the number of its `step`.
 template <class Checkpoint>
 class Checkpoints {
 public:

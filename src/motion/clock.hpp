@@ -1,15 +1,15 @@
-// A time that twenty thousand restarts do not blur: a double and what it lacks.
+// A time in two doubles, which stays accurate over tens of thousands of restarts.
 #pragma once
 
 namespace dinal::motion {
 
 struct Clock {
     double hi = 0;  ///< the time, rounded
-    double lo = 0;  ///< what was rounded off
+    double lo = 0;  ///< its rounding error
 
     /// The time `dt` later, rounded once.
     [[nodiscard]] double after(double dt) const { return hi + (lo + dt); }
-    /// How long ago this is at time t.
+    /// The duration from this time to t.
     [[nodiscard]] double until(double t) const { return (t - hi) - lo; }
     [[nodiscard]] Clock later(double dt) const {
         const double sum = hi + dt;

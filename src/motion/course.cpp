@@ -48,8 +48,8 @@ public:
         }
         return all;
     }
-    void legs(const std::function<void(const Leg&)>& told) const override {
-        for (const Part& part : parts_) part.course->legs(told);
+    void legs(const std::function<void(const Leg&)>& visit) const override {
+        for (const Part& part : parts_) part.course->legs(visit);
     }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
 

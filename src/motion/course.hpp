@@ -1,4 +1,5 @@
-// The motion between the rows of a run as its integrator leaves it: evaluated anywhere, told in legs for its energy.
+// The motion between the rows of a run as its integrator computed it: evaluated at any time, and in legs for its
+// energy.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +15,22 @@ namespace dinal::motion {
 
 /// Torque times rad.
 struct Work {
-    double input = 0;    ///< of M on the mass
+    double input = 0;    ///< work of M on the mass
     double viscous = 0;  ///< lost to viscous damping
     double dry = 0;      ///< lost to dry friction
-    double belt = 0;     ///< of the moving surface on the mass
-    double base = 0;     ///< of the shaking support
-    double acts = 0;     ///< of what a user did at his events
+    double belt = 0;     ///< work of the moving surface on the mass
+    double base = 0;     ///< work of the shaking support
+    double acts = 0;     ///< energy added by a user's actions at events
     double impacts = 0;  ///< lost at walls
     double kept = 0;     ///< stored in the springs of sliders
 };
 
-/// A stretch of smooth motion, integrated as exactly as it was computed. Times are counted from its beginning.
+/// A stretch of smooth motion, integrated as accurately as it was computed. Times are counted from its beginning.
 class Leg {
 public:
     [[nodiscard]] virtual double length() const = 0;
     [[nodiscard]] virtual double since_start(double t) const = 0;
-    /// The work done until then; none before the beginning, all of it after the end.
+    /// The work done from the beginning up to `since_start`, which is limited to the leg.
     [[nodiscard]] virtual Work work(double since_start) const = 0;
 
 protected:
@@ -47,28 +48,28 @@ public:
     virtual ~Course() = default;
 
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
-    /// theta and velocity at a time of the run, at the accuracy of its integrator.
+    /// theta and velocity at a time of the run, with the accuracy of its integrator.
     [[nodiscard]] virtual text::Expected<model::State> at(double t) const = 0;
 
-    /// The states of a run that has some, at a time of the run.
+    /// The run's own states at a time; empty if it has none.
     [[nodiscard]] virtual std::vector<double> states_at(double /*t*/) const { return {}; }
 
-    /// Up to this time the motion is kept whole: at() need not ask M again, and legs() tells it. `never` when that is
-    /// all of the run; an integrator that only keeps where to begin again has no such time.
+    /// The time up to which the motion is stored completely, so that at() need not evaluate M and legs() covers it:
+    /// `never` if all of it is. Integrators that only store checkpoints return -never.
     [[nodiscard]] virtual double whole_until() const { return -model::never; }
-    /// Times between which the kept motion is smooth, in order: acts and conditions on the motion are among them. Empty
-    /// if the events and the breaks of M are all such times.
+    /// The ends of smooth pieces, in order; they include user actions and switches of conditions on the motion. Empty
+    /// if all are events or breaks of M.
     [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }
-    /// In order and without gaps.
-    virtual void legs(const std::function<void(const Leg&)>& /*told*/) const {}
-    /// What it takes of the memory for the motion between the rows.
+    /// Visits the legs in order, without gaps.
+    virtual void legs(const std::function<void(const Leg&)>& /*visit*/) const {}
+    /// The memory used for the motion between the rows.
     [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 
 private:
     model::Oscillator system_;
 };
 
-/// Of a run that went on at the time `from`. None unless both parts have theirs.
+/// The course of a run and its continuation from the time `from`; null if either is missing.
 std::shared_ptr<const Course> joined(const std::shared_ptr<const Course>& before, double from,
                                      std::shared_ptr<const Course> after);
 

@@ -1,4 +1,5 @@
-// The first place where a polynomial on a panel falls below zero, proven to be the first and polished to rounding.
+// Finds the first point at which a polynomial on a panel falls below zero, proves that it is the first, and polishes it
+// to rounding.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace dinal::motion::chebyshev {
 
-/// A polynomial with its derivative, and what proves that there is no zero between two values.
+/// A polynomial, its derivative, and bounds that prove the absence of zeros between two values.
 template <std::size_t n>
 class Bounded {
 public:
@@ -18,7 +19,7 @@ public:
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : Bounded(sign, f, slope, {}) {
         at_nodes_ = chebyshev::at_nodes(f_);
     }
-    /// Of known values at the nodes.
+    /// The same with known values at the nodes.
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope, const Samples& at_nodes)
         : f_(f), slope_(slope), at_nodes_(at_nodes) {
         for (double& c : f_) c *= sign;
@@ -30,16 +31,16 @@ public:
     [[nodiscard]] double operator()(double x) const { return value(f_, x); }
     [[nodiscard]] double slope(double x) const { return value(slope_, x); }
     [[nodiscard]] double second_bound() const { return second_; }
-    /// How far below its chord over this width the curve may sag.
+    /// A bound of how far the curve sags below its chord over this width.
     [[nodiscard]] double dip(double width) const { return second_ * width * width / 8; }
-    /// Whether the curve between these two values, so far apart, is positive.
+    /// Returns whether the curve between these two values, `width` apart, is positive.
     [[nodiscard]] bool stays_above(double a, double b, double width) const { return std::min(a, b) > dip(width); }
-    /// What may be rounding alone.
+    /// The rounding error of a value.
     [[nodiscard]] double floor() const { return floor_; }
     /// For a curve that is a difference of larger numbers, or whose slope is.
     void raise_floor(double least) { floor_ = std::max(floor_, least); }
     void raise_slope_floor(double least) { slope_floor_ = std::max(slope_floor_, least); }
-    /// The lowest place around x, where the curve comes to zero within rounding without clearly crossing it.
+    /// The lowest point around x if the curve touches zero within rounding without clearly crossing it.
     [[nodiscard]] double lowest_near(double x) const {
         const double reach = second_ > 0 ? 2 * std::sqrt(8 * floor_ / second_) : 0;
         double a = std::max(-1.0, x - reach), b = std::min(1.0, x + reach);
@@ -52,8 +53,8 @@ public:
         return b;
     }
     [[nodiscard]] const Samples& at_nodes() const { return at_nodes_; }
-    /// Up to which distance from -1 a curve that leaves zero there is certainly positive: by its slope there, or, where
-    /// that is zero too, by its curvature. None when neither tells.
+    /// The distance from -1 up to which a curve that leaves zero there is certainly positive: by its slope, or if that
+    /// is zero, too, by its curvature. 0 if neither decides.
     [[nodiscard]] double leaves_upward() const {
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
@@ -64,7 +65,7 @@ public:
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
         const double by_bend = bend > 0 ? 3 * bend / derivative_bound<3>(f_) : 0;
-        return by_slope > by_bend ? by_slope : by_bend;  // where it is no number it tells nothing
+        return by_slope > by_bend ? by_slope : by_bend;  // a NaN decides nothing
     }
 
 private:
@@ -79,8 +80,8 @@ private:
 
 namespace detail {
 
-/// The zero between f(a) > 0 and f(b) <= 0 of a curve that falls all the way: Newton within the bracket, up to the step
-/// that leaves no more than rounding. (Steps within the rounding of f would go on for long.)
+/// The zero between f(a) > 0 and f(b) <= 0 of a falling curve: Newton within the bracket, until a step is below
+/// rounding. (Steps within the rounding of f would not end soon.)
 template <class F>
 double polish(const F& f, double a, double fa, double b, double fb) {
     constexpr double rounding = 2e-16;
@@ -114,7 +115,7 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         return confirm(b) ? std::optional(b) : std::nullopt;
     }
-    if (!(f.dip(width) > f.floor()) || width < 1e-12) {  // also where it is no number
+    if (!(f.dip(width) > f.floor()) || width < 1e-12) {  // true for NaN as well
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         const double lowest = fa < fb ? a : b;
         return std::min(fa, fb) <= f.floor() && confirm(lowest) ? std::optional(lowest) : std::nullopt;
@@ -128,12 +129,12 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
 
 enum class LeftEnd {
     anywhere,  ///< f(from) may be positive, or zero within rounding
-    leaving,   ///< f(from) is zero and f means to become positive; -1 or `from` is the answer when it does not
+    leaving,   ///< f(from) is zero and should become positive; if it does not, the result is -1 or `from`
 };
 
-/// The first x in [from, 1] at which f falls below zero. Where it comes to zero within rounding and does not clearly
-/// cross it, confirm(x) decides whether that counts. Between two values of f, a bound of f'' proves that there is no
-/// zero; where it cannot, the interval is halved until it can, so pairs of zeros close together are not passed over.
+/// The first x in [from, 1] at which f falls below zero. If f touches zero within rounding without clearly crossing it,
+/// confirm(x) decides whether that counts. A bound of f'' proves that no zero lies between two values; otherwise the
+/// interval is halved, so that pairs of close zeros are not missed.
 template <class F, class Confirm>
 std::optional<double> first_below(const F& f, double from, LeftEnd start, const Confirm& confirm) {
     const Samples& at_node = f.at_nodes();
@@ -146,9 +147,9 @@ std::optional<double> first_below(const F& f, double from, LeftEnd start, const 
         if (far >= right - from) {
             while (j < degree && nodes[j + 1] - from <= far) ++j;
             left = nodes[j], f_left = at_node[j], ++j;
-            if (f_left <= 0) f_left = f.floor();  // positive, and small
+            if (f_left <= 0) f_left = f.floor();  // positive and tiny
         } else {
-            // From within the rounding outwards, until it is clear which way the curve goes.
+            // Steps outwards from the rounding error until the direction of the curve is clear.
             double d = (right - from) * 0x1p-46;
             while (d < right - from && std::fabs(f(from + d)) <= f.floor()) d *= 2;
             left = std::min(from + d, right), f_left = f(left);

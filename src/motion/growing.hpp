@@ -1,4 +1,4 @@
-// Tables that go on without being copied: what a run shares with the run that it continues.
+// Tables that grow without being copied: a run shares its rows with the run that it continues.
 #pragma once
 
 #include <algorithm>
@@ -11,27 +11,27 @@
 
 namespace dinal::motion {
 
-/// Rows of one or more values, column by column; a column is contiguous. What was written never changes. A table that
-/// follows another one stands in the same memory, behind its rows, while there is room and nobody else went on there:
-/// n tables, each following the one before, cost as much as the last one, and each keeps its own length.
+/// Rows of one or more values; each column is contiguous. Written rows never change. A table that extends another one
+/// uses the same memory behind its rows if there is room and no other table has claimed it: n successive extensions
+/// cost as much as the last table, and each keeps its own length.
 ///
-/// The last row of a table that follows another one is kept apart until somebody wants its columns. Often it is only
-/// there because the run ended, and the table that goes on begins in its place.
+/// The last row of an extension is kept apart until its columns are needed: often it exists only because the run ended
+/// there, and the next extension overwrites it.
 template <class T>
 class Growing {
 public:
     Growing() = default;
-    /// To be written through `writable`.
+    /// Rows to be filled through `writable`.
     Growing(std::size_t rows, std::size_t columns) : store_(Store::with_room(rows, columns)), size_(rows) {
         store_->used = rows;
     }
-    /// One column.
+    /// A single column.
     explicit Growing(std::vector<T> values) {
         if (values.empty()) return;
         size_ = values.size();
         store_ = std::make_shared<Store>(Store{nullptr, values.data(), size_, 1, size_, std::move(values)});
     }
-    /// The columns at `values`, which `owner` keeps alive.
+    /// Views columns at `values`, which `owner` keeps alive.
     Growing(std::size_t rows, T* values, std::size_t columns, std::shared_ptr<void> owner)
         : store_(std::make_shared<Store>(Store{std::move(owner), values, rows, columns, rows})), size_(rows) {}
 
@@ -47,24 +47,24 @@ public:
         place_last();
         return {store_->column(column), size_};
     }
-    /// From a column to the next.
+    /// The distance between the beginnings of two columns.
     [[nodiscard]] std::size_t stride() const {
         place_last();
         return store_ == nullptr ? 0 : store_->room;
     }
 
-    // Of the first column, as of a list:
+    // Access to the first column, as to a list:
     [[nodiscard]] const T& operator[](std::size_t row) const { return (*this)(row, 0); }
     [[nodiscard]] const T& front() const { return (*this)(0, 0); }
     [[nodiscard]] const T& back() const { return (*this)(size_ - 1, 0); }
     [[nodiscard]] auto begin() const { return column(0).begin(); }
     [[nodiscard]] auto end() const { return column(0).end(); }
 
-    /// Of a new table only.
+    /// For a new table only: rows of others must not change.
     [[nodiscard]] T* writable() { return store_ == nullptr ? nullptr : store_->values; }
 
-    /// The first `kept` rows and, behind them, those of `later`. Room for more rows to come takes at most as many rows
-    /// as there are, and not more than `most` with them.
+    /// The first `kept` rows followed by those of `later`. New memory reserves room for at most as many rows again, up
+    /// to `most` in total.
     [[nodiscard]] Growing followed_by(std::size_t kept, const Growing& later, std::size_t most) const {
         assert(kept <= size_);
         if (later.empty() && kept == size_) return *this;
@@ -82,7 +82,7 @@ public:
         return both;
     }
 
-    /// These many rows, in memory of their own.
+    /// The first rows, in their own memory.
     [[nodiscard]] Growing first(std::size_t rows) const {
         assert(rows <= size_);
         Growing part(rows, columns());
@@ -90,7 +90,7 @@ public:
         return part;
     }
 
-    /// The bytes that this table holds and no other one.
+    /// The memory of this table; 0 if others share it.
     [[nodiscard]] std::size_t own_bytes() const {
         return store_.use_count() == 1 ? store_->room * store_->columns * sizeof(T) : 0;
     }
@@ -100,8 +100,8 @@ private:
         std::shared_ptr<void> owner;
         T* values;
         std::size_t room, columns;
-        std::size_t used;       ///< rows that belong to some table
-        std::vector<T> list{};  // the owner of a list is the store itself
+        std::size_t used;       ///< rows claimed by any table
+        std::vector<T> list{};  // the owner in case of a list
 
         [[nodiscard]] T* column(std::size_t i) const { return values + i * room; }
         static std::shared_ptr<Store> with_room(std::size_t rows, std::size_t columns) {
@@ -120,7 +120,7 @@ private:
         if (std::max(from, stored) < until) *to = last_[column];
     }
 
-    /// Where the rows after the first `kept` can be written: behind them, or in a copy of them with room for more.
+    /// The memory for rows after the first `kept`: behind them, or a new one with spare room.
     [[nodiscard]] std::shared_ptr<Store> store_for(std::size_t kept, std::size_t rows, std::size_t columns,
                                                    std::size_t most) const {
         const bool free = store_ != nullptr && store_->used == std::min(kept, placed()) && rows <= store_->room;
@@ -140,9 +140,9 @@ private:
         last_.clear();
     }
 
-    mutable std::shared_ptr<Store> store_;  // shared with the tables that this one follows, and that follow it
+    mutable std::shared_ptr<Store> store_;  // shared with the tables it extends and those that extend it
     std::size_t size_ = 0;
-    mutable std::vector<T> last_;  // of the row that is kept apart
+    mutable std::vector<T> last_;  // the row that is kept apart
 };
 
 }  // namespace dinal::motion

@@ -1,4 +1,4 @@
-// The integrators that a user can choose from, one row each, and which of them a run takes that names none.
+// The integrators, one row each, and the default.
 #pragma once
 
 #include <variant>
@@ -22,9 +22,9 @@ using Integrator = std::variant<Spectral,  //
                                 Rk4,       //
                                 Dinal1989>;
 
-/// What a run takes that names none: exact where it applies, else spectral, which takes everything.
+/// The default integrator: exact if it applies, otherwise spectral, which supports everything.
 Integrator integrator_for(const model::Oscillator& system, const model::Drive& drive);
-/// The same in words, and the Lua text of the first of them.
+/// The same as text: its Lua expression.
 inline constexpr text::FixedText<64> usual_integrator{Exact::about.call.name, "{}"};
 inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " if it supports M, otherwise ",
                                                         Spectral::about.call.name, "{}"};

@@ -14,13 +14,13 @@ struct Cubic {
     double operator()(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
 };
 
-/// The turning points of the cubic inside (0, 1) in order, and 1.
+/// The extremes of the cubic inside (0, 1) in order, followed by 1.
 std::array<double, 3> monotone_ends(const Cubic& p) {
     const double a = 3 * p.c3, b = 2 * p.c2, c = p.c1;
     double s1 = 1, s2 = 1;
     const double discriminant = b * b - 4 * a * c;
     if (discriminant > 0) {
-        // The stable pair: no difference of nearly equal numbers.
+        // The stable formula: no difference of nearly equal numbers.
         const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
         s1 = a != 0 ? q / a : 1;
         s2 = q != 0 ? c / q : 1;
@@ -38,7 +38,7 @@ std::optional<double> first_velocity_zero(double direction, double h, double v0,
                   direction * (h * (a0 + a1) - 2 * rise)};
     double left = 0;
     for (const double right : monotone_ends(p)) {
-        // At the end the given velocity decides, not the rounded sum of the coefficients.
+        // At the end use the given velocity, not the rounded sum of the coefficients.
         const double value = right == 1 ? direction * v1 : p(right);
         if (!(value > 0)) {
             if (left == 0 && !(p.c0 > 0)) return 0;

@@ -1,4 +1,4 @@
-// The motion inside one smooth step, from position, velocity and acceleration at its two ends; and the roots in it.
+// The motion inside one smooth step, from position, velocity and acceleration at both ends, and its zeros.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ public:
         c4_ = -15 * p + 7 * q - r;
         c5_ = 6 * p - 3 * q + r / 2;
     }
-    /// theta and velocity a time x after the step's beginning.
+    /// theta and velocity at the time x after the step's beginning.
     [[nodiscard]] model::State operator()(double x) const {
         const double s = x / h_;
         return {y0_.theta + x * (y0_.velocity + x * a0_ / 2) + s * s * s * (c3_ + s * (c4_ + s * c5_)),
@@ -35,8 +35,8 @@ private:
     double c3_, c4_, c5_;
 };
 
-/// Neighbours a < b, at most `width` or one unit of the last place apart, with f(a) <= 0 < f(b), from a bracket that
-/// has this property. Secant steps (Illinois), every third one a bisection so that a jump costs no more than that.
+/// Neighbours a < b, at most `width` or one ulp apart, with f(a) <= 0 < f(b), from a bracket with this property. Uses
+/// secant steps (Illinois), and bisection every third time, so that a jump costs no more than bisection.
 template <class F>
 std::pair<double, double> first_positive(F&& f, double a, double fa, double b, double fb, double width = 0) {
     int same_side = 0;
@@ -59,9 +59,9 @@ std::pair<double, double> first_positive(F&& f, double a, double fa, double b, d
     return {a, b};
 }
 
-/// The first time x in (0, h] at which a velocity that goes in `direction` (+1, -1) is down to zero, by the cubic
-/// through velocity and acceleration at both ends. A velocity of exactly 0 at the beginning is not one; but 0 is
-/// returned when the velocity leaves it the wrong way. None if the cubic stays on its side.
+/// The first time x in (0, h] at which a velocity in `direction` (+1, -1) reaches zero, by the cubic through velocity
+/// and acceleration at both ends. A velocity of exactly 0 at the beginning does not count, but 0 is returned if the
+/// velocity leaves it in the wrong direction. None if the cubic stays on its side.
 std::optional<double> first_velocity_zero(double direction, double h, double v0, double a0, double v1, double a1);
 
 }  // namespace dinal::motion

@@ -1,5 +1,5 @@
-// What an integrator is: a value with options that runs a problem. A new one is a folder (or a file) of its own with
-// what `Method` asks for, and a row in integrators.hpp.
+// The interface of an integrator: a value with options that runs a problem. A new one is a folder or file that
+// satisfies `Method`, and a row in integrators.hpp.
 #pragma once
 
 #include <concepts>
@@ -17,40 +17,41 @@ namespace dinal::motion {
 
 struct Problem;
 
-/// What people read about a method, and the options that fill it.
+/// The documentation of a method, and its options.
 struct MethodText {
-    text::Call call;      ///< of Lua: "integrator.rk4"
+    text::Call call;      ///< its constructor in Lua: "integrator.rk4"
     const char* summary;  ///< sentences, units included
-    const char* example;  ///< Lua that runs; `-->` is followed by what the line prints
+    const char* example;  ///< Lua that runs; `-->` precedes the output
 };
 
-/// The distance between two evaluations of M, which times must be able to tell apart.
+/// The distance between two evaluations of M, which must exceed the rounding of times.
 struct Resolution {
-    const char* name;  ///< in sentences: "h"
+    const char* name;  ///< the option's name in sentences: "h"
     double time;
-    bool is_step = true;  ///< what is shorter is stepped over; else the method looks closely where M says so
+    bool is_step = true;  ///< whether shorter details are stepped over; otherwise the method refines at details
+                          ///< declared by M
 };
 
-/// Of a method that does not ask the friction law at velocity zero: what the story of a run says about that.
+/// A release rule in place of the friction law's, in the words of run:explain().
 struct OwnRule {
-    std::string setting;  ///< how the run was integrated: a sentence
-    const char* release;  ///< "the listing let it go at", before the torque
+    std::string setting;  ///< a sentence on the settings of the run
+    const char* release;  ///< text before the release torque: "the listing released it at"
 };
 
-/// How the general engine cuts a run into stretches.
+/// The division of a run into stretches by the general engine.
 struct Cut {
     double tolerance = 1e-12;
-    double longest = model::never;  ///< stretch, time units
-    double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
+    double longest = model::never;  ///< longest stretch, time units
+    double step = 0;                ///< step of the classical Runge-Kutta method; 0 means collocation
 };
 
-/// An option struct with its own run. The ranges of its options are in `about`; it may also have
+/// An option struct with a run. `about` has the ranges of its options. Optional members:
 ///     std::optional<text::Error> wrong_for(const model::Oscillator& system, const model::Excitation& excitation)
 ///     const;
-/// what these forbid besides, and
+/// for errors that ranges cannot express, and
 ///     OwnRule own_rule() const;
-///     Cut cut() const;    it runs any system, and problems with more in them (Problem::more)
-///     static constexpr bool asks_in_order = true;          M at ever later times only: it may remember something
+///     Cut cut() const;    it runs any system and drive (Problem::more)
+///     static constexpr bool asks_in_order = true;    M is evaluated at increasing times only
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;
@@ -58,11 +59,11 @@ concept Method = requires(const T& method, const model::Oscillator& system, cons
     { method.run(problem) } -> std::same_as<Trajectory>;
 };
 
-/// Any method, seen through what all have in common: for arguments only, it does not keep the method alive.
+/// A view of any method, for arguments only: it does not keep the method alive.
 class MethodView {
 public:
     template <Method M>
-    MethodView(const M& method)  // NOLINT(google-explicit-constructor): as a string is a string_view
+    MethodView(const M& method)  // NOLINT(google-explicit-constructor): like a string_view of a string
         : method_(&method), common_(&common_of<M>) {}
     template <Method... M>
     MethodView(const std::variant<M...>& one)  // NOLINT(google-explicit-constructor)
@@ -71,7 +72,7 @@ public:
     [[nodiscard]] const MethodText& about() const { return common_->about; }
     /// The Lua text that makes it again.
     [[nodiscard]] std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
-    /// An option that is out of its range, or wrong for this system under this excitation.
+    /// An error if an option is out of range, or wrong for this system or excitation.
     [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system,
                                                    const model::Excitation& excitation) const {
         return common_->wrong(method_, system, excitation);
@@ -81,9 +82,10 @@ public:
     }
     [[nodiscard]] Trajectory run(const Problem& problem) const { return common_->run(method_, problem); }
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
-    /// It asks M in order of time, so nobody needs to know whether M remembers something.
+    /// Returns whether M is evaluated in order of time, so that a memory in M does no harm.
     [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
-    /// Of one that runs any system, and states, events of the user, belts, bases and controllers with a memory.
+    /// Its stretches if it runs any system with states, user events, belts, bases and controllers with a memory;
+    /// otherwise none.
     [[nodiscard]] std::optional<Cut> cut() const { return common_->cut(method_); }
 
 private:

@@ -23,14 +23,14 @@ text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const 
 }
 
 RowsToCome rows_to_come(const Trajectory& so_far, const Grid& grid) {
-    // The last row of the first part is none of all of it when only the old t_end put it there.
+    // The last row of the first part is dropped if it existed only because of the old t_end.
     RowsToCome rows{std::min(static_cast<std::size_t>(so_far.size()), grid.count()), {}};
     if (rows.kept > 0 && so_far.rows(static_cast<Eigen::Index>(rows.kept) - 1, 0) != grid.time(rows.kept - 1)) {
         --rows.kept;
     }
     rows.times.reserve(grid.count() - rows.kept);
     for (std::size_t i = rows.kept; i < grid.count(); ++i) {
-        // The old t_end may be a row of all but for its rounding, and a little later than that.
+        // The old t_end may be a requested row and lie slightly behind it by rounding.
         const double t = grid.time(i), stop = so_far.t_stop;
         if (t >= stop || std::fabs(t - stop) <= 4e-16 * std::fabs(stop)) rows.times.push_back(std::max(t, stop));
     }

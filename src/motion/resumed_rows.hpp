@@ -1,4 +1,4 @@
-// The rows of a run that goes on: those that it has, and those that it still needs.
+// The rows of a continued run: those it has, and those it still needs.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace dinal::motion {
 
-/// All rows of a run that goes on to t_end. Fails as simulate() does.
+/// All rows of a run continued to t_end. Fails as simulate() does.
 text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const Grid& rows, std::size_t columns,
                                   const Limits& limits);
 
 struct RowsToCome {
-    std::size_t kept;  ///< of the first part
+    std::size_t kept;  ///< rows of the first part that remain
     std::vector<double> times;
 };
 RowsToCome rows_to_come(const Trajectory& so_far, const Grid& grid);

@@ -1,4 +1,4 @@
-// How rough a function is at a time: noise is as rough on every scale, and ends a run that gets nowhere.
+// The roughness of a function at a time: noise is equally rough on every scale, and prevents a run from advancing.
 #pragma once
 
 #include <array>
@@ -6,26 +6,27 @@
 
 namespace dinal::motion {
 
-/// Of three short stretches: how great the last coefficients are at most, and on two of them, and the values.
+/// From three short stretches: the greatest and the second greatest of the last Chebyshev coefficients, and of the
+/// values.
 struct Roughness {
     double most = 0, usual = 0, size = 0;
 
-    /// What is as rough on two stretches is no jump.
+    /// A jump would be rough on one stretch only.
     [[nodiscard]] bool is_noise() const {
         constexpr double alike = 0.1;
         return usual > alike * most;
     }
 };
 
-/// Noise is at most this part of the torques; the steps of what is rougher are located.
+/// The limit of noise as a part of the torques; steps of rougher functions are located instead.
 inline constexpr double most_noise = 1e-5;
-/// The same part of M where it depends on the motion: steps greater than those of single precision are located.
+/// The same for an M that depends on the motion; it admits single precision.
 inline constexpr double most_noise_of_motion = 1.2e-7;
 
-/// A stretch is this part of the time scale of a motion.
+/// The length of a stretch as a part of the motion's time scale.
 inline constexpr double rough_stretch = 1e-3;
 
-/// On stretches of this length that begin at these times. Nothing where the function has a value that is no number.
+/// Evaluates stretches of this length from each start. All zero if a value is not finite.
 [[nodiscard]] Roughness roughness(const std::function<double(double)>& function, const std::array<double, 3>& starts,
                                   double length);
 

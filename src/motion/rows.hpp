@@ -1,4 +1,4 @@
-// Puts the rows of a run into its trajectory, each exactly at its time on the grid that the user asked for.
+// Writes the rows of a run, each exactly at its time on the user's grid.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace dinal::motion {
 
 class RowWriter {
 public:
-    /// The grid went through Grid::within; the columns get room for all of it.
+    /// Requires a grid from Grid::within; reserves all its rows.
     RowWriter(const model::Oscillator& system, const Grid& grid, Trajectory& trajectory)
         : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
         Growing<double> table(grid.count(), column_count);
@@ -25,7 +25,7 @@ public:
     RowWriter(const RowWriter&) = delete;
     RowWriter& operator=(const RowWriter&) = delete;
 
-    /// The time of the row to be written next; `never` when all are.
+    /// The time of the next row; `never` after the last one.
     [[nodiscard]] double next_time() const { return next_time_; }
     [[nodiscard]] std::size_t next_row() const { return next_; }
 
@@ -41,7 +41,7 @@ public:
         ++next_;
         set_next();
     }
-    /// Consecutive rows of one motion: the same, column by column.
+    /// Consecutive rows of one motion, column by column.
     void put_block(std::size_t count, const double* theta, const double* velocity, const double* M, double friction) {
         count = std::min(count, grid_.count() - next_);
         double* row = column_ + next_;
@@ -55,13 +55,13 @@ public:
         next_ += count;
         set_next();
     }
-    /// A run that ended early keeps only the rows it wrote.
+    /// Drops the unwritten rows of a run that ended early.
     void finish() {
         if (next_ < grid_.count()) {
             trajectory_.rows = Rows(trajectory_.rows.table().first(next_));
         }
     }
-    /// How many steps of length h lie between two rows, when rows and steps coincide to rounding; else 0.
+    /// The number of steps of length h between two rows if they coincide to rounding, otherwise 0.
     [[nodiscard]] std::size_t steps_per_row(double h) const {
         const double ratio = grid_.dt() / h;
         const double whole = std::round(ratio);
@@ -79,7 +79,7 @@ private:
     double next_time_ = model::never;
 };
 
-/// Runs an engine to its end, and puts together what is left behind.
+/// Runs an engine to its end and collects the results.
 template <class Engine>
 void run_whole(Engine& engine, const Problem& problem, RowWriter& rows, std::vector<model::Event>& events,
                std::shared_ptr<const Course> course, Trajectory& trajectory) {

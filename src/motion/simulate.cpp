@@ -18,11 +18,11 @@ namespace dinal::motion {
 
 namespace {
 
-/// The rows of a run may take all of the memory that is allowed, the motion between them this part of it.
+/// The share of the allowed memory for the motion between the rows, in addition to the rows.
 constexpr std::size_t share_of_course = 4;
 constexpr std::size_t all_memory = std::numeric_limits<std::size_t>::max();
 
-/// One sentence about the first wrong entry of a list of times, or none. The first ones are known to be right.
+/// An error for the first invalid time of a list, or none. The first `known` have been checked before.
 std::optional<text::Error> wrong_times(std::span<const double> times, std::size_t known, const Window& window) {
     for (std::size_t i = known; i < times.size(); ++i) {
         const double t = times[i];
@@ -53,11 +53,12 @@ std::string memory_text(double bytes) {
     return fmt::format("{:.3g} {}", bytes, units[i]);
 }
 
-/// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.
+/// The number of rows with spacing dt: start + i dt before the end, and the end. A double, as it may overflow an
+/// integer.
 double row_count(const Window& window, double dt) {
     const double ratio = (window.end - window.start) / dt;
     const double whole = std::round(ratio), latest = std::max(std::fabs(window.start), std::fabs(window.end));
-    // A last interval shorter than the rounding of the division, or of the times themselves, is no interval.
+    // A last interval below the rounding of the division, or of the times, does not count.
     const double rounding = 4e-16 * whole + std::numeric_limits<double>::epsilon() * latest / dt;
     return std::fabs(ratio - whole) <= rounding ? whole + 1 : std::floor(ratio) + 2;
 }
@@ -65,12 +66,12 @@ double row_count(const Window& window, double dt) {
 double latest_time(const Window& window) {
     return std::max(std::fabs(window.start), std::fabs(window.end));
 }
-/// Between two doubles near the latest time in the window.
+/// The distance of neighbouring doubles near the latest time.
 double rounding_of_time(const Window& window) {
     return std::numeric_limits<double>::epsilon() * latest_time(window);
 }
 
-/// Times that doubles can tell apart: a spacing well above their rounding.
+/// An error unless the spacing is well above the rounding of times.
 std::optional<text::Error> lost_in_time(const char* name, double spacing, const Window& window) {
     const double latest = latest_time(window), least = 16 * rounding_of_time(window);
     if (spacing >= least) return {};
@@ -81,18 +82,18 @@ std::optional<text::Error> lost_in_time(const char* name, double spacing, const 
         .option = name};
 }
 
-/// A detail of M that steps this far apart might not see.
+/// An error if steps of this size could miss a detail of M.
 std::optional<text::Error> stepped_over(const char* name, double step, const model::Excitation& M,
                                         const Window& window) {
     const auto [from, to, apart] = M.finest_detail(window.start, window.end);
-    if (step <= apart * (1 + 1e-12)) return {};  // to the digits shown
+    if (step <= apart * (1 + 1e-12)) return {};  // equal to the digits shown
     return text::Error{fmt::format(
         "{} = {:.6g} is too long for the narrow bump of M between t = {:.6g} and {:.6g}: use {} <= {:.4g}, or "
         "integrator.spectral{{}}",
         name, step, from, to, name, 0.999 * apart)};
 }
 
-/// A sine that turns more than once between two times: it has no phase, and no integrator comes to its end.
+/// An error for a sine with more than one turn between neighbouring times: its phase is undefined.
 std::optional<text::Error> lost_sine(const model::Harmonic& sine, const Window& window) {
     const double omega = std::fabs(sine.omega), most = 2 * std::numbers::pi / rounding_of_time(window);
     if (omega <= most) return {};
@@ -105,7 +106,7 @@ std::optional<text::Error> lost_sine(const model::Harmonic& sine, const Window& 
         .option = "M"};
 }
 
-/// A term of M that comes again, or acts later, after less than times can tell apart.
+/// An error for a term of M whose period or delay is below the rounding of times.
 std::optional<text::Error> lost_term(const model::Excitation& excitation, const Window& window) {
     for (const model::Component& c : excitation.components()) {
         if (const auto* sine = std::get_if<model::Harmonic>(&c.term)) {
@@ -126,7 +127,7 @@ std::optional<text::Error> lost_term(const model::Excitation& excitation, const 
 }  // namespace
 
 std::optional<text::Error> Window::complaint() const {
-    constexpr double longest = 1e70;  // time units: bounds of motions contain its fourth power
+    constexpr double longest = 1e70;  // time units: bounds of motions use the fourth power
     if (!std::isfinite(start)) {
         return text::Error{.sentence = fmt::format("t_start = {} must be a finite number", start), .option = "t_start"};
     }
@@ -192,7 +193,7 @@ Grid Grid::followed_by(std::size_t kept, std::vector<double> more) const {
 
 namespace {
 
-/// What a run that goes on has behind it.
+/// The state of a run that is being continued.
 struct Past {
     std::optional<model::Motion> motion;
     std::size_t course_bytes = 0;
@@ -244,7 +245,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     problem.more = more;
     Trajectory trajectory = method.run(problem);
     trajectory.initial = initial;
-    // A native M is a number at all times: then the spring had none, as the motion went beyond all bounds.
+    // A native M is always finite, so the spring torque overflowed: the motion diverged.
     const bool own_spring = system.spring().as<model::springs::PolynomialSpring>() != nullptr;
     if (trajectory.outcome == model::Outcome::excitation_not_finite && own_spring && !drive.M().has_script() &&
         std::isfinite(drive.M().most())) {
@@ -258,17 +259,17 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     return trajectory;
 }
 
-/// It stood when it came to its end, whether or not for ever.
+/// Returns whether the mass stood at the end, for ever or not.
 bool stands(model::Outcome outcome) {
     return outcome == model::Outcome::at_rest || outcome == model::Outcome::stuck_at_end;
 }
 
-/// The events of the second part after those of the first, whose rest is none any more.
+/// The events of both parts; a rest at the end of the first becomes a stick.
 Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second) {
     const Growing<model::Event>& first = so_far.events;
     std::vector<model::Event> later;
     std::size_t kept = first.size();
-    std::size_t stop = kept;  // what a user asked for may have come after it
+    std::size_t stop = kept;  // a user's event may follow the stop
     while (stop > 0 && first[stop - 1].kind > model::EventKind::rest) --stop;
     const bool stopped = stop > 0 && model::is_stop(first[stop - 1].kind);
     const bool crept = stands(so_far.outcome) && so_far.motion_at_stop != model::Motion::stuck;
@@ -276,7 +277,7 @@ Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second)
         later.assign(first.begin() + static_cast<std::ptrdiff_t>(stop) - 1, first.end());
         kept = stop - 1;
         later.front().kind = model::EventKind::stick;
-        if (crept) {  // it may still do so
+        if (crept) {  // it may still creep
             const bool still =
                 stands(second.outcome) && second.events.size() == 1 && second.events.front().t == so_far.t_stop;
             if (still) return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
@@ -287,7 +288,7 @@ Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second)
     return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
 }
 
-/// The second part behind the first, of whose rows `kept` remain.
+/// The second part appended to the first, of which `kept` rows remain.
 Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, const Limits& limits) {
     const std::size_t most = limits.memory / (column_count * sizeof(double));
     second.rows = Rows(first.rows.table().followed_by(kept, second.rows.table(), most));

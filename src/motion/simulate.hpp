@@ -1,4 +1,4 @@
-// The one entry point of the core: a system, an excitation and an integrator go in, a trajectory comes out.
+// The entry point of the core: simulates a system under a drive with an integrator; returns a trajectory.
 #pragma once
 
 #include <cstddef>
@@ -19,33 +19,33 @@
 
 namespace dinal::motion {
 
-/// The span of time of a run; start < end, both finite.
+/// The time span of a run; start < end, both finite.
 struct Window {
     double start = 0;
     double end = 0;
 
-    /// A sentence when it is not that, or so long that powers of its length overflow.
+    /// An error if the window is invalid, or so long that powers of its length overflow.
     [[nodiscard]] std::optional<text::Error> complaint() const;
 };
 
-/// The times at which rows are wanted.
+/// The times of the requested rows.
 class Grid {
 public:
     /// start, start + dt, ... and always end as the last row, exactly.
     static Grid every(double dt) { return Grid(true, dt, {}); }
-    /// These times, strictly increasing and within the window; none at all is fine.
+    /// These times, strictly increasing and within the window; may be empty.
     static Grid at(std::vector<double> times) { return Grid(false, 0, Growing<double>(std::move(times))); }
     static Grid none() { return Grid(false, 0, {}); }
 
-    /// Of a list of times of which `kept` were rows of a run: these, and then `more` of them.
+    /// For a list of times: the first `kept`, which are rows already, followed by `more`.
     [[nodiscard]] Grid followed_by(std::size_t kept, std::vector<double> more) const;
 
-    /// Fails when dt is not positive, the times do not increase or leave the window.
+    /// Fails if dt is not positive, or times do not increase or leave the window.
     [[nodiscard]] text::Expected<Grid> within(const Window& window) const;
     [[nodiscard]] double dt() const { return dt_; }
     [[nodiscard]] std::span<const double> times() const { return times_; }
 
-    // Of a grid that went through within():
+    // Requires a grid from within():
     [[nodiscard]] const Window& window() const { return window_; }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double time(std::size_t row) const {
@@ -59,29 +59,30 @@ private:
     bool spaced_;
     double dt_;
     Growing<double> times_;
-    std::size_t known_ = 0;  // so many of the times are right
+    std::size_t known_ = 0;  // number of times that have been checked
     Window window_;
     std::size_t count_ = 0;
     const double* list_ = nullptr;  // the times
 };
 
-/// Called now and then with the time reached; false stops the run, which keeps what it has (Outcome::interrupted).
+/// Called now and then with the time reached; returns false to stop the run, which keeps its results
+/// (Outcome::interrupted).
 using Monitor = std::function<bool(double t)>;
 
 struct Limits {
-    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take, and a quarter of it the course
-    bool dense = true;                          ///< keep the course: what the motion between the rows needs
+    std::size_t memory = std::size_t{4} << 30;  ///< bytes for the rows; a quarter of it for the course
+    bool dense = true;                          ///< whether to keep the course, the motion between the rows
 };
 
-/// What this method cannot run: the system under this M, or a window in which its steps are lost or pass over a bump.
+/// An error if the method cannot run this system, M or window, for example if its steps would miss a detail of M.
 [[nodiscard]] std::optional<text::Error> wrong_method(MethodView method, const model::Oscillator& system,
                                                       const model::Excitation& excitation, const Window& window);
 
-/// The reason why a run can not have these rows, in the user's options: more than memory may hold, or times that
-/// doubles can not tell apart. The grid went through within().
+/// An error if the rows need more memory than allowed, or are closer than the rounding of times. Requires a grid from
+/// within().
 [[nodiscard]] std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, const Limits& limits);
 
-/// One run as its integrator sees it: all of it checked.
+/// A validated run as its integrator sees it.
 struct Problem {
     const model::Oscillator& system;
     const model::Drive& drive;
@@ -89,26 +90,25 @@ struct Problem {
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
-    std::optional<model::Motion> before = {};  ///< of a run that goes on: what the mass did until now
-    std::size_t course_bytes = 0;              ///< what the course may take
-    bool more = false;                 ///< the drive has more than M, or there are walls or controllers with a memory
-    const Carried* carried = nullptr;  ///< of a run that goes on: what its integrator left
+    std::optional<model::Motion> before = {};  ///< motion at the end of the run that is continued
+    std::size_t course_bytes = 0;              ///< memory limit of the course
+    bool more = false;                 ///< whether there are walls, controllers with a memory, or more drive than M
+    const Carried* carried = nullptr;  ///< integrator's data from the run that is continued
 };
 
-/// Runs from where the drive has its start, at window.start. Fails (before the first step) when the window, the grid or
-/// the integrator's options are wrong or the rows would not fit; whatever happens later is told by the outcome of the
-/// trajectory.
+/// Runs from the drive's initial state at window.start. Fails before the first step if the window, the grid or the
+/// integrator's options are invalid or the rows do not fit; later failures are outcomes of the trajectory.
 text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
                                     const Grid& rows, MethodView method, const Monitor& monitor = {},
                                     const Limits& limits = {});
 
-/// The same of any system: of one with names all columns, and no course, which is that of its parts.
+/// The same for any system. If its bodies have names, the rows have all columns, and only its parts have a course.
 text::Expected<Trajectory> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                                     const Grid& rows, MethodView method, const Monitor& monitor = {},
                                     const Limits& limits = {});
 
-/// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both, which shares
-/// with `so_far` what that has. `rows` are those of all of it; `so_far` has the first of them, and perhaps one at its
+/// Continues `so_far` from its end to t_end, as if it had not been interrupted. Returns the trajectory of both, which
+/// shares the data of `so_far`. `rows` covers both parts; `so_far` has the first of them, and perhaps one more at its
 /// end. Fails like simulate().
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
@@ -118,15 +118,15 @@ text::Expected<Trajectory> resume(const model::System& system, const model::Driv
                                   double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
                                   const Limits& limits = {});
 
-/// The run of all bodies as a trajectory: of one with names all columns.
+/// The run of all bodies as a trajectory; if they have names, with all columns.
 Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
                          std::shared_ptr<const engine::Run> run);
-/// As seen from this body or link.
+/// The trajectory of one body or link.
 Trajectory seen_from(const model::System& system, const model::Drive& drive, std::shared_ptr<const engine::Run> run,
                      std::size_t joint);
-/// How many columns its rows have.
+/// The number of columns of its rows.
 std::size_t columns_of(const model::System& system, const model::Drive& drive);
-/// Whether the motion between the rows was kept.
+/// Returns whether the motion between the rows was kept.
 bool is_dense(const Trajectory& trajectory);
 
 }  // namespace dinal::motion

@@ -1,4 +1,4 @@
-// Runs of any system: what is not one plain body goes to the general engine.
+// Runs of any system: the general engine runs everything except one plain body.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,12 +14,13 @@ namespace dinal::motion {
 
 namespace {
 
-/// A run that ended where it began has no stretch that takes memory.
+/// A run that ended where it began needs no memory for its motion.
 bool keeps_motion(const engine::Run& run) {
     return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
 }
 
-/// The method must take any system, and suit each mode of the bodies. Contacts that hold make none of them faster.
+/// An error if the method does not support such systems, or suits not every mode of the bodies. Holding contacts slow
+/// no mode down, so they are left out.
 std::optional<text::Error> wrong_for_bodies(MethodView method, const model::System& system, const model::Drive& drive,
                                             const Window& window) {
     if (!method.cut()) {
@@ -88,7 +89,7 @@ Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
     all.rows = Rows(run->table);
     std::vector<model::Event> events;
     std::copy_if(run->events.begin(), run->events.end(), std::back_inserter(events),
-                 [](const model::Event& e) { return e.user < 0 || e.where == 0; });  // those of the user once
+                 [](const model::Event& e) { return e.user < 0 || e.where == 0; });  // each user event only once
     all.events = Growing<model::Event>(std::move(events));
     all.bodies = std::move(run);
     return all;

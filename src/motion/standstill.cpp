@@ -9,15 +9,15 @@ namespace dinal::motion {
 
 namespace {
 
-/// More standstills than this, each at once after the one before, lead nowhere.
+/// More successive standstills than this count as chatter.
 constexpr int most_at_once = 200;
-/// A stick that rounding decides lasts no longer, as a part of T0.
+/// The longest stick that can be an artefact of rounding, as a part of T0.
 constexpr double briefly = 1e-3;
-/// What the impulse of such a stick is below, in torques times a radian of the free motion.
+/// The bound of the impulse that friction withholds in such a stick, in torques times a radian of the free motion.
 constexpr double withheld = 64 * std::numeric_limits<double>::epsilon();
-/// What theta carries of the roundings of a long motion, in torques.
+/// The rounding error that theta accumulates in a long motion, relative to the torques.
 constexpr double rounding_of_torques = 1024 * std::numeric_limits<double>::epsilon();
-/// A velocity that is only a direction.
+/// A velocity that only shows a direction.
 constexpr double hair = std::numeric_limits<double>::min();
 
 }  // namespace
@@ -38,7 +38,7 @@ Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events
     if (problem.before == model::Motion::stuck) {
         phase_ = Phase::stuck;
     } else if (problem.drive.start().velocity == 0) {
-        // The law was asked at the end of the part before.
+        // The law was evaluated at the end of the first part.
         phase_ = problem.before ? Phase::leaving : Phase::arrived;
     }
 }
@@ -60,7 +60,7 @@ model::Motion Standstill::pulled_on(double M, double theta) const {
 
 bool Standstill::creep(const Moment& now) {
     if (feedback_ || system_.has_remainder() || passes() || motion_ == model::Motion::stuck) return false;
-    if (!(system_.holding(motion_) > balance())) return false;  // it is held as well as it slides
+    if (!(system_.holding(motion_) > balance())) return false;  // its breakaway torque does not exceed sliding friction
     const double off =
         std::fabs(model::sign_of(motion_) * std::fma(-system_.stiffness(), now.theta, now.M) - balance());
     if (!(off <= rounding_of_torques * torques(now))) return false;
@@ -73,28 +73,28 @@ bool Standstill::creep(const Moment& now) {
 
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
-    if (phase_ != Phase::creeping && model::held_against(system_, most_M_, now.theta)) return true;
+    if (phase_ != Phase::creeping && model::cannot_break_away(system_, most_M_, now.theta)) return true;
     return constant_from_ <= now.t && pulled(now.M, now.theta) == model::Motion::stuck;
 }
 
-model::State Standstill::on_its_way(const model::State& y) const {
+model::State Standstill::on_side_of_motion(const model::State& y) const {
     const double way = model::sign_of(motion_);
     return {y.theta, way * y.velocity > 0 ? y.velocity : way * hair};
 }
 
 bool Standstill::jumps(double t, double theta) const {
     if (!feedback_ || passes()) return false;
-    constexpr double rounding = 1e-12;  // of a formula
+    constexpr double rounding = 1e-12;  // relative rounding of a user's formula
     const double above = excitation_.value(t, {theta, hair}), below = excitation_.value(t, {theta, -hair});
     const double torques = std::fabs(above) + std::fabs(below) + system_.greatest_holding();
     return std::fabs(above - below) > rounding * torques;
 }
 
-double Standstill::arrived_at(const Moment& now) const {
+double Standstill::place_at_stop(const Moment& now) const {
     const double k = system_.stiffness();
     if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring()) return now.theta;
     const double rounding = rounding_of_torques * std::max(torques(now), torques_before_);
-    if (phase_ != Phase::creeping) {  // most are clearly on one side of the limit
+    if (phase_ != Phase::creeping) {  // quick test: most are clearly off the limit
         const double torque = now.M - k * now.theta;
         const double over = std::fabs(torque) - system_.holding(model::motion_of(torque));
         if (!(std::fabs(over) <= 2 * rounding)) return now.theta;
@@ -107,7 +107,7 @@ double Standstill::arrived_at(const Moment& now) const {
     return place;
 }
 
-bool Standstill::ask(const Moment& now) {
+bool Standstill::decide(const Moment& now) {
     const model::Motion before = motion_;
     torques_before_ = torques(now);
     motion_ = pulled(now.M, now.theta);
@@ -116,10 +116,10 @@ bool Standstill::ask(const Moment& now) {
     if (at_start(now.t)) {
         began_stuck_ = stuck();
     } else if (stuck()) {
-        tell(model::EventKind::stick, now);
+        record_event(model::EventKind::stick, now);
     } else if (motion_ != before && before != model::Motion::stuck) {
-        // The same direction again: it only touched zero, which is no event; nor is it one where it was put there.
-        tell(model::EventKind::turn, now);
+        // Going on in the same direction is no event, nor is an initial velocity set at rest.
+        record_event(model::EventKind::turn, now);
     }
     return goes_on_after(now.t);
 }
@@ -132,27 +132,27 @@ bool Standstill::release(const Moment& now, model::Motion towards) {
             came_ = motion_, M_stuck_ = now.M;
             motion_ = model::Motion::stuck;
             phase_ = Phase::stuck;
-            tell(model::EventKind::stick, now);
+            record_event(model::EventKind::stick, now);
         }
         return goes_on_after(now.t);
     }
     motion_ = towards;
     phase_ = Phase::leaving;
-    if (only_touched(now)) {
+    if (was_rounding_artefact(now)) {
         if (towards == came_) {
             events_->pop_back();
         } else {
             events_->back().kind = model::EventKind::turn;
         }
     } else {
-        tell(model::EventKind::slip, now);
+        record_event(model::EventKind::slip, now);
     }
     return goes_on_after(now.t);
 }
 
-/// Whether the stick that ends now was none: the mass came down to velocity zero right at the limit, and friction
-/// withheld an impulse below rounding while M passed it. Which side of the limit it was on is for rounding to say.
-bool Standstill::only_touched(const Moment& now) const {
+/// Returns whether the stick that ends now is an artefact of rounding: the mass reached velocity zero right at the
+/// limit, and friction withheld an impulse below rounding before M passed it.
+bool Standstill::was_rounding_artefact(const Moment& now) const {
     if (events_ == nullptr || events_->empty() || came_ == model::Motion::stuck) return false;
     const model::Event& last = events_->back();
     const double part = (now.t - last.t) / pace_;
@@ -160,8 +160,8 @@ bool Standstill::only_touched(const Moment& now) const {
     return std::fabs(now.M - M_stuck_) * (2 * std::numbers::pi * part) <= withheld * torques(now);
 }
 
-bool Standstill::never_left(const Moment& now) {
-    if (last_told() == now.t) {
+bool Standstill::failed_to_leave(const Moment& now) {
+    if (last_event_time() == now.t) {
         model::Event& last = events_->back();
         if (last.kind == model::EventKind::slip) {
             events_->pop_back();
@@ -171,7 +171,7 @@ bool Standstill::never_left(const Moment& now) {
     } else if (at_start(now.t)) {
         began_stuck_ = true;
     } else {
-        tell(model::EventKind::stick, now);  // it was on its way, came to rest, and did not go on
+        record_event(model::EventKind::stick, now);  // it stopped and did not start again
         came_ = motion_, M_stuck_ = now.M;
     }
     motion_ = model::Motion::stuck;
@@ -186,12 +186,12 @@ void Standstill::go_on() {
 
 void Standstill::turned(const Moment& now) {
     motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
-    tell(model::EventKind::turn, now);
+    record_event(model::EventKind::turn, now);
 }
 
 bool Standstill::finish() {
     if (!stuck()) return false;
-    if (phase_ == Phase::creeping) tell(model::EventKind::stick, crept_);  // nothing came that would have moved it
+    if (phase_ == Phase::creeping) record_event(model::EventKind::stick, crept_);  // no further motion follows
     return true;
 }
 
@@ -202,7 +202,7 @@ void Standstill::forget_chatter() {
     }
 }
 
-void Standstill::tell(model::EventKind kind, const Moment& now) {
+void Standstill::record_event(model::EventKind kind, const Moment& now) {
     if (events_ != nullptr) events_->push_back({now.t, kind, now.theta, now.M});
 }
 

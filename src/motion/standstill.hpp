@@ -1,7 +1,7 @@
-// What happens at velocity zero, for every integrator: the friction law is asked here, and the events are told here.
+// Stick or slip at velocity zero, for exact and rk4: evaluates the friction law and records the events.
 //
-// An integrator writes its smooth motion. It finds where the velocity comes down to zero, and where a pull passes the
-// limit of sticking, says so, and is told what the mass does.
+// An integrator computes the smooth motion. It reports when the velocity reaches zero or a pull passes the limit of
+// sticking; this class decides how the mass continues.
 #pragma once
 
 #include <cmath>
@@ -15,92 +15,90 @@ namespace dinal::motion {
 class Standstill {
 public:
     enum class Phase {
-        moving,   ///< the velocity is not zero, or zero means nothing (see passes())
-        arrived,  ///< velocity zero, and the law has not been asked yet
-        leaving,  ///< velocity zero, and the law lets it go
+        moving,   ///< velocity not zero, or zero is not special (see passes())
+        arrived,  ///< velocity zero, the law has not decided yet
+        leaving,  ///< velocity zero, the law released it
         stuck,
-        held,      ///< stuck within rounding of the limit: it was let go, and did not get under way
-        creeping,  ///< slower than rounding, but on its way: friction slides, and balances M and the spring
+        held,      ///< stuck within rounding of the limit: it was released, but did not start
+        creeping,  ///< slower than rounding, yet sliding: friction balances M and the spring
     };
-    /// The mass at velocity zero. M is what a mass at rest is under, from the right where it jumps.
+    /// The mass at velocity zero. M is its value for a mass at rest, from the right at a jump.
     struct Moment {
         double t, theta, M;
     };
 
-    /// `events` may be null: then nothing is told. Many standstills, each no later than `at_once` after the one before,
-    /// are a feedback that pushes at rest and holds in motion, and no motion.
+    /// `events` may be null. Many standstills, each within `at_once` of the one before, are chatter: a feedback that
+    /// pushes at rest and brakes in motion.
     Standstill(const Problem& problem, std::vector<model::Event>* events, double at_once);
 
     [[nodiscard]] Phase phase() const { return phase_; }
-    /// It stands, for all that numbers can tell.
+    /// Returns whether it stands, as far as doubles show.
     [[nodiscard]] bool stuck() const {
         return phase_ == Phase::stuck || phase_ == Phase::held || phase_ == Phase::creeping;
     }
-    /// Which way the mass moves, or creeps; before it has moved at all without dry friction, `stuck`.
+    /// The direction of motion or creep; `stuck` if it has not moved yet without dry friction.
     [[nodiscard]] model::Motion motion() const { return motion_; }
-    /// Without dry friction the mass swings through zero: its turns are told by turned(), and nothing is asked.
+    /// Returns whether there is no dry friction: the mass swings through zero, and only turned() records events.
     [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way it is on, or
-    /// the other way when it comes to a stop.
+    /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass goes on, or reverses when it has
+    /// stopped.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
         if (phase_ == Phase::creeping) return pulled_on(M, theta);
         return model::motion_from_standstill(system_, M, theta);
     }
-    /// What M - k theta must pass towards this side before something happens: the breakaway torque, or, of a mass that
-    /// creeps, what it is under, but for rounding.
+    /// The limit of M - k theta towards this side: the breakaway torque, or for a creeping mass the balance it is in,
+    /// within rounding.
     [[nodiscard]] double limit(model::Motion side) const {
         if (phase_ != Phase::creeping) return system_.holding(side);
         return side == motion_ ? apart_ + balance() : apart_ - balance();
     }
-    /// How far M is past the limit; positive exactly when the law lets go.
+    /// The excess of M over the limit; positive exactly if the law releases the mass.
     [[nodiscard]] double excess(double M, double theta) const;
-    /// M cannot move it any more, whatever comes: it is constant, or nowhere great enough.
+    /// Returns whether M can never move it again: it is constant, or never large enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
-    /// The state at which a feedback that jumps at velocity zero is asked for this motion: not beyond zero, and at zero
-    /// a hair of velocity on its way.
-    [[nodiscard]] model::State on_its_way(const model::State& y) const;
-    /// Whether a feedback jumps at velocity zero. What tries both sides of it within a step finds a way between them
-    /// that is none.
+    /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
+    /// in the direction of motion.
+    [[nodiscard]] model::State on_side_of_motion(const model::State& y) const;
+    /// Returns whether a feedback jumps at velocity zero. A step that evaluated it on both sides would find a
+    /// compromise that does not exist.
     [[nodiscard]] bool jumps(double t, double theta) const;
 
-    /// M for a mass that has come to rest, where an integrator has M: a feedback is asked at velocity zero, not at what
-    /// is left of the velocity.
+    /// M at the stop; a feedback sees velocity exactly 0, not the residual.
     [[nodiscard]] double M_at_rest(double t, double theta, double M) const {
         return feedback_ ? excitation_.value(t, {theta, 0}) : M;
     }
 
-    /// Where the mass stands that has arrived: theta, or, past the limit of sticking by no more than the roundings of
-    /// its way there, the place at the limit, which holds it.
-    [[nodiscard]] double arrived_at(const Moment& now) const;
+    /// The angle at which an arrived mass stands: theta, or if that exceeds the limit of sticking by no more than
+    /// accumulated rounding, the angle at the limit.
+    [[nodiscard]] double place_at_stop(const Moment& now) const;
 
-    /// The velocity is down to zero.
+    /// Reports that the velocity has reached zero.
     void arrive() { phase_ = Phase::arrived; }
-    /// The velocity is down to what is rounding. Where more than the friction of sliding would hold a standing mass,
-    /// and that alone balances M and the spring, the mass is on its way for ever, and creeps: else this is false.
+    /// Reports that the velocity is below rounding. Returns true, and creeps, if sliding friction alone balances M and
+    /// the spring while breakaway friction is larger: such a mass slows down for ever.
     bool creep(const Moment& now);
 
-    // What returns false has seen standstills without end.
+    // These functions return false after endless standstills.
 
-    /// After arrive(): the law says what the mass does, which is told.
-    bool ask(const Moment& now);
-    /// Stuck until now, or creeping; M has passed the limit of this side.
+    /// Decides after arrive(), and records the event.
+    bool decide(const Moment& now);
+    /// Leaves a stick or a creep: M has passed the limit of this side.
     bool release(const Moment& now, model::Motion towards);
-    /// It was leaving and did not get under way: M only touched the limit. The mass stays where it is.
-    bool never_left(const Moment& now);
+    /// Returns to sticking after a release without motion: M only touched the limit.
+    bool failed_to_leave(const Moment& now);
 
-    /// Time has passed since, in motion or at rest.
+    /// Reports that time has passed, in motion or at rest.
     void go_on();
-    /// Without dry friction: it is on its way there, which is not told.
-    void head(model::Motion motion) { motion_ = motion; }
-    /// Without dry friction: it has turned.
+    /// Without dry friction: sets the direction, without an event.
+    void set_direction(model::Motion motion) { motion_ = motion; }
+    /// Without dry friction: reverses, and records the turn.
     void turned(const Moment& now);
-    /// At the end of the run. Whether it stands.
+    /// Ends the run; returns whether the mass stands.
     bool finish();
-    /// At the end of a run that got nowhere for standstills without end: the events of these, each at once after the
-    /// one before, are none, but for the first.
+    /// Ends a run of endless standstills: removes their events except the first.
     void forget_chatter();
 
-    /// Where a run may be taken up again.
+    /// The state needed to resume a run.
     struct Mark {
         model::Motion motion = model::Motion::stuck;
         Phase phase = Phase::moving;
@@ -109,42 +107,42 @@ public:
     [[nodiscard]] Mark mark() const { return {motion_, phase_, apart_}; }
     void return_to(const Mark& mark) { motion_ = mark.motion, phase_ = mark.phase, apart_ = mark.apart; }
 
-    /// From the start of the run until something moved it.
+    /// Returns whether it was stuck from the start until something moved it.
     [[nodiscard]] bool began_stuck() const { return began_stuck_; }
-    /// Of the last event, `never` ago when there was none.
-    [[nodiscard]] double last_told() const {
+    /// The time of the last event, -never if there was none.
+    [[nodiscard]] double last_event_time() const {
         return events_ == nullptr || events_->empty() ? -model::never : events_->back().t;
     }
 
 private:
     [[nodiscard]] bool at_start(double t) const { return t <= start_; }
-    [[nodiscard]] bool only_touched(const Moment& now) const;
+    [[nodiscard]] bool was_rounding_artefact(const Moment& now) const;
     [[nodiscard]] double torques(const Moment& now) const {
         return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
     }
-    /// What friction takes while the mass creeps.
+    /// The friction torque of a creeping mass.
     [[nodiscard]] double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
     [[nodiscard]] model::Motion pulled_on(double M, double theta) const;
-    void tell(model::EventKind kind, const Moment& now);
+    void record_event(model::EventKind kind, const Moment& now);
     bool goes_on_after(double t);
 
     model::Lowered system_;
     const model::Excitation& excitation_;
     bool feedback_;
     double constant_from_, most_M_;
-    double start_;  // nothing is an event there
+    double start_;  // nothing is an event at this time
     double at_once_, pace_;
     std::vector<model::Event>* events_;
 
     model::Motion motion_;
     Phase phase_ = Phase::moving;
-    model::Motion came_ = model::Motion::stuck;  // which way it moved before it stuck,
-    double M_stuck_ = 0;                         // and under which M
-    double torques_before_;                      // at the standstill before
-    Moment crept_{};                             // since when it creeps
-    double apart_ = 0;                           // how far M may be from what balances a creep
+    model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
+    double M_stuck_ = 0;                         // and M then
+    double torques_before_;                      // sum of torques at the standstill before
+    Moment crept_{};                             // when it began to creep
+    double apart_ = 0;                           // tolerance of M around the balance of a creep
     bool began_stuck_ = false;
-    double last_ = -model::never;  // standstill
+    double last_ = -model::never;  // time of the last standstill
     int at_once_in_a_row_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t no_stop = static_cast<std::size_t>(-1);
 
-/// Where the last stop is told; what a user asked for, a relay or a wall may come after it.
+/// The index of the last stop, which only user events, relays or walls may follow; otherwise no_stop.
 std::size_t last_stop(const Growing<model::Event>& events) {
     for (std::size_t i = events.size(); i > 0; --i) {
         const model::EventKind kind = events[i - 1].kind;
@@ -24,13 +24,13 @@ std::size_t last_stop(const Growing<model::Event>& events) {
     return no_stop;
 }
 
-/// Something besides M may move the mass.
+/// Returns whether something except M may move the mass.
 bool moved_by_others(const model::Drive& drive) {
     const auto acts = [](const model::WantedEvent& event) { return event.act != nullptr; };
     return !drive.belt().components().empty() || std::any_of(drive.events.begin(), drive.events.end(), acts);
 }
 
-/// M may have jumped at the very end, where no integrator has asked the law any more.
+/// Decides once more at the very end, as M may have jumped there after the integrator's last decision.
 bool stays(const Trajectory& run, const model::Lowered& system, const std::optional<model::Walls>& walls, double M) {
     const double theta = run.state_at_stop.theta;
     const model::Motion way = model::motion_from_standstill(system, M, theta);
@@ -48,8 +48,8 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
     if (const double constant = loads.constant_from(); constant <= run.t_stop) {
         return creeps ? constant < run.t_stop : stays(run, system, oscillator.walls(), loads.value(run.t_stop));
     }
-    if (creeps) return false;  // it creeps, and yields to every change of M
-    if (model::held_against(system, loads.most(), run.state_at_stop.theta)) return true;
+    if (creeps) return false;  // a creeping mass yields to every change of M
+    if (model::cannot_break_away(system, loads.most(), run.state_at_stop.theta)) return true;
     const double period = loads.has_feedback() ? 0 : model::period_from(loads, since);
     return period > 0 && run.t_stop - since >= period;
 }
@@ -64,7 +64,7 @@ void settle(Trajectory& trajectory, const model::Oscillator& system, const model
     trajectory.outcome = model::Outcome::at_rest;
     if (stop == no_stop) return;
     const auto events = trajectory.events.column(0);
-    if (trajectory.events.own_bytes() > 0) {  // nobody else has seen them
+    if (trajectory.events.own_bytes() > 0) {  // not shared with others
         trajectory.events.writable()[stop].kind = model::EventKind::rest;
         return;
     }
@@ -87,7 +87,7 @@ std::vector<model::Event> turns_on_belt(const Trajectory& run) {
     std::vector<model::Event> turns;
     if (!run.course) return turns;
     const double longest = run.course->system().natural_period();
-    double moved_at = run.t_start, velocity = run.initial.velocity;  // where it was last seen to move
+    double moved_at = run.t_start, velocity = run.initial.velocity;  // the last time it was seen moving
     const auto look = [&](double to) {
         const auto now = run.at(to);
         if (!now || now->velocity == 0) return;
@@ -108,7 +108,7 @@ std::vector<model::Event> turns_on_belt(const Trajectory& run) {
         moved_at = to, velocity = now->velocity;
     };
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-        constexpr double most = 1e4;  // a body that is moved may have any inertia, and no period
+        constexpr double most = 1e4;  // a body with prescribed motion may have any inertia, so no useful period
         const double width = times[i + 1] - times[i];
         const double steps = parts * std::ceil(std::clamp(width / longest, 1.0, most));
         const auto count = width > 0 ? static_cast<std::size_t>(steps) : 0;
@@ -126,7 +126,7 @@ double peak(const Trajectory& trajectory) {
     for (const model::Event& event : trajectory.events) {
         greatest = std::max(greatest, std::fabs(event.theta));
         if (event.kind != model::EventKind::user || !trajectory.course) continue;
-        if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // he moved it
+        if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // acts move it
     }
     if (trajectory.on_belt) {
         for (const model::Event& turn : turns_on_belt(trajectory)) greatest = std::max(greatest, std::fabs(turn.theta));

@@ -1,4 +1,4 @@
-// What a run that ended stuck may still become: whether anything can move its mass again, and how far it ever went.
+// The future of a run that ended stuck: whether anything can move the mass again. Also the peak of a motion.
 #pragma once
 
 #include "model/drive.hpp"
@@ -6,15 +6,15 @@
 
 namespace dinal::motion {
 
-/// A mass that is stuck at the end is at rest when M, as far as it is known, can never move it again: M is constant
-/// from then on, or nowhere great enough, or has gone through a whole period and did not move it. The outcome says so
-/// then, and its last stop is a rest. What no integrator can know, none of them tells.
+/// A mass stuck at the end is at rest if M can never move it again: M is constant from then on, nowhere large enough,
+/// or has completed a period without moving it. Sets the outcome and turns the last stop into a rest. Done here once,
+/// as integrators do not know the future of M.
 void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive);
 
-/// Where theta has its extremes on a belt, which no event tells: looked for between events and rows.
+/// The extremes of theta on a belt, which are no events, from a search between events and rows.
 std::vector<model::Event> turns_on_belt(const Trajectory& run);
 
-/// The greatest |theta| of the motion, not only of the rows; rad.
+/// The greatest |theta| of the motion between the rows, too; rad.
 double peak(const Trajectory& trajectory);
 
 }  // namespace dinal::motion

@@ -96,7 +96,7 @@ text::Expected<model::State> Trajectory::at(double t) const {
 
 namespace {
 
-/// Where it switched without end, and what would not.
+/// Says where the run switched endlessly, and the remedy.
 std::string chatter_text(const Trajectory& run) {
     if (run.rough) {
         return fmt::format(
@@ -114,7 +114,7 @@ std::string chatter_text(const Trajectory& run) {
         }
     }
     if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
-        constexpr double next_to_none = 1e-6;  // of the greatest speed in the rows
+        constexpr double next_to_none = 1e-6;  // part of the greatest speed in the rows that counts as 0
         double fastest = std::fabs(run.initial.velocity);
         for (Eigen::Index i = 0; i < run.size(); ++i) fastest = std::max(fastest, std::fabs(run.rows(i, 2)));
         const double speed = std::fabs(run.state_at_stop.velocity);
@@ -123,7 +123,7 @@ std::string chatter_text(const Trajectory& run) {
             "is too steep; a line over some small range of speeds would not",
             speed > next_to_none * fastest ? speed : 0.0);
     }
-    if (run.state_count() > 0) {  // what cures a jump of M does not cure that of a rate
+    if (run.state_count() > 0) {  // a jump in the rate of a state may be the cause, too
         return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "
                "line or tanh in its place would not";
     }
@@ -131,7 +131,7 @@ std::string chatter_text(const Trajectory& run) {
            "excitation.sampled or excitation.relay";
 }
 
-/// What is rough, and what would go on over that.
+/// Says which function is rough, and the remedy: another tolerance or integrator.
 std::string rough_text(const Rough& rough) {
     if (!rough.other_integrators) {
         return fmt::format(
@@ -139,7 +139,7 @@ std::string rough_text(const Rough& rough) {
             "excitation.sampled",
             rough.who, rough.by);
     }
-    constexpr double above = 8;  // of two coefficients, what others may be
+    constexpr double above = 8;  // margin for other coefficients above the two known
     const int digits = static_cast<int>(std::ceil(std::log10(above * rough.part)));
     std::string text = fmt::format("{} is noisy on every scale (about {:.2g}): try ", rough.who, rough.by);
     if (digits < -2) text += fmt::format("integrator.spectral{{ tolerance = 1e{} }}, or ", digits);

@@ -1,4 +1,4 @@
-// What a run leaves behind: named columns, events, how it ended, and the motion between the rows.
+// The result of a run: named columns, events, outcome, and the motion between the rows.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ enum class Column : int { t, theta, velocity, M, friction, damping };
 inline constexpr int column_count = 6;
 const std::vector<std::string>& column_names();
 
-/// A table of numbers, in which every column is contiguous.
+/// A table of numbers whose columns are contiguous.
 class Rows {
 public:
     using Matrix = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -52,7 +52,7 @@ private:
     Growing<double> table_;
 };
 
-/// What a run leaves to the one that goes on from there, besides the state of the mass: the states of its own.
+/// The run's own states and other data that a continuation needs besides the motion.
 struct Carried {
     Carried() = default;
     Carried(const Carried&) = default;
@@ -62,11 +62,11 @@ struct Carried {
     std::vector<double> states;
 };
 
-/// What was so rough on every scale that a run got nowhere.
+/// The function whose roughness on every scale stopped a run.
 struct Rough {
     std::string who;
-    double by = 0, part = 0;        ///< in its own units, and as a part of what it is and acts beside
-    bool other_integrators = true;  ///< may take the run
+    double by = 0, part = 0;        ///< the roughness in its own units, and relative to the quantities it acts on
+    bool other_integrators = true;  ///< whether other integrators may succeed
 };
 
 namespace engine {
@@ -74,58 +74,58 @@ struct Run;
 }
 
 struct Trajectory {
-    std::vector<std::string> own_names = {};  ///< where these are not the six of every run: see names()
+    std::vector<std::string> own_names = {};  ///< if they differ from the usual six: see names()
     Rows rows;                                ///< never NaN
     Growing<model::Event> events;             ///< in order of time
     model::Outcome outcome = model::Outcome::reached_end;
     model::State initial;  ///< at t_start
     double t_start = 0;
-    double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
+    double t_stop = 0;  ///< the time reached: t_end unless the run ended early
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;  ///< until something moved it
-    bool began_open = false;   ///< nothing pressed on the contact until it closed
-    bool on_belt = false;      ///< where a turn of theta is no event
-    double restitution = 1;    ///< of the walls: what an impact left of the velocity
-    bool computed = true;      ///< false when it was read from a file
-    double gap = 0;  ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
-    double unproven = 0;    ///< the longest stretch in which functions that are read may do more than was seen
-    double noise = 0;       ///< what keeps a function M from being smooth on any scale, torque
-    std::size_t jumps = 0;  ///< of a function M along the motion, each of which was located
-    bool located = false;   ///< conditions of the motion in functions that were read
-    std::optional<Rough> rough = {};                         ///< of Outcome::unresolved, where it is known
-    std::vector<std::string> event_names = {};               ///< of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
-    std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
-    std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
-    /// The run of all bodies that this one is, or is seen from one of them; none of a plain system.
+    bool began_stuck = false;  ///< whether it was stuck until something moved it
+    bool began_open = false;   ///< whether nothing pressed on the contact until it closed
+    bool on_belt = false;      ///< whether turns of theta are no events, as on a belt
+    double restitution = 1;    ///< part of the speed left after an impact at a wall
+    bool computed = true;      ///< whether it was simulated; otherwise read from a file
+    double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
+    double unproven = 0;                        ///< the longest stretch in which formulas may do more than was sampled
+    double noise = 0;                           ///< torque by which M deviates from a smooth function on every scale
+    std::size_t jumps = 0;                      ///< located jumps of a function M along the motion
+    bool located = false;                       ///< whether formulas have conditions on the motion, which were located
+    std::optional<Rough> rough = {};            ///< cause of Outcome::unresolved, if known
+    std::vector<std::string> event_names = {};  ///< names of the user's events, by Event::user
+    std::shared_ptr<const Carried> carried = nullptr;        ///< own states etc.; null for simple runs
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
+    std::shared_ptr<const Course> course;  ///< null if declined, or if the trajectory was read from a file
+    /// The run of all bodies of which this is a part or the whole; null for a plain system.
     std::shared_ptr<const engine::Run> bodies = {};
 
-    /// Jumps so many that they are what the run takes long for.
+    /// Returns whether the jumps dominate the duration of the computation.
     [[nodiscard]] bool jumps_often() const {
         constexpr std::size_t often = 10000;
         return jumps >= often;
     }
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
-    /// One for each column of `rows`.
+    /// One name for each column of `rows`.
     [[nodiscard]] const std::vector<std::string>& names() const {
         return computed && own_names.empty() ? column_names() : own_names;
     }
     [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;
     [[nodiscard]] auto column(Column which) const { return rows.col(static_cast<Eigen::Index>(which)); }
 
-    /// theta and velocity at t: from the integrator when it can, else by cubic interpolation of the rows.
-    /// Fails when t is outside the run or there are no such columns.
+    /// theta and velocity at t: from the integrator if available, otherwise by cubic interpolation of the rows.
+    /// Fails if t is outside the run or the columns are missing.
     [[nodiscard]] text::Expected<model::State> at(double t) const;
-    /// How many columns are states of the run: the last ones.
+    /// The number of the run's own states, which are the last columns.
     [[nodiscard]] std::size_t state_count() const { return carried ? carried->states.size() : 0; }
     [[nodiscard]] std::size_t first_state() const { return names().size() - state_count(); }
 };
 
-/// theta and velocity at t by cubic interpolation of the rows, for want of anything better.
+/// theta and velocity at t by cubic interpolation of the rows alone.
 text::Expected<model::State> between_rows(const Trajectory& trajectory, double t);
 
-/// How it ended, and what to do about that.
+/// The outcome as a sentence with a remedy.
 std::string outcome_text(const Trajectory& trajectory);
 
 /// A remark if there are fewer than four rows an event, so that the rows do not show the motion; otherwise empty.

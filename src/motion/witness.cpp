@@ -14,11 +14,11 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-// Of a hundred questions at most three are put again: one of 64 in turn, and two of 160 because of a jump.
-constexpr std::uint64_t first_again = 12;  ///< the first question after which one is put again
+// At most three of a hundred evaluations are repeated: one in 64 routinely, and two in 160 because of jumps.
+constexpr std::uint64_t first_again = 12;  ///< the first evaluation after which one is repeated
 constexpr std::uint64_t questions_between = 64;
 constexpr std::uint64_t questions_a_jump = 160;
-/// A jump is a change this many times as great as changes mostly are.
+/// A jump is a change this many times larger than usual.
 constexpr double jump_factor = 8;
 
 }  // namespace
@@ -27,7 +27,7 @@ Witness::Witness(std::shared_ptr<model::UserFunction> function, std::shared_ptr<
                  const char* argument, std::size_t states)
     : function_(std::move(function)),
       testimony_(std::move(testimony)),
-      who_(std::move(who)),
+      name_(std::move(who)),
       argument_(argument),
       next_(first_again),
       states_(places * states) {}
@@ -40,7 +40,7 @@ void Witness::keep(std::size_t place, const Answer& answer, std::span<const doub
     for (std::size_t i = 0; i < count; ++i) states_[place * count + i] = i < states.size() ? states[i] : 0;
 }
 
-/// Every fourth answer, the older the fewer.
+/// Keeps every fourth answer; the older, the fewer.
 void Witness::keep_for_later(const Answer& answer, std::span<const double> states) {
     if (asked_ == 1) keep(first_place, answer, states);
     if (asked_ % 4 != 0) return;
@@ -49,32 +49,33 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
 
-/// Asks for an answer again. One that fails now fails as it would have failed anywhere else: that is another story.
-bool Witness::stands_by(std::size_t place) {
+/// Repeats an evaluation; returns whether the answer is the same. A failure now would also have occurred without the
+/// witness.
+bool Witness::repeats_answer(std::size_t place) {
     const Answer& answer = answers_[place];
     const std::size_t count = states_.size() / places;
     const std::span<const double> states{states_.data() + place * count, count};
     const double again = function_->value_with(answer.t, answer.state, states);
-    // The same bits, but for the sign of zero, which moves nothing.
+    // Equal except for the sign of zero, which does not matter.
     if (again == answer.value) return true;
     if (std::isfinite(again)) {
-        testimony_->found = model::Contradiction{who_, argument_, answer.t, answer.value, again};
+        testimony_->found = model::Contradiction{name_, argument_, answer.t, answer.value, again};
     }
     return false;
 }
 
-/// The answers take turns, old and new ones.
-bool Witness::ask_again() {
+/// Repeats an evaluation of varying age.
+bool Witness::repeat_one() {
     next_ = asked_ + questions_between;
     for (std::size_t i = 0; i <= 2 * ages; ++i) {
-        constexpr std::size_t stride = 7;  // has no factor in common with their number, 37
+        constexpr std::size_t stride = 7;  // coprime to the number of places, 37
         turn_ = (turn_ + stride) % (2 * ages + 1);
-        if ((known_ >> turn_ & 1U) != 0) return stands_by(turn_);
+        if ((known_ >> turn_ & 1U) != 0) return repeats_answer(turn_);
     }
     return true;
 }
 
-/// Takes note of an answer, and asks again what it makes doubtful. False when the function is found out.
+/// Records an answer and repeats doubtful evaluations. Returns false if the function contradicted itself.
 bool Witness::heard(const Answer& answer, std::span<const double> states) {
     ++asked_;
     bool jumped = false;
@@ -88,10 +89,10 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     }
     keep(last_, answer, states);
     keep_for_later(answer, states);
-    if (!jumped) return asked_ < next_ || ask_again();
+    if (!jumped) return asked_ < next_ || repeat_one();
     ++jumps_asked_;
-    // What a relay in a closure said before it switched, it does not say again; nor chance what it said once.
-    return stands_by(before_jump_) && stands_by(last_);
+    // A relay in a closure no longer returns what it returned before it switched, and random numbers do not repeat.
+    return repeats_answer(before_jump_) && repeats_answer(last_);
 }
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
@@ -115,8 +116,8 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
     return 0;
 }
 
-void Witness::conclude() {
-    if (asked_ > 1 && !testimony_->found) stands_by(first_place);
+void Witness::repeat_first() {
+    if (asked_ > 1 && !testimony_->found) repeats_answer(first_place);
 }
 
 namespace {
@@ -150,7 +151,7 @@ std::shared_ptr<model::UserFunction> Witnesses::heard(const std::shared_ptr<mode
 model::Excitation Witnesses::heard(const model::Excitation& excitation, const std::string& who) {
     return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
         if (const auto* controller = dynamic_cast<const model::Controller*>(function.get())) {
-            // One that samples is asked in order, and may remember what it likes.
+            // A sampled controller is evaluated in order and may have a memory.
             const auto inside = with_witness_inside(*controller, [&](const auto& inner) { return heard(inner, who); });
             return inside == nullptr ? function : inside;
         }
@@ -186,7 +187,7 @@ UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
 
 std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
-        for (const auto& witness : witnesses_) witness->conclude();
+        for (const auto& witness : witnesses_) witness->repeat_first();
     }
     testimony_->over = true;
     return testimony_->found;

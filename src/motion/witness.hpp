@@ -1,10 +1,9 @@
-// Users' functions under oath: each is asked again, now and then, what it has been asked before.
+// Detects user functions that are not functions of their arguments, by repeating some evaluations.
 //
-// An integrator asks M out of order, again and ahead of time, and takes for granted that M depends on its arguments
-// only. One with a memory, or with random numbers, would make a motion that nobody asked for, without a word. So what
-// a run asks goes through a Witness, which remembers some of the answers, of all ages, asks for them again after
-// others, and compares. No integrator knows of it: a function that is found out gives no number any more, which ends
-// the run.
+// Integrators evaluate M out of order, repeatedly and ahead of time, and rely on M being a function of its arguments.
+// An M with a memory or random numbers would silently produce a wrong motion. So each function is wrapped in a Witness,
+// which remembers answers of various ages, repeats those evaluations later and compares. Integrators do not know of it:
+// a function that contradicts itself returns NaN from then on, which ends the run.
 #pragma once
 
 #include <array>
@@ -24,22 +23,22 @@
 
 namespace dinal::motion {
 
-/// What the witnesses of a run have in common.
+/// Shared by the witnesses of a run.
 struct Testimony {
     std::optional<model::Contradiction> found = {};
-    bool over = false;  ///< the run is: nothing is remembered or asked again
+    bool over = false;  ///< whether the run has ended: nothing is recorded or repeated
 };
 
 class Witness final : public model::UserFunction {
 public:
-    /// `states` is how many the function is given, `argument` what users call its first argument.
+    /// `states` is the number of states passed to the function, `argument` the user's name of its first argument.
     Witness(std::shared_ptr<model::UserFunction> function, std::shared_ptr<Testimony> testimony, std::string who,
             const char* argument, std::size_t states);
 
     double value(double t, const model::State& state) override { return value_with(t, state, {}); }
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
-    // What is read is nothing but a function.
+    // A formula has no memory.
     model::Formula* read() override { return function_->read(); }
     double next_break(double t) override { return function_->next_break(t); }
     bool has_pieces() override { return function_->has_pieces(); }
@@ -54,54 +53,53 @@ public:
     bool may_go_on() override { return !testimony_->found && function_->may_go_on(); }
     void forget_failure() override { function_->forget_failure(); }
 
-    /// Once more at the end of a run, after all the others.
-    void conclude();
+    /// Repeats the first evaluation at the end of the run.
+    void repeat_first();
 
 private:
-    /// What it was asked, and said.
+    /// The arguments and result of an evaluation.
     struct Answer {
         double t = 0;
         model::State state;
         double value = 0;
     };
-    static constexpr std::size_t ages = 18;  ///< answers are kept from 4, 8, 16 ... questions ago
-    // The places of answers: two of each age; the very first one; the last one, and the one before a jump, which take
-    // turns.
+    static constexpr std::size_t ages = 18;  ///< answers from 4, 8, 16 ... evaluations ago are kept
+    // The places: two for each age; the very first answer; the last one and the one before a jump, which swap.
     static constexpr std::size_t first_place = 2 * ages, places = first_place + 3;
 
     void keep(std::size_t place, const Answer& answer, std::span<const double> states);
     void keep_for_later(const Answer& answer, std::span<const double> states);
-    bool stands_by(std::size_t place);
-    bool ask_again();
+    bool repeats_answer(std::size_t place);
+    bool repeat_one();
     bool heard(const Answer& answer, std::span<const double> states);
 
     std::shared_ptr<model::UserFunction> function_;
     std::shared_ptr<Testimony> testimony_;
-    std::string who_;
+    std::string name_;
     const char* argument_;
 
-    std::uint64_t asked_ = 0, next_ = 0;  ///< questions, and when one of them comes again
-    std::uint64_t jumps_asked_ = 0;       ///< jumps because of which two were put again
+    std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the next one after which one is repeated
+    std::uint64_t jumps_asked_ = 0;       ///< jumps that caused two repetitions
     std::size_t turn_ = 0, last_ = first_place + 1, before_jump_ = first_place + 2;
-    double usual_ = 0;         ///< change from one question to the next
-    std::uint64_t known_ = 0;  ///< a bit for each place
+    double usual_ = 0;         ///< moving average of the change between evaluations
+    std::uint64_t known_ = 0;  ///< one bit for each filled place
     std::array<Answer, places> answers_;
-    std::vector<double> states_;  ///< of each place
+    std::vector<double> states_;  ///< states of each place
 };
 
-/// A witness beside every function that is given to it.
+/// Wraps each function it is given in a witness.
 class Witnesses {
 public:
-    /// `states` is how many numbers the functions are given besides t, theta and velocity.
+    /// `states` is the number of arguments besides t, theta and velocity.
     explicit Witnesses(std::size_t states) : states_(states) {}
 
     std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
                                                const char* argument = "t", std::size_t more_states = 0);
     model::Excitation heard(const model::Excitation& excitation, const std::string& who);
-    /// `called` names what acts on a part of the system: "M" of its first body may be "M.motor".
+    /// Returns the name of a load or belt: "M" of the first body may be "M.motor".
     using Called = std::function<std::string(const char* what, std::size_t part)>;
     model::Drive heard(model::Drive drive, const Called& called);
-    /// The run is over; `whole`: nothing had failed in it. What was found.
+    /// Ends the run and returns the contradiction, if any. `whole`: the run did not fail.
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
 
 private:
@@ -110,7 +108,7 @@ private:
     std::size_t states_;
 };
 
-/// What a run asks, with a witness beside every function of the user.
+/// A system and its drive with a witness around every user function.
 class UnderOath {
 public:
     UnderOath(const model::Oscillator& system, const model::Drive& drive);
@@ -126,7 +124,7 @@ private:
     model::Drive drive_;
 };
 
-/// Something in the run is a function that a user has written.
+/// Returns whether the run contains any user function.
 [[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Drive& drive);
 [[nodiscard]] bool has_functions(const model::System& system, const model::Drive& drive);
 

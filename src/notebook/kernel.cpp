@@ -34,7 +34,7 @@
 namespace dinal::notebook {
 namespace {
 
-// ---- A cell has no keyboard: what waits for a line of it says so, instead of reading nothing.
+// ---- A cell has no keyboard: reading from it raises an error instead of returning nothing.
 
 void refuse_keyboard(lua_State* L, const char* call) {
     lua::raise(L, {.sentence = std::string(call) +
@@ -42,7 +42,7 @@ void refuse_keyboard(lua_State* L, const char* call) {
                    .call = call});
 }
 
-/// Upvalues of all that stand for a function of Lua's own: that function, io.stdin, its name, io.input.
+/// Calls Lua's original function. Upvalues of all replacements: that function, io.stdin, its name, io.input.
 int original_with_arguments(lua_State* L) {
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
@@ -50,7 +50,7 @@ int original_with_arguments(lua_State* L) {
     return lua_gettop(L);
 }
 
-/// io.read and io.lines: of the keyboard where no file was named.
+/// io.read and io.lines: refuse the keyboard unless another file is set.
 int read_input(lua_State* L) {
     const char* name = lua_tostring(L, lua_upvalueindex(3));
     const bool names_file = std::string_view(name) == "io.lines" && !lua_isnoneornil(L, 1);
@@ -70,7 +70,7 @@ int read_file_handle(lua_State* L) {
     return original_with_arguments(L);
 }
 
-/// In the table on the top of the stack; io lies at the index.
+/// Replaces a function in the table on the top of the stack; `io` is the index of that table.
 void stand_for(lua_State* L, int io, const char* key, const char* name, lua_CFunction ours) {
     if (lua_getfield(L, -1, key) != LUA_TFUNCTION) {
         lua_pop(L, 1);
@@ -83,7 +83,7 @@ void stand_for(lua_State* L, int io, const char* key, const char* name, lua_CFun
     lua_setfield(L, -2, key);
 }
 
-/// io.read(), io.lines() and the methods of io.stdin raise an error from now on; files are read as before.
+/// Makes io.read(), io.lines() and methods of io.stdin raise errors; other files are unaffected.
 void take_keyboard_away(lua_State* L) {
     const int top = lua_gettop(L);
     if (lua_getglobal(L, "io") == LUA_TTABLE && lua_getfield(L, -1, "stdin") == LUA_TUSERDATA) {
@@ -106,7 +106,7 @@ int answers_descriptor = -1;
 
 constexpr std::size_t longest_request = std::size_t{16} << 20;
 
-/// A line of JSON, all of it; bytes that are no UTF-8 become U+FFFD.
+/// Writes a complete line of JSON; invalid UTF-8 becomes U+FFFD.
 void answer(const Json& message) {
     const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     prompt::flush_output();
@@ -114,13 +114,13 @@ void answer(const Json& message) {
     while (!rest.empty()) {
         const ssize_t written = ::write(answers_descriptor, rest.data(), rest.size());
         if (written < 0 && errno != EINTR) {
-            return;  // nobody listens
+            return;  // nobody listens any more
         }
         rest.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
     }
 }
 
-/// The lines of standard input, which scripts do not get to see: what programs that they start read of it is empty.
+/// Lines of standard input, hidden from scripts: programs that they start read an empty input.
 class Requests {
 public:
     Requests() : input_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
@@ -137,7 +137,7 @@ public:
             if (const std::size_t end = read_.find('\n', searched); end != std::string::npos) {
                 std::string line = read_.substr(0, end);
                 read_.erase(0, end + 1);
-                if (end > longest_request) line.clear();  // it is refused
+                if (end > longest_request) line.clear();  // too long: refused later
                 return line;
             }
             if (read_.size() > longest_request) read_.resize(longest_request + 1);
@@ -157,7 +157,7 @@ private:
     std::string read_;
 };
 
-/// A picture as SVG, and as text for what shows no SVG.
+/// A picture as SVG, and as text for other viewers.
 Json shown_picture(const api::Picture& picture) {
     Json forms{{"text/plain", api::text_of_picture(picture)}};
     if (auto svg = api::svg_of(picture)) {
@@ -211,7 +211,7 @@ Json execute(prompt::Session& session, const std::string& code) {
     return fine ? Json{{"ok", true}, {"notice", errors}} : Json{{"ok", false}, {"error", errors}};
 }
 
-/// Where the word before the cursor begins.
+/// The beginning of the word before the cursor.
 std::size_t word_begin(std::string_view before) {
     std::size_t begin = before.size();
     while (begin > 0 && text::is_name_char(before[begin - 1])) --begin;
@@ -224,7 +224,7 @@ Json completed(lua_State* L, const std::string& before) {
     return {{"names", completion.names}, {"word", before.size() - word_begin(before)}};
 }
 
-/// What stands around the cursor, as far as a name goes: sys.omega0, run:at.
+/// The name around the cursor: sys.omega0, run:at.
 std::string name_at(std::string_view before, std::string_view after) {
     const auto belongs = [](char c) { return text::is_name_char(c) || c == '.' || c == ':'; };
     std::size_t begin = before.size(), end = 0;
@@ -265,14 +265,14 @@ Json answer_to_request(prompt::Session& session, const Json& request) {
     return {{"wrong", "a request does execute, complete, inspect or check, not '" + what + "'"}};
 }
 
-// ---- where Jupyter looks for it
+// ---- Jupyter's folders
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): one thread
     return value == nullptr ? "" : value;
 }
 
-/// Empty when there is no home.
+/// Jupyter's data folder; empty without a home folder.
 fs::path jupyter_folder() {
     if (const std::string own = variable("JUPYTER_DATA_DIR"); !own.empty()) return own;
     if (const std::string data = variable("XDG_DATA_HOME"); !data.empty()) return fs::path(data) / "jupyter";
@@ -291,7 +291,7 @@ bool run_kernel(lua_State* L, int answers) {
         return false;
     }
     answers_descriptor = answers;
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a loop without end must not outlive its notebook
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // an endless loop must not outlive its notebook
     Requests requests;
     prompt::Session session(L);
     session.show_values = lua::guarded<show_values_as_json>;
@@ -304,7 +304,7 @@ bool run_kernel(lua_State* L, int answers) {
         if (!line) break;
         const Json request = Json::parse(*line, nullptr, false);
         const auto id = request.find("id");
-        // Only a plain one is copied and written: both recurse into a nested one, as deep as it is.
+        // Accept only a primitive id: copying and writing recurse into nested values.
         const bool plain = request.is_object() && (id == request.end() || id->is_primitive());
         Json answered = plain ? answer_to_request(session, request)
                               : Json{{"wrong",

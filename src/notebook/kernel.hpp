@@ -1,5 +1,4 @@
-// The prompt for a program that is not a terminal: requests and answers as lines of JSON. docs/notebook.md describes
-// them.
+// The prompt for other programs: requests and answers as lines of JSON. docs/notebook.md describes them.
 #pragma once
 
 #include <string>
@@ -9,16 +8,16 @@
 
 namespace dinal::notebook {
 
-/// Serves the requests on standard input to their end and answers on the descriptor. What scripts print goes to
-/// standard output and standard error as ever, and is there before the answer. False when that descriptor is not open.
+/// Serves all requests on standard input and answers on the descriptor `answers`. Script output goes to standard output
+/// and error as usual, and precedes the answer. Returns false if the descriptor is not open.
 bool run_kernel(lua_State* L, int answers);
 
-/// Writes two kernels, one of them with --safe, into the user's folder of Jupyter: $JUPYTER_DATA_DIR, or jupyter in
-/// $XDG_DATA_HOME, or ~/.local/share/jupyter. Each is a kernel.json with the program in Python beside it. Returns what
-/// was done, in words.
+/// Installs two kernels, one of them with --safe, into the user's Jupyter folder: $JUPYTER_DATA_DIR, jupyter in
+/// $XDG_DATA_HOME, or ~/.local/share/jupyter. Each is a kernel.json with the Python program beside it. Returns a
+/// description of the result.
 text::Expected<std::string> install_kernel();
 
-/// dinal_kernel.py, which CMake puts into the program.
+/// dinal_kernel.py, embedded by CMake.
 extern const char* const kernel_script;
 
 }  // namespace dinal::notebook

@@ -11,14 +11,14 @@
 namespace dinal::plots {
 namespace {
 
-// Unicode counts the dots of a braille cell down the left column, down the right one, and then the lowest row.
+// Unicode numbers the dots of a braille cell down the left column, down the right one, and then along the lowest row.
 constexpr std::array<std::array<std::uint8_t, 4>, 2> braille_bits{{{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
 
 std::string braille(std::uint8_t dots) {  // U+2800 + dots
     return {'\xE2', static_cast<char>(0xA0U | (dots >> 6U)), static_cast<char>(0x80U | (dots & 0x3FU))};
 }
 
-constexpr double dot_reach = 0.49;  // of a dot: a value on the very limit must not be lost to a rounding
+constexpr double dot_reach = 0.49;  // tolerance in dots: a value at the limit must not be lost by rounding
 
 }  // namespace
 
@@ -100,9 +100,9 @@ void Pen::to(double x, double y) {
     if (down_ && std::fabs(x - last_x_) < dot_reach && std::fabs(y - last_y_) < dot_reach && last_x_ >= 0) {
         x_ = x;
         y_ = y;
-        return;  // most of a million points end here
+        return;  // the usual case for a million points
     }
-    // What is so far away is nearly straight above or beside; further out the clipping would drown in roundings.
+    // Points this far away are almost in a fixed direction; beyond, clipping would be lost in rounding.
     constexpr double far = 1e7;
     x = std::clamp(x, -far, far);
     y = std::clamp(y, -far, far);
@@ -127,7 +127,7 @@ void Pen::step(int x, int y) {
     count_ = (count_ + 1) % period_;
 }
 
-void Pen::line(int x, int y, int to_x, int to_y) {  // Bresenham
+void Pen::line(int x, int y, int to_x, int to_y) {  // Bresenham's algorithm
     const int dx = std::abs(to_x - x);
     const int dy = -std::abs(to_y - y);
     const int step_x = x < to_x ? 1 : -1;

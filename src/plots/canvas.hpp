@@ -1,4 +1,4 @@
-// A sheet of dots that becomes lines of text: two by four dots a character in braille, one by two in ASCII.
+// A canvas of dots that becomes lines of text: two by four dots a character in braille, one by two in ASCII.
 #pragma once
 
 #include <algorithm>
@@ -17,34 +17,34 @@ class Canvas {
 public:
     Canvas(int columns, int rows, Charset charset);
 
-    // In dots from the upper left corner. A dot is as high as it is wide.
+    // In dots from the upper left corner. Dots are square.
     [[nodiscard]] int width() const { return columns_ * cell_width_; }
     [[nodiscard]] int height() const { return rows_ * cell_height_; }
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
 
-    /// Outside of the sheet it does nothing. `ink` is 1, 2, ... for a curve, 0 for what stays behind the curves.
+    /// Sets a dot; ignored outside. `ink` is 1, 2, ... for a curve, 0 for the background.
     void dot(int x, int y, std::uint8_t ink);
-    /// A character instead of dots, in the cell of that dot.
+    /// Puts a character in place of dots in the cell of that dot.
     void glyph(int x, int y, std::string_view character, std::uint8_t ink);
 
-    void glyph_if_free(int x, int y, std::string_view character);  ///< where no curve has made dots
+    void glyph_if_free(int x, int y, std::string_view character);  ///< only if no curve has dots there
 
     struct Cell {
-        std::uint8_t dots = 0;    // one bit each
-        std::uint8_t behind = 0;  // of ink 0
-        std::uint8_t ink = 0;     // whose: the first curve that came here
+        std::uint8_t dots = 0;    // one bit for each dot
+        std::uint8_t behind = 0;  // dots of ink 0
+        std::uint8_t ink = 0;     // the first curve that drew here
         std::string_view glyph;   // must outlive the canvas
     };
     [[nodiscard]] const Cell& cell(int column, int row) const;
-    [[nodiscard]] bool has_ink() const;  ///< of any curve
-    /// What stands in the cell. In ASCII `mark` stands for the dots of a curve (0: their shape does), `behind` for the
-    /// rest.
+    [[nodiscard]] bool has_ink() const;  ///< whether a curve has dots here
+    /// The text of the cell. In ASCII `mark` replaces the dots of a curve (0: their shape is kept), `behind` the
+    /// others.
     [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;
 
 private:
     [[nodiscard]] std::size_t place(int column, int row) const;
-    Cell* cell_of_dot(int x, int y);  // null outside of the sheet
+    Cell* cell_of_dot(int x, int y);  // null outside
 
     int columns_, rows_;
     Charset charset_;
@@ -52,19 +52,19 @@ private:
     std::vector<Cell> cells_;
 };
 
-/// The dot that a place falls on; what is far from any sheet may be anywhere there, and so may nan.
+/// The dot nearest to a place; for nan and far away places any dot outside.
 inline int nearest_dot(double place) {
     if (std::isnan(place)) return -1'000'000;
     return static_cast<int>(std::floor(std::clamp(place, -1e6, 1e6) + 0.5));
 }
 
-/// Dots along a path, `on` of every `period` of them: a line that is solid, dashed or dotted.
+/// Draws `on` of every `period` dots along a path: a solid, dashed or dotted line.
 class Pen {
 public:
     Pen(Canvas& canvas, std::uint8_t ink, int on = 1, int period = 1)
         : canvas_(canvas), ink_(ink), on_(on), period_(period) {}
 
-    /// In dots, not rounded; NaN lifts the pen. The part of the line outside of the sheet is left out.
+    /// In dots, not rounded; NaN lifts the pen. Clips lines to the canvas.
     void to(double x, double y);
 
 private:
@@ -77,7 +77,7 @@ private:
     int count_ = 0;
     bool down_ = false;
     double x_ = 0, y_ = 0;
-    int last_x_ = -1, last_y_ = -1;  // the dot that was made last
+    int last_x_ = -1, last_y_ = -1;  // the last dot drawn
 };
 
 }  // namespace dinal::plots

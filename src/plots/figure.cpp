@@ -27,7 +27,7 @@ struct Extent {
     [[nodiscard]] bool empty() const { return low > high; }
 };
 
-/// An area reaches to its base, or to zero.
+/// Extends y to the other edge of an area, its base or zero.
 void add_other_edge(const Curve& curve, Interval window, bool logarithmic, Extent& y) {
     if (!curve.base) {
         if (!logarithmic) {
@@ -47,7 +47,7 @@ struct Extents {
     Extent x, y;
 };
 
-/// Of the points that are seen: who looks at a piece of time wants to see the values of that piece.
+/// The extents of visible points: a window in x determines the range of y.
 Extents extents_of(const Figure& figure) {
     const Interval window = figure.x.limits.value_or(Interval{-infinity, infinity});
     const bool x_log = figure.x.logarithmic, y_log = figure.y.logarithmic;
@@ -83,7 +83,7 @@ Interval widened(Extent extent, double air) {
     const double middle = extent.low / 2 + extent.high / 2;
     const double size = std::max(std::fabs(extent.low), std::fabs(extent.high));
     const double length = extent.high - extent.low;
-    if (length <= 1e-12 * size || length < shortest_axis) {  // a constant, or what differs from one by roundings
+    if (length <= 1e-12 * size || length < shortest_axis) {  // constant to rounding
         const double half = size > 10 * shortest_axis ? size / 10 : 1;
         return {middle - half, middle + half};
     }
@@ -94,7 +94,7 @@ Interval logarithmically_widened(Extent extent, double air) {
     if (extent.empty()) {
         return {1, 10};
     }
-    const double decades = std::log10(extent.high) - std::log10(extent.low);  // of the ratio, which may overflow
+    const double decades = std::log10(extent.high) - std::log10(extent.low);  // the ratio itself may overflow
     const double factor = std::pow(10, decades < 1e-9 ? 0.5 : air * decades);
     return {std::max(extent.low / factor, std::numeric_limits<double>::denorm_min()),
             std::min(extent.high * factor, std::numeric_limits<double>::max())};
@@ -107,7 +107,7 @@ Interval with_air(Extent extent, const Axis& axis, double air) {
     return axis.logarithmic ? logarithmically_widened(extent, air) : widened(extent, air);
 }
 
-/// The origin is the middle of a phase plane, unless the motion is far from it.
+/// Centres a phase plane on the origin, unless the motion is far from it.
 void include_origin(Extent& extent) {
     if (!extent.empty()) {
         Extent wider = extent;
@@ -169,10 +169,10 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
 
 namespace {
 
-constexpr double closest_turns = 3;  // places from one turn of a curve to the next
+constexpr double closest_turns = 3;  // places from one turn to the next, at least
 constexpr double turns_to_a_step = 4;
 
-/// The points that are seen, from first to last.
+/// The visible points, from first to last.
 struct Seen {
     std::size_t first = 0, last = 0, turns = 0;
 };
@@ -191,7 +191,7 @@ Seen seen_of(const Curve& curve, Interval window) {
     return seen;
 }
 
-/// Steps of equal width with the lowest and the highest value in each.
+/// A band of equal steps with the lowest and highest value in each.
 Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     const auto x = curve.x.values, y = curve.y.values;
     const double from = x[seen.first], length = x[seen.last - 1] - from;
@@ -217,7 +217,7 @@ Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     return band;
 }
 
-/// Turns of swings that are a good part of the height: noise on a slow curve has none.
+/// The number of turns with large swings; noise on a slow curve has none.
 std::size_t large_turns(const Curve& curve, const Seen& seen) {
     if (seen.last <= seen.first) return 0;
     const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
@@ -243,8 +243,7 @@ std::size_t large_turns(const Curve& curve, const Seen& seen) {
     return turns;
 }
 
-/// A line up and down in each place, between the lowest and the highest value from one turn before it to one turn
-/// after.
+/// A vertical line in each place from the lowest to the highest value within one turn before and after it.
 Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::size_t places) {
     const auto x = curve.x.values, y = curve.y.values;
     const double from = x[seen.first], length = x[seen.last - 1] - from;
@@ -273,7 +272,7 @@ Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::siz
     return all;
 }
 
-/// What may be drawn otherwise when it is too dense: a line over increasing x.
+/// Returns whether the curve can be replaced if too dense: a line over increasing x.
 bool is_line_over_x(const Curve& curve) {
     const auto x = curve.x.values.first(curve.size());
     return curve.style == Style::line && std::is_sorted(x.begin(), x.end());

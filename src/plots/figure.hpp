@@ -1,4 +1,4 @@
-// A figure as a value: curves, marks and spans over two axes, before anybody decides how to draw it.
+// Figures as values, independent of their output: curves, marks and spans over two axes.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace dinal::plots {
 
-/// Numbers to draw: a view and what keeps it alive. Shared, because a picture may outlive the run it shows.
+/// A view of numbers with their owner, as a picture may outlive its run.
 struct Numbers {
     std::shared_ptr<const void> owner;
     std::span<const double> values;
@@ -32,18 +32,19 @@ struct Interval {
 };
 
 enum class Style { line, points, fill };
-/// How a line is broken; `by_place` is another one for each curve, so that a grey print still tells them apart.
+/// The dash pattern; `by_place` gives each curve its own, for greyscale prints.
 enum class Dashes { by_place, solid, dashed, dotted, dash_dotted };
 
-/// The shorter of x and y counts. What is not finite, or cannot stand on a logarithmic axis, is a gap.
+/// The shorter of x and y determines the length. Values that are not finite, or not positive on a logarithmic axis, are
+/// gaps.
 struct Curve {
     Numbers x, y;
-    std::string label = {};  ///< none: not in the legend
+    std::string label = {};  ///< empty: not in the legend
     Style style = Style::line;
     Dashes dashes = Dashes::by_place;
-    int colour = 0;                    ///< 1, 2, ... of the palette; 0: by place
-    std::optional<Numbers> base = {};  ///< a fill reaches from y to this, to zero without it
-    bool behind = false;               ///< drawn before the others; where it is dense, as the band it fills
+    int colour = 0;                    ///< 1, 2, ... in the palette; 0: by position
+    std::optional<Numbers> base = {};  ///< fills extend from y to this, by default to zero
+    bool behind = false;               ///< drawn first; a dense curve becomes a band
     [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
 };
 
@@ -69,10 +70,10 @@ inline constexpr text::Option curve_options[] = {
 struct Axis {
     std::string label = {};
     std::optional<Interval> limits = {};
-    std::vector<double> ticks = {};       ///< where they stand; none: at round numbers
-    std::optional<double> division = {};  ///< or at the multiples of this (DIVX, DIVY of DRAAR)
+    std::vector<double> ticks = {};       ///< their places; empty: round numbers
+    std::optional<double> division = {};  ///< or multiples of this (DIVX, DIVY of DRAAR)
     bool logarithmic = false;
-    bool names_curves = false;  ///< the label is a unit alone: on paper the names of the curves stand before it
+    bool names_curves = false;  ///< whether the label is a unit only, preceded by the curves' names on paper
 };
 
 enum class MarkKind { start, end, impact, switched };
@@ -83,41 +84,41 @@ struct Mark {
     MarkKind kind = MarkKind::start;
 };
 
-struct Shades;  // shades.hpp
+struct Shades;  // see shades.hpp
 
-/// The kinds among the marks, each once.
+/// The distinct kinds of these marks.
 std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks);
 
 struct Figure {
     std::string title = {};
-    bool below = false;  ///< stands under the figure before it, with the same x
+    bool below = false;  ///< whether it stands below the previous figure with a common x axis
     Axis x, y;
-    bool equal = false;    ///< one unit is as long on both axes
-    bool axes = true;      ///< frame, ticks, labels and grid
-    bool ends = false;     ///< on paper the names of lines stand where these end, not in the legend
-    bool circles = false;  ///< about the origin, through the ticks: lines of equal energy in a phase plane
-    std::shared_ptr<const Shades> shades = {};  ///< a map, behind all the rest
+    bool equal = false;    ///< whether units are equally long on both axes
+    bool axes = true;      ///< whether to draw frame, ticks, labels and grid
+    bool ends = false;     ///< on paper: whether names are at the ends of lines instead of in the legend
+    bool circles = false;  ///< about the origin through the ticks: equal energy in a phase plane
+    std::shared_ptr<const Shades> shades = {};  ///< a map behind everything else
     std::vector<Curve> curves;
     std::vector<Mark> marks;
     std::vector<Interval> stuck;             ///< intervals of x, marked at its axis
-    std::optional<Interval> dead_zone = {};  ///< of x, marked on y = 0
+    std::optional<Interval> dead_zone = {};  ///< interval of x, marked on y = 0
 };
 
-/// Numbers beyond 1e300 would overflow in differences, and nobody could see them.
+/// Larger numbers would overflow in differences.
 inline bool drawable(double value, bool logarithmic) {
     return std::fabs(value) <= 1e300 && (!logarithmic || value > 0);
 }
 
-/// Fractions of a shorter one could not be told.
+/// Fractions of a shorter axis cannot be computed.
 inline constexpr double shortest_axis = 1e-305;
 
-/// One axis as it is drawn: from a value to its fraction of the axis.
+/// Maps a value to its fraction of an axis.
 class Scale {
 public:
     Scale(Interval range, bool logarithmic);
     [[nodiscard]] Interval range() const { return range_; }
     [[nodiscard]] bool logarithmic() const { return logarithmic_; }
-    /// 0 at the low end, 1 at the high one; NaN for what has no place.
+    /// 0 at the low end, 1 at the high end; NaN outside of the domain.
     [[nodiscard]] double operator()(double value) const {
         return ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
     }
@@ -139,11 +140,11 @@ struct View {
     Scale x, y;
 };
 
-/// What is seen of a figure: the limits asked for, else all data with some air around them.
+/// The visible ranges: given limits, otherwise all data with a margin.
 View view_of(const Figure& figure);
 
-/// The largest box of at most width times height in which one unit is as long on both axes (in a text or a paper of
-/// square dots). Where that box would be a thread the view is widened.
+/// The largest box within width times height with equal units on both axes (square dots). Widens the view if the box
+/// would be too narrow.
 struct Box {
     double width, height;
 };
@@ -159,21 +160,19 @@ struct Line {
     Point from, to;
 };
 
-/// Cuts the line to the sheet, which reaches from -slack to its size and slack (Liang and Barsky); false when nothing
-/// is left.
+/// Clips the line to the sheet enlarged by `slack` (Liang and Barsky); returns false if nothing remains.
 bool clip(Line& line, Box sheet, double slack);
 
-// What swings too densely to be seen behind another curve, as the band that it fills.
+// Dense oscillations behind other curves are drawn as bands.
 
-/// The figures with bands in place of the curves behind others (Curve::behind) that turn back more often than the eye
-/// can follow on `width`: in places that it parts, such as dots of a text or pixels of a sheet.
+/// Replaces curves marked `behind` by bands if they turn too often to be seen at this width, in resolvable places such
+/// as dots or pixels.
 std::vector<Figure> with_bands(std::span<const Figure> figures, double width);
 
-/// The figures with envelopes in place of all curves that turn nearly every second of these places: drawn as they are,
-/// they would be noise.
+/// Replaces all curves by envelopes that turn in nearly every second place, as they would look like noise.
 std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width);
 
-/// The places of the curves, those behind others first.
+/// The indices of the curves, background curves first.
 std::vector<std::size_t> drawing_order(const Figure& figure);
 
 }  // namespace dinal::plots

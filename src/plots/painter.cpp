@@ -24,14 +24,14 @@ namespace dinal::plots {
 
 namespace {
 
-constexpr double line_width = 1.3;  // pixels of 1/96 inch, as all lengths here
+constexpr double line_width = 1.3;  // pixels of 1/96 inch, the unit of all lengths here
 
 constexpr std::uint32_t ink_colour = 0x444444, grey = 0xB0B0B0;
 
-// Okabe and Ito's colours, which the colour-blind tell apart, without the yellow, which paper swallows.
+// The colour-blind safe palette of Okabe and Ito, without yellow, which is pale on paper.
 constexpr std::array<std::uint32_t, 7> palette{0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0x000000, 0xE69F00, 0x56B4E9};
 
-// Six patterns and seven colours: a pair of them repeats after 42 curves only.
+// With six patterns and seven colours a pair repeats after 42 curves.
 const std::array<std::vector<double>, 6> dash_patterns{std::vector<double>{}, {5, 2},     {1.3, 1.7},
                                                        {5, 1.7, 1.3, 1.7},    {2.6, 1.7}, {5, 1.7, 1.3, 1.7, 1.3, 1.7}};
 
@@ -58,7 +58,7 @@ void fill(cairo_t* to, std::uint32_t colour, double opacity = 1) {
     cairo_fill(to);
 }
 
-/// A part of the sheet as dots, 0xAARRGGBB. They are taken with `new`, so they count as memory of the script.
+/// A part of the sheet as pixels, 0xAARRGGBB. Allocated with `new`, so it counts as memory of the script.
 class Image {
 public:
     Image(Point corner, Box size, double dots_per_pixel)
@@ -70,14 +70,14 @@ public:
           surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(dots.data()),
                                                       CAIRO_FORMAT_ARGB32, width, height, 4 * width)) {}
 
-    /// To draw into it, at places of the sheet.
+    /// A drawing context in the coordinates of the sheet.
     [[nodiscard]] Context context() const {
         Context context(cairo_create(surface.get()));
         cairo_scale(context.get(), scale_, scale_);
         cairo_translate(context.get(), -corner_.x, -corner_.y);
         return context;
     }
-    /// The dot at that place of the sheet; none outside of the image.
+    /// The pixel at this place of the sheet, or nullptr outside.
     [[nodiscard]] std::uint32_t* at(Point place) {
         const double x = (place.x - corner_.x) * scale_, y = (place.y - corner_.y) * scale_;
         if (!(x >= 0 && y >= 0 && x < width && y < height)) return nullptr;
@@ -104,7 +104,7 @@ public:
     const Surface surface;
 };
 
-/// Corners on a circle, or spokes; without corners the circle itself.
+/// A polygon, a star of spokes, or without corners a circle.
 struct Shape {
     int corners = 0;
     double first = 0;  // degrees
@@ -123,11 +123,11 @@ void outline(cairo_t* to, Shape shape, Point middle, double radius) {
     if (!shape.spokes) cairo_close_path(to);
 }
 
-constexpr double bar = 0.3 * em;           // how high the bars are for the dead zone and for what is stuck
-constexpr double below_ticks = 0.45 * em;  // how far those for what is stuck are from the axis
-constexpr double density = 0.25;           // of the colour of an area
-constexpr std::size_t crowd = 500;         // of points, whose shapes would hide each other
-constexpr double fineness = 2;             // dots to the pixel: a line is wider than two of them
+constexpr double bar = 0.3 * em;           // height of the bars for dead zone and sticking
+constexpr double below_ticks = 0.45 * em;  // distance of the sticking bars from the axis
+constexpr double density = 0.25;           // opacity of an area's colour
+constexpr std::size_t crowd = 500;         // number of points whose shapes would hide each other
+constexpr double fineness = 2;             // pixels of an image for each pixel: lines are wider than two of them
 
 enum class Align { left, centre, right };
 
@@ -135,7 +135,7 @@ struct Page {
     cairo_t* to;
     bool svg;
     const std::function<bool()>& go_on;
-    std::string texts = {};  ///< of an SVG, where words stay text that can be searched and needs no font here
+    std::string texts = {};  ///< SVG only: collected <text> elements; no font needed
 
     void line(Point from, Point end, double width, std::uint32_t colour) const {
         cairo_move_to(to, from.x, from.y);
@@ -148,9 +148,9 @@ struct Page {
         fill(to, colour, opacity);
     }
 
-    /// The middle line of the words goes through the point.
+    /// Writes words whose vertical centre is at the point.
     void words(const Words& words, Align align = Align::centre, bool upwards = false) {
-        constexpr double middle = 0.35;  // of the height of letters above their base line
+        constexpr double middle = 0.35;  // relative to the height of letters above their base line
         const std::string shown = text::displayable(words.text);
         if (shown.empty()) return;
         if (svg) {
@@ -171,7 +171,7 @@ struct Page {
         cairo_move_to(to, -extents.x_advance * static_cast<double>(align) / 2, middle * em);
         set_colour(to, ink_colour);
         cairo_show_text(to, shown.c_str());
-        cairo_new_path(to);  // the next shape begins a path of its own, not at the end of the words
+        cairo_new_path(to);  // otherwise the next shape would continue from the words
         cairo_restore(to);
     }
 };
@@ -209,7 +209,7 @@ private:
         return right >= 0 && right <= 1 && up >= 0 && up <= 1;
     }
 
-    /// Draws within the box and a little around it.
+    /// Draws clipped to the box with a small margin.
     template <class Draw>
     void clipped(cairo_t* to, const Draw& draw) const {
         constexpr double around = line_width / 2;
@@ -222,7 +222,7 @@ private:
     }
 
     [[nodiscard]] Image image() const {
-        constexpr double most = 4e6;  // dots
+        constexpr double most = 4e6;  // pixels
         return {{panel_.left, panel_.top}, size_, std::min(fineness, std::sqrt(most / (size_.width * size_.height)))};
     }
 
@@ -253,7 +253,7 @@ private:
         });
     }
 
-    /// The colour of a dot of what has none: stripes on white, or on grey and the other way.
+    /// Hatching for places without a value: stripes on white, or on grey in the other direction.
     static std::uint32_t hatch(int row, int column, bool nothing) {
         constexpr int apart = 12, wide = 2;
         constexpr std::uint32_t stripe = 0xA8A8A8, light = 0xECECEC, white = 0xFFFFFF;
@@ -261,7 +261,7 @@ private:
         return ((across % apart) + apart) % apart < wide ? stripe : nothing ? light : white;
     }
 
-    /// A map may have any number of places, so it is an image.
+    /// A map may have any number of places, so it is drawn as an image.
     void add_shades() const {
         const Shades& shades = *figure_.shades;
         const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
@@ -296,7 +296,7 @@ private:
 
     // ---- curves
 
-    /// Curves with too many corners for an SVG are drawn as an image.
+    /// Draws curves; those with too many corners for an SVG become images.
     void add_curves() {
         const Paper paper{panel_.view, {size_.width * fineness, size_.height * fineness}};
         std::vector<std::vector<std::size_t>> traces;
@@ -326,7 +326,7 @@ private:
         return palette[(own > 0 ? static_cast<std::size_t>(own - 1) : curve) % palette.size()];
     }
 
-    /// A point of a curve on the page. cairo counts in 32 bits, so what is far away comes nearer.
+    /// A point of a curve on the page. Far points are moved nearer, as cairo uses 32-bit coordinates.
     [[nodiscard]] Point at(const Curve& curve, std::size_t place) const {
         constexpr double far = 700;  // lengths of the axes
         return {panel_.left + std::clamp(panel_.view.x(curve.x.values[place]), -far, far) * size_.width,
@@ -358,7 +358,7 @@ private:
         }
     }
 
-    /// All points, and a dot is the darker the more of them it has.
+    /// Draws all points; more points make a pixel darker.
     void add_cloud(cairo_t* to, std::size_t i) const {
         const Curve& curve = figure_.curves[i];
         Image cloud = image();
@@ -370,7 +370,7 @@ private:
             constexpr std::array<std::uint32_t, 5> opacities{0, 128, 180, 220, 255};
             const std::uint32_t opacity = opacities[std::min<std::size_t>(dot, opacities.size() - 1)];
             dot = opacity << 24U;
-            for (const unsigned shift : {16U, 8U, 0U}) {  // cairo wants colours multiplied by their opacity
+            for (const unsigned shift : {16U, 8U, 0U}) {  // cairo expects premultiplied colours
                 dot |= ((colour_of(i) >> shift) & 255U) * opacity / 255 << shift;
             }
         }
@@ -388,7 +388,7 @@ private:
         }
     }
 
-    /// Returns the first places of pieces that are no longer than a dot, which leave no ink as lines.
+    /// Draws a line; returns the first indices of pieces too short to leave ink.
     std::vector<std::size_t> add_line(cairo_t* to, std::size_t i, const std::vector<std::size_t>& places,
                                       Image* dense) const {
         const Curve& curve = figure_.curves[i];
@@ -413,7 +413,7 @@ private:
             (adds ? cairo_line_to : cairo_move_to)(to, point.x, point.y);
             if (last) length += std::hypot(point.x - last->x, point.y - last->y);
             last = point;
-            constexpr std::size_t batch = 20;  // of a dense line: cairo's time for one grows with its square
+            constexpr std::size_t batch = 20;  // corners of a dense line: cairo's time grows with the square
             if (dense == nullptr || ++waiting % batch != 0) continue;
             if (!page_.go_on()) return {};
             stroke(to, line_width, colour_of(i));
@@ -432,8 +432,7 @@ private:
         cairo_set_dash(to, pattern.data(), static_cast<int>(pattern.size()), 0);
     }
 
-    /// Whether a line from here to there would change nothing: a million lines above one another are no more ink than a
-    /// few.
+    /// Returns whether a line would change nothing, as most of a million overlapping lines.
     static bool is_inked(Image& image, Point from, Point to, std::uint32_t colour) {
         const int steps = 1 + static_cast<int>(std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y)));
         for (int step = 0; step <= steps; ++step) {
@@ -498,7 +497,7 @@ private:
         if (x.low < x.high) page_.rectangle({x_of(x.low), top}, {x_of(x.high), top + bar}, colour);
     }
 
-    /// Bars below the ticks of the time axis; thousands of stops that no eye parts become one.
+    /// Bars below the ticks of the time axis; stops too close to be distinguished are merged.
     void add_stuck() const {
         const Interval seen = panel_.view.x.range();
         const double finest = seen.length() / (2 * size_.width);
@@ -529,7 +528,7 @@ private:
         sample.put(page_.to);
     }
 
-    /// Names at the ends of lines: those at the right edge outside, one below the other.
+    /// Names at the ends of lines; at the right edge outside of the box, one below the other.
     void add_end_names() {
         std::vector<NamedEnd> outside;
         for (const NamedEnd& end : named_ends(figure_, panel_.view)) {
@@ -588,7 +587,7 @@ private:
         for (std::size_t i = 0; i < colours.cells; ++i) {
             const double y = panel_.bottom - static_cast<double>(i) * cell;
             const double part = static_cast<double>(i) / std::max(1.0, static_cast<double>(colours.cells) - 1);
-            const double below = colours.continuous && i > 0 ? 0.5 : 0;  // no seams
+            const double below = colours.continuous && i > 0 ? 0.5 : 0;  // avoids seams
             page_.rectangle({colours.left, y - cell}, {colours.right, y + below},
                             colours.continuous ? flowing_colour(part) : shade_colour(i, colours.cells));
         }
@@ -605,7 +604,7 @@ private:
     Box size_{panel_.right - panel_.left, panel_.bottom - panel_.top};
 };
 
-/// The bytes of the file. cairo is C, so no exception may pass through it.
+/// The bytes of the file. Exceptions must not pass through cairo, which is C.
 struct Output {
     const std::function<bool()>& go_on;
     std::string bytes = {};
@@ -627,8 +626,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     }
 }
 
-/// cairo counts its surfaces over the whole process. A picture shall not depend on those before it, so its parts get
-/// other names.
+/// Renames surfaces, as cairo numbers them across the process and a picture must not depend on earlier ones.
 std::string renamed(std::string svg) {
     const std::string mark = "id=\"";
     int count = 0;
@@ -646,11 +644,11 @@ std::string renamed(std::string svg) {
 
 text::Expected<std::string> paint(std::span<const Figure> given, PictureKind kind, PaperSize size,
                                   const std::function<bool()>& go_on) {
-    constexpr double usual = 8.5, box = 0.85;  // cm; of the width, to the curves
+    constexpr double usual = 8.5, box = 0.85;  // cm; ratio of height to width of the box
     const std::vector<Figure> figures = with_bands(given, box * pixels_per_cm * (size.width > 0 ? size.width : usual));
     const Sheet sheet = lay_out(figures, size);
-    constexpr double points = 0.75;    // to the pixel
-    constexpr double most_dots = 4e7;  // of a PNG: 160 MB
+    constexpr double points = 0.75;    // points in a pixel
+    constexpr double most_dots = 4e7;  // limit of a PNG: 160 MB
     Output output{go_on};
     std::optional<Image> image;
     Surface surface;
@@ -670,7 +668,7 @@ text::Expected<std::string> paint(std::span<const Figure> given, PictureKind kin
     if (kind == PictureKind::pdf) cairo_scale(to, points, points);
     set_colour(to, 0xFFFFFF);
     cairo_paint(to);
-    constexpr double most_corners = 5'500;  // of the curves in an SVG, which take 24 bytes each
+    constexpr double most_corners = 5'500;  // corners of curves in an SVG, 24 bytes each
     Page page{to, kind == PictureKind::svg, go_on};
     for (const PaperPanel& panel : sheet.panels) {
         PanelPainter(page, panel, most_corners / static_cast<double>(sheet.panels.size())).paint();

@@ -13,8 +13,8 @@ namespace dinal::plots {
 
 enum class PictureKind { svg, png, pdf };
 
-/// The bytes of the file. An SVG has a title and a description for screen readers. Drawing ends with an error when
-/// go_on() returns false; it is called every few thousand points.
+/// The bytes of the file. An SVG has a title and a description for screen readers. go_on() is called every few thousand
+/// points; false ends drawing with an error.
 text::Expected<std::string> paint(
     std::span<const Figure> given, PictureKind kind, PaperSize size,
     const std::function<bool()>& go_on = [] { return true; });

@@ -9,7 +9,7 @@
 namespace dinal::plots {
 namespace {
 
-constexpr double letter_width = 0.55 * em;  // of the average one in the fonts that will be met
+constexpr double letter_width = 0.55 * em;  // average of the usual fonts
 constexpr double digit_width = 0.62 * em;
 constexpr double line_height = 1.35 * em;
 constexpr double between_entries = 1.2 * em;
@@ -22,7 +22,7 @@ double digits_width(const std::string& number) {
     return digit_width * static_cast<double>(text::columns(typeset(number)));
 }
 
-/// What is too long for its place loses its end, so that one sees that it was too long.
+/// Cuts a text that is too long, and marks the cut.
 std::string cut(const std::string& text, double width) {
     std::string shown = text::displayable(text);
     if (width_of(shown) <= width) {
@@ -44,7 +44,7 @@ std::string with_offset(const std::string& label, const Ticks& ticks) {
     return ticks.offset.empty() ? label : label + " (" + typeset(ticks.offset) + ")";
 }
 
-/// A curve without any point is there for the legend.
+/// Returns whether the curve's name is at its end. A curve without points exists for the legend only.
 bool ends_with_name(const Figure& figure, const Curve& curve) {
     const auto& y = curve.y.values;
     return figure.ends && curve.style == Style::line && !curve.label.empty() &&
@@ -58,7 +58,7 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
             entries.push_back({Sample::curve, i, figure.curves[i].label});
         }
     }
-    constexpr std::size_t most = 42;  // as many as there are looks
+    constexpr std::size_t most = 42;  // number of distinct styles
     if (entries.size() > most) {
         const std::string rest = "+ " + std::to_string(entries.size() - most) + " more";
         entries.resize(most);
@@ -82,8 +82,8 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
     return entries;
 }
 
-/// Sets the entries in lines of this width: a few one after the other, many in columns that are read downwards. Their y
-/// counts down from 0 at the top. Returns the number of lines.
+/// Arranges the entries in lines of this width: a few in one line, many in columns, read downwards. Their y is
+/// negative, 0 at the top. Returns the number of lines.
 int flow(std::vector<LegendEntry>& entries, double width) {
     if (entries.empty()) {
         return 0;
@@ -118,18 +118,18 @@ int flow(std::vector<LegendEntry>& entries, double width) {
     return std::max(column_length, line + 1);
 }
 
-constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
+constexpr int most_ticks = 12;  // ticks of an axis; a poster needs no more than a page
 
 int x_tick_count(const PaperPanel& panel, double em_each) {
     return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);
 }
 
-/// The ticks below the box; the last label may not stand out of the sheet.
+/// Sets the ticks below the box; the last label must not exceed `limit`.
 void set_x_ticks(PaperPanel& panel, double limit) {
     const Figure& figure = *panel.figure;
     const bool free = figure.x.ticks.empty() && !figure.x.division;
     for (int attempt = 0; attempt < 2; ++attempt) {
-        constexpr double closest = 3;  // em from tick to tick
+        constexpr double closest = 3;  // em between ticks
         panel.x_ticks = ticks_of(figure.x, panel.view.x, x_tick_count(panel, closest));
         const double room = widest(panel.x_ticks.text) + em;
         if (free && room > closest * em) {
@@ -149,8 +149,8 @@ void set_x_ticks(PaperPanel& panel, double limit) {
 
 constexpr double bar_gap = 1.0 * em, bar_width = 1.1 * em, bar_ticks = 0.5 * em;
 
-/// Bands of one number have it in their middle, others the number where the next one begins; colours that flow have
-/// round numbers at their places.
+/// The labels of a colour bar: a band of a single number has it in the middle, other bands have numbers at their
+/// borders; continuous colours have round numbers.
 ColourBar bar_of(const Shades& shades) {
     if (const auto range = colour_range(shades)) {
         constexpr std::size_t fine = 64;
@@ -180,7 +180,7 @@ ColourBar bar_of(const Shades& shades) {
     return colours;
 }
 
-/// "θ, M/k, m": a unit alone would not say of what.
+/// "θ, M/k, m": the curves' names in front of a unit.
 std::string y_label_of(const Figure& figure) {
     if (!figure.y.names_curves) return figure.y.label;
     std::string label;
@@ -190,8 +190,8 @@ std::string y_label_of(const Figure& figure) {
     return label.empty() || figure.y.label.empty() ? label + figure.y.label : label + ", " + figure.y.label;
 }
 
-/// The margins of a panel, the ticks that fit between them, and the box, which begins `inset` from the left or later.
-/// Panels beside it may need more room above and below the box, so that all boxes are as high.
+/// Computes the margins of a panel, its ticks, and its box, which begins at least `inset` from the left. `beside` has
+/// margins that keep neighbouring boxes equally high.
 void place(PaperPanel& panel, double left, double width, double height, double inset, const PaperPanel& beside) {
     const Figure& figure = *panel.figure;
     const auto y_ticks = [&](double high) {
@@ -223,7 +223,7 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     panel.legend = legend_of(figure);
     const double title = figure.title.empty() ? 0 : 1.5 * em;
     double above = 0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + title;
-    if (height - above < panel.bottom + 3 * em) {  // a sheet that is too small has curves rather than words
+    if (height - above < panel.bottom + 3 * em) {  // a sheet too small for both keeps curves rather than words
         panel.legend.clear();
         above = 0.5 * em + title;
     }
@@ -249,7 +249,7 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     }
     const double whole_width =
         2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
-    // Titles side by side stand on one line, whatever their legends need; a square box may be far below that line.
+    // Titles side by side are on one line, whatever their legends need; a square box may be far below it.
     const double title_above = figure.equal ? own_above : above;
     panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + title_above - 0.7 * em};
     panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);
@@ -288,7 +288,7 @@ PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
         for (const Pile& pile : piles) {
             double all = 0;
             for (const Figure* figure : pile) {
-                // A long legend must not eat the picture: it gets room of its own.
+                // A long legend gets additional space.
                 std::vector<LegendEntry> entries = legend_of(*figure);
                 const double width = size.width * pixels_per_cm / static_cast<double>(piles.size()) - 6 * em;
                 const double legend = flow(entries, width) * line_height / pixels_per_cm;
@@ -301,7 +301,7 @@ PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
     return size;
 }
 
-/// All heights in a panel; the layout counts them from below.
+/// All vertical positions in a panel, which are counted from below.
 std::vector<double*> heights_of(PaperPanel& panel) {
     std::vector<double*> all{&panel.bottom,    &panel.top,       &panel.title.y,
                              &panel.x_label.y, &panel.y_label.y, &panel.bar_label.y};
@@ -309,7 +309,7 @@ std::vector<double*> heights_of(PaperPanel& panel) {
     return all;
 }
 
-/// One below the other, with their axes below each other, too.
+/// Places figures one below the other with aligned axes.
 void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, double width, double whole,
                 const PaperPanel& beside) {
     const double height = whole / static_cast<double>(pile.size());
@@ -359,8 +359,7 @@ Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     for (const Pile& pile : piles) {
         shares += share_of(*pile.front());
     }
-    // Boxes side by side stand on one line and are as high: with the greatest margins, which are known when all are
-    // placed.
+    // Boxes side by side have equal heights: their margins are the greatest of all, known after a first placement.
     PaperPanel beside{.figure = nullptr, .view = view_of(figures.front())};
     const bool row = piles.size() > 1 && piles.size() == figures.size();
     for (int attempt = 0; attempt < (row ? 2 : 1); ++attempt) {

@@ -11,7 +11,7 @@
 namespace dinal::plots {
 namespace {
 
-/// What a column measures: curves of one kind stand on one axis.
+/// The quantity of a column: curves of one kind share an axis.
 enum class Measure { time, angle, speed, torque, unknown };
 
 struct Symbol {
@@ -70,7 +70,7 @@ text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) 
     return Numbers{run.owner, {values.data(), static_cast<std::size_t>(values.size())}};
 }
 
-/// "M/k" and its like; nothing when the name is none of these.
+/// The divisor in "M/k" etc.; none for other names.
 std::optional<double> divisor(const RunData& run, std::string_view name) {
     const std::size_t slash = name.find('/');
     if (slash == std::string_view::npos || !run.system || !run.system->has_spring()) {
@@ -106,7 +106,7 @@ bool is_excited(const RunData& run, std::string_view name) {
     return M && run.trajectory->size() > 0 && run.trajectory->rows.col(*M).cwiseAbs().maxCoeff() > 0;
 }
 
-/// Any other table of numbers: the second column over the first.
+/// The default columns of other tables: the second over the first.
 std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
     if (!has(run, "theta")) {
         const auto& names = run.trajectory->names();
@@ -132,7 +132,7 @@ std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
     std::vector<Interval> intervals;
     for (const analysis::Stretch& stretch : analysis::stretches(trajectory)) {
         if (stretch.stuck && stretch.begun_by && !intervals.empty() && intervals.back().high == stretch.from) {
-            intervals.back().high = stretch.to;  // it stuck, and then it came to rest
+            intervals.back().high = stretch.to;  // it stuck before it came to rest
         } else if (stretch.stuck) {
             intervals.push_back({stretch.from, stretch.to});
         }
@@ -142,9 +142,9 @@ std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
 
 namespace {
 
-/// Impacts and switches of relays on the curve of theta; of those that nobody could tell apart, one.
+/// Impacts and relay switches on the curve of theta, without those too close to be distinguished.
 std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
-    constexpr double apart = 1.0 / 200;  // of the run
+    constexpr double apart = 1.0 / 200;  // part of the run
     std::vector<Mark> marks;
     for (const auto& [event, kind] : {std::pair{model::EventKind::impact, MarkKind::impact},
                                       std::pair{model::EventKind::switched, MarkKind::switched}}) {
@@ -160,7 +160,7 @@ std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
     return marks;
 }
 
-/// The names in groups that measure the same, in the order of their first members.
+/// Groups names by quantity, in the order of their first members.
 std::vector<std::vector<std::string>> by_measure(const std::vector<std::string>& names) {
     std::vector<std::vector<std::string>> groups;
     for (const std::string& name : names) {
@@ -233,7 +233,7 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
             }
         }
     }
-    for (std::size_t i = 0; i + 1 < figures.size(); ++i) {  // what all share stands once, at the lowest
+    for (std::size_t i = 0; i + 1 < figures.size(); ++i) {  // shared elements appear once, at the lowest figure
         figures[i].x.label.clear();
         figures[i].stuck.clear();
     }
@@ -242,8 +242,8 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
 
 namespace {
 
-/// The curve of rows over theta with the corners between the rows: impacts, and where a relay switched or a contact
-/// opened or closed. `by` divides velocities.
+/// Adds the corners between rows to a phase curve: impacts, relay switches, opened and closed contacts. Divides
+/// velocities by `by`.
 void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) {
     const auto is_corner = [](const model::Event& e) {
         return e.kind > model::EventKind::rest && e.kind != model::EventKind::user;

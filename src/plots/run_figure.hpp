@@ -1,4 +1,4 @@
-// What is drawn of a run: its response in time, any of its columns, its phase plane.
+// Figures of a run: response in time, any columns, phase plane.
 #pragma once
 
 #include <memory>
@@ -14,34 +14,34 @@
 namespace dinal::plots {
 
 struct RunData {
-    std::shared_ptr<const void> owner;  ///< keeps the trajectory alive
+    std::shared_ptr<const void> owner;  ///< owner of the trajectory
     const motion::Trajectory* trajectory;
-    std::optional<model::Oscillator> system;  ///< none in a run that was read from a file, or is of several bodies
+    std::optional<model::Oscillator> system;  ///< none if read from a file, or for several bodies
     model::Units units = {};
-    std::optional<double> load = {};  ///< the torque on the mass besides that of its system; none if it varies
+    std::optional<double> load = {};  ///< constant torque on the mass in addition to its system's; none if it varies
 };
 
 enum class Axes { one_a_unit, one };
 
-/// Names of the run's columns, or "M/k", "friction/k", "damping/k" and "velocity/omega0", which the record of 1989 has.
+/// Names of columns, or "M/k", "friction/k", "damping/k" and "velocity/omega0" as in the record of 1989.
 struct ColumnsToDraw {
-    std::string x = {};                    ///< t without it
-    std::vector<std::string> ys = {};      ///< none: theta, and M/k when there is an excitation
-    std::vector<std::string> labels = {};  ///< for the first of these, in place of their names
+    std::string x = {};                    ///< default t
+    std::vector<std::string> ys = {};      ///< default theta, and M/k with an excitation
+    std::vector<std::string> labels = {};  ///< replace the names of the first of these
     Axes axes = Axes::one_a_unit;
 };
 
-/// Columns over a column. What is measured in different units stands in figures one below the other.
+/// Columns over a column; quantities with different units are in figures one below the other.
 text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked = {});
 
-/// theta'/omega0 over theta, 1:1: where k theta alone pulls back, circles about the origin are lines of equal energy.
-/// Without k it is theta'.
+/// theta'/omega0 over theta with equal units: circles about the origin have equal energy if k theta is the only spring
+/// torque. Without k plots theta'.
 text::Expected<Figure> phase_figure(const RunData& run);
 
-/// How the column of this name is written in a picture: "θ'" for velocity.
+/// The symbol of a column in pictures: "θ'" for velocity.
 std::string symbol_for(std::string_view column);
 
-/// When the mass stuck, from the events.
+/// The intervals of sticking, from the events.
 std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory);
 
 }  // namespace dinal::plots

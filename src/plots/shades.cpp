@@ -14,7 +14,7 @@
 namespace dinal::plots {
 namespace {
 
-constexpr std::size_t most_values = 10;  // that have a shade each
+constexpr std::size_t most_values = 10;  // values with their own shades
 
 std::vector<double> finite_values(const Shades& shades) {
     std::vector<double> values;
@@ -24,7 +24,7 @@ std::vector<double> finite_values(const Shades& shades) {
     return values;
 }
 
-/// The whole numbers among them, when they are few and there is nothing else.
+/// The distinct values if they are a few whole numbers, otherwise empty.
 std::vector<double> few_whole_numbers(const std::vector<double>& sorted) {
     std::vector<double> different;
     for (const double z : sorted) {
@@ -113,7 +113,7 @@ std::vector<double> edges_between(const std::vector<double>& values, bool logari
 }
 
 namespace {
-// viridis of matplotlib (van der Walt and Smith, 2015), every ninth part
+// every ninth part of matplotlib's viridis (van der Walt and Smith, 2015)
 constexpr std::array<std::uint32_t, 10> viridis{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,
                                                 0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
 }  // namespace
@@ -148,11 +148,11 @@ std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t b
     return ascii ? plain[place] : shades[place];
 }
 
-// Lines of equal value on a grid, by marching squares; where four crossings meet, the mean of the corners decides.
+// Contours on a grid, by marching squares; the mean of the corners resolves saddle points.
 
 namespace {
 
-/// The side of a square of the grid: from the point (i, j) to the right, or up.
+/// A side of a grid square: from the point (i, j) to the right or upwards.
 struct GridSide {
     std::size_t i, j;
     bool up;
@@ -167,7 +167,7 @@ public:
         for (std::size_t j = 0; j + 1 < shades_.y.size(); ++j) {
             for (std::size_t i = 0; i + 1 < shades_.x.size(); ++i) add_square(i, j);
         }
-        // Open lines first, from an end of theirs; what is left are rings.
+        // Open lines first, from their ends; the rest are rings.
         for (const bool ends_only : {true, false}) {
             for (auto& [side, neighbours] : neighbours_) {
                 if (!ends_only || neighbours.size() == 1) follow(side);
@@ -201,7 +201,7 @@ private:
         if (crossed.size() == 2) join(sides[crossed[0]], sides[crossed[1]]);
         if (crossed.size() == 4) {
             const bool middle = (z[0] + z[1] + z[2] + z[3]) / 4 >= level_;
-            const bool cuts_first = middle != above(i, j);  // the corner 0 is alone, and so is 2
+            const bool cuts_first = middle != above(i, j);  // corners 0 and 2 are separated
             join(sides[0], sides[cuts_first ? 3 : 1]);
             join(sides[2], sides[cuts_first ? 1 : 3]);
         }
@@ -215,7 +215,7 @@ private:
         y_.push_back(shades_.y[side.j] + part * (shades_.y[j] - shades_.y[side.j]));
     }
 
-    /// Takes the line that goes on from this side.
+    /// Follows and removes the line from this side.
     void follow(GridSide side) {
         if (neighbours_[side].empty()) return;
         add_point(side);

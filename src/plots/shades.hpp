@@ -1,4 +1,4 @@
-// Values over a grid, seen from above: areas of one shade each, and lines of equal value.
+// Maps: values over a grid as areas of one shade each, and contours.
 #pragma once
 
 #include <cstdint>
@@ -11,47 +11,46 @@
 namespace dinal::plots {
 
 struct Shades {
-    std::vector<double> x, y;  ///< where the values are, increasing
-    std::vector<double> z;     ///< of x[i] and y[j] at j * x.size() + i; nan where there is nothing
+    std::vector<double> x, y;  ///< increasing coordinates of the values
+    std::vector<double> z;     ///< value at x[i] and y[j] in z[j * x.size() + i]; nan: none
     std::string label = {};
-    std::optional<Interval> limits = {};  ///< beyond them all values have the first and the last shade
+    std::optional<Interval> limits = {};  ///< values beyond have the first or last shade
 
     [[nodiscard]] double at(std::size_t i, std::size_t j) const { return z[j * x.size() + i]; }
 };
 
-/// The values from <= z < to have one shade; the ends of the first and the last are open.
+/// The range from <= z < to of one shade; the first and last are open.
 struct ShadeBand {
     double from, to;
     std::string text;  ///< "3", "0.2 to 0.4"
 };
 
-/// A band for each value when these are a few whole numbers; else at most `most`, between round numbers. A few very
-/// large or very small values, as near a resonance, do not take the shades from all others.
+/// A band for each value if these are a few whole numbers; otherwise at most `most` bands between round numbers, chosen
+/// so that a few extreme values, such as near a resonance, do not use up the shades.
 std::vector<ShadeBand> bands_of(const Shades& shades, int most);
-/// Which band has the value; none for nan, and for an infinite value where each band is one number.
+/// The index of the value's band; none for nan, or for an infinite value among single numbers.
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z);
 
-/// The values from the first to the last colour of a map on paper, whose colours flow; nothing where each value has a
-/// band of its own, or there is one value only.
+/// The range of continuous colours on paper; none if each value has its own band, or there is only one value.
 std::optional<Interval> colour_range(const Shades& shades);
 
-/// What has no colour on paper: places without a value, and where a quantity that is positive elsewhere is 0.
+/// Places without colour on paper: those without a value, and zeros of an otherwise positive quantity.
 struct Absences {
     bool nothing = false, no_value = false;
 };
 Absences absences_of(const Shades& shades);
 
-/// Half way between the values, and as far beyond the first and the last.
+/// The midpoints between values, and one edge beyond each end.
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
 
-/// The line along which z has this value, with nan between its pieces.
+/// The contour of z at this level, with nan between its pieces.
 Curve contour(const Shades& shades, double level);
 
-/// 0x440154 to 0xFDE725: from dark to bright, also for the colour-blind and in grey print.
+/// From dark 0x440154 to bright 0xFDE725; legible for the colour-blind and in greyscale.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);
-/// The same for a part of the way, 0 to 1, between the ten.
+/// The same for a fraction, 0 to 1, by interpolation.
 std::uint32_t flowing_colour(double part);
-/// A character for the band: its digit when all are digits, else a shade.
+/// The character of a band: its digit if all are digits, otherwise a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);
 inline constexpr int most_text_bands = 5, most_paper_bands = 10;
 

@@ -13,13 +13,13 @@
 namespace dinal::plots {
 namespace {
 
-/// "θ, rad" without its unit.
+/// The label without its unit: "θ" for "θ, rad".
 std::string name_of(const std::string& label) {
     return label.substr(0, label.find(", "));
 }
 
 std::string names_of_curves(const Figure& figure) {
-    constexpr std::size_t most = 3;  // more of them are described by the axis
+    constexpr std::size_t most = 3;  // more curves are described by their axis
     std::string names;
     std::size_t count = 0;
     for (const Curve& curve : figure.curves) {
@@ -39,9 +39,9 @@ std::string what_over_what(const Figure& figure) {
     return plane.empty() ? names : names + " over " + plane;
 }
 
-// ---- what a curve does, in words
+// ---- description of a curve
 
-/// The extremes of a curve over x, the first and the last point included; smaller movements than this do not count.
+/// The extremes of a curve over x, including both ends; ignores movements below `smallest`.
 std::vector<Point> turns_of(const std::vector<Point>& points, double smallest) {
     std::vector<Point> turns{points.front()};
     Point extreme = points.front();
@@ -60,7 +60,7 @@ std::vector<Point> turns_of(const std::vector<Point>& points, double smallest) {
     return turns;
 }
 
-/// Of the swings between these extremes, the half swings at both ends left out.
+/// Describes the swings between these extremes, without the half swings at both ends.
 std::string swings_text(const std::vector<Point>& turns) {
     constexpr std::size_t fewest = 5;
     if (turns.size() < fewest) return "";
@@ -81,14 +81,14 @@ std::string course_over_x(const std::vector<Point>& points) {
         std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
     const double from = points.front().y, to = points.back().y;
     if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
-    constexpr double visible = 0.01;  // of the height
+    constexpr double visible = 0.01;  // part of the height
     const std::vector<Point> turns = turns_of(points, visible * (high->y - low->y));
     if (turns.size() == 2) return fmt::format("{} from {:.4g} to {:.4g}", to > from ? "rises" : "falls", from, to);
     return fmt::format("from {:.4g} to {:.4g}, greatest {:.4g} at {:.4g}, least {:.4g} at {:.4g}{}", from, to, high->y,
                        high->x, low->y, low->x, swings_text(turns));
 }
 
-/// What is seen of a curve, from left to right of the picture; of an area both edges.
+/// Describes the visible part of a curve from left to right; of an area both edges.
 std::string course_of(const View& view, const Curve& curve) {
     std::vector<Point> points;
     const Interval across = view.x.range();

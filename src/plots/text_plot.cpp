@@ -18,12 +18,12 @@
 namespace dinal::plots {
 namespace {
 
-// ---- A figure's curves on a canvas of dots, without the frame around them.
+// ---- The curves of a figure on a canvas, without the frame.
 
-/// Where values fall on the canvas, in dots.
+/// Maps values to dots of the canvas.
 struct Projection {
     View view;
-    Box box;  // the dots from edge to edge
+    Box box;  // size in dots between the edges
     [[nodiscard]] double x(double value) const {
         return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan("");
     }
@@ -37,7 +37,7 @@ struct Signs {
     std::string_view point, dead_zone;
 };
 
-constexpr std::size_t most_glyphs = 200;  // more points than this are dots
+constexpr std::size_t most_glyphs = 200;  // more points are drawn as dots
 constexpr std::size_t alphabet_size = 52;
 constexpr std::string_view alphabet = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
@@ -46,12 +46,12 @@ char letter(std::size_t ink) {
     return alphabet[(ink - 1) % alphabet_size];
 }
 
-/// Letters tell curves apart as soon as there are two.
+/// Returns whether letters identify the curves: if there are at least two.
 bool uses_letters(const Figure& figure) {
     return figure.curves.size() > 1;
 }
 
-/// A few curves have them at their ends, right of the canvas; many have them on the way, one after the other.
+/// Returns whether letters are right of the canvas, at the ends of a few curves; many have them on the way.
 bool letters_at_ends(const Figure& figure) {
     return uses_letters(figure) && figure.curves.size() <= 4;
 }
@@ -65,7 +65,7 @@ struct Dashing {
     int on, period;
 };
 
-/// Solid, dotted, dashed ...: with more curves than that only letters help.
+/// The dash pattern of a curve; beyond four, only letters distinguish them.
 Dashing stroke_of(const Figure& figure, std::size_t curve, Charset charset) {
     constexpr std::array<Dashing, 4> strokes{{{1, 1}, {1, 2}, {5, 8}, {1, 4}}};
     if (charset == Charset::ascii && uses_letters(figure)) {
@@ -112,7 +112,7 @@ void draw_points(Canvas& canvas, const Curve& curve, const Projection& projectio
     }
 }
 
-/// Every second dot of every second row between the curve and its base.
+/// Fills with every second dot in every second row between the curve and its base.
 void draw_fill(Canvas& canvas, const Curve& curve, const Projection& projection, std::uint8_t ink) {
     const double zero = projection.view.y.logarithmic() ? projection.box.height : projection.y(0);
     const auto base = [&](std::size_t i) { return curve.base ? projection.y(curve.base->values[i]) : zero; };
@@ -148,8 +148,8 @@ void draw_fill(Canvas& canvas, const Curve& curve, const Projection& projection,
 
 void draw_circle(Canvas& canvas, const Projection& projection, double radius) {
     const double size = radius / projection.view.x.range().length() * (projection.box.width - 1);
-    constexpr double gap = 4;     // dots from one to the next
-    constexpr double most = 1e4;  // a window far from the origin sees no more than a piece of a line
+    constexpr double gap = 4;     // dots between circles
+    constexpr double most = 1e4;  // a window far from the origin sees only pieces of a line
     const int count = static_cast<int>(std::min(2 * std::numbers::pi * size / gap, most));
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * std::numbers::pi * i / count;
@@ -181,7 +181,7 @@ void draw_background(Canvas& canvas, const Figure& figure, const Projection& pro
     }
 }
 
-/// Only where no curve runs: it is not to be hidden.
+/// Drawn only where no curve is, so as to hide none.
 void draw_dead_zone(Canvas& canvas, Interval zone, const Projection& projection, std::string_view sign) {
     const int row = nearest_dot(projection.y(0));
     const double from = std::max(projection.x(zone.low), 0.0);
@@ -191,7 +191,7 @@ void draw_dead_zone(Canvas& canvas, Interval zone, const Projection& projection,
     }
 }
 
-/// Each letter further along its curve than the one before, so that they stand apart where the curves do not.
+/// Each letter is further along its curve than the one before, so that they are apart even if the curves are not.
 void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projection) {
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
         const Curve& curve = figure.curves[i];
@@ -207,7 +207,7 @@ void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projec
     }
 }
 
-/// A character for the value at the middle of each cell, but where curves are.
+/// A character for the value at the middle of each cell, except on curves.
 void draw_shades(Canvas& canvas, const Shades& shades, const Projection& projection, Charset charset) {
     const std::vector<ShadeBand> bands = bands_of(shades, most_text_bands);
     const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
@@ -234,13 +234,13 @@ Signs signs(Charset charset) {
     return charset == Charset::braille ? Signs{{"○", "●", "◆", "◇"}, "×", "━"} : Signs{{"o", "@", "#", "%"}, "x", "="};
 }
 
-/// Zero lines, circles, curves, marks.
+/// Draws zero lines, circles, curves and marks.
 void draw(Canvas& canvas, const Figure& figure, const Projection& projection, const std::vector<double>& circles,
           Charset charset) {
     if (figure.axes) {
         draw_background(canvas, figure, projection, circles);
     }
-    // Who comes first to a cell has it: what is behind comes last.
+    // The first in a cell wins, so background curves come last.
     std::vector<std::size_t> order = drawing_order(figure);
     const auto front =
         std::find_if(order.begin(), order.end(), [&](std::size_t i) { return !figure.curves[i].behind; });
@@ -276,8 +276,8 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
 
 // ---- lines of text with known widths and colours
 
-// The terminal's own colours: it knows its background. The first curve is plain; none of the others needs a good eye
-// for red and green, since letters tell the curves apart, too.
+// The terminal's own colours, which suit its background. The first curve is plain; red and green come last, and letters
+// identify the curves as well.
 constexpr std::array<std::string_view, 6> escapes{"\x1b[39m", "\x1b[36m", "\x1b[33m",
                                                   "\x1b[35m", "\x1b[32m", "\x1b[31m"};
 constexpr std::string_view reset = "\x1b[0m";
@@ -286,7 +286,7 @@ std::size_t place(std::uint8_t colour) {
     return colour == 0 ? 0 : (colour - 1U) % escapes.size();
 }
 
-/// A colour is 0 for none, 1, 2, ... for the palette of curves.
+/// A line of coloured text; colour 0 is none, 1, 2, ... the palette of curves.
 class TextLine {
 public:
     explicit TextLine(bool colours) : colours_(colours) {}
@@ -309,7 +309,7 @@ public:
         }
         width_ += line.width();
     }
-    /// Blanks up to this width; nothing when it is wider already.
+    /// Adds blanks up to this width.
     void pad(std::size_t width) {
         if (width > width_) {
             add(std::string(width - width_, ' '));
@@ -341,7 +341,7 @@ private:
 
 using TextBlock = std::vector<TextLine>;
 
-/// Blocks beside each other, two columns between them.
+/// Blocks side by side, two columns apart.
 TextBlock beside(const std::vector<TextBlock>& blocks, bool colours) {
     std::size_t height = 0;
     for (const TextBlock& block : blocks) {
@@ -367,7 +367,7 @@ TextBlock beside(const std::vector<TextBlock>& blocks, bool colours) {
     return all;
 }
 
-/// All lines, each ended by a newline and without blanks at its end.
+/// All lines with newlines, without trailing blanks.
 std::string text_of(const TextBlock& block) {
     std::string text;
     for (const TextLine& line : block) {
@@ -378,16 +378,16 @@ std::string text_of(const TextBlock& block) {
 
 // ---- the legend
 
-/// Words as such a text can show them.
+/// Words in the charset of the text.
 std::string shown_in(Charset charset, std::string_view words) {
     const std::string clean = text::displayable(words);
     return charset == Charset::braille ? clean : text::in_ascii(clean);
 }
 
-/// A line of the legend: what a letter, sign or shade stands for.
+/// A line of the legend: a letter, sign or shade with its meaning.
 struct TextEntry {
     std::string text;
-    std::uint8_t ink;  ///< of its curve; 0 for what is none
+    std::uint8_t ink;  ///< ink of its curve; 0: not a curve
 };
 
 std::vector<TextEntry> text_legend(const Figure& figure, Charset charset) {
@@ -419,8 +419,8 @@ std::vector<TextEntry> text_legend(const Figure& figure, Charset charset) {
 
 // ---- the picture
 
-constexpr int narrowest_panel = 38;  // columns; what has less stands under its neighbour
-constexpr int letters_at_end = 3;    // columns to the right of the canvas for the letters of curves
+constexpr int narrowest_panel = 38;  // columns; narrower panels are stacked
+constexpr int letters_at_end = 3;    // columns right of the canvas for letters of curves
 
 constexpr std::size_t most_legend_lines = 5;
 
@@ -434,7 +434,7 @@ Frame frame_of(Charset charset) {
 
 class TextPlot {
 public:
-    /// With at least `label_room` columns for the numbers of the vertical axis.
+    /// `label_room`: minimum columns for the numbers of the vertical axis.
     TextPlot(const Figure& figure, const TextFormat& format, std::size_t label_room = 0)
         : figure_(figure),
           format_(format),
@@ -443,7 +443,7 @@ public:
           frame_(frame_of(format.charset)),
           label_room_(label_room) {}
 
-    /// How many columns those need.
+    /// The columns that these numbers need.
     [[nodiscard]] std::size_t label_width() {
         lay_out();
         return label_width_;
@@ -470,7 +470,7 @@ private:
     [[nodiscard]] TextLine empty_line() const { return TextLine(format_.colours); }
     [[nodiscard]] std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
 
-    /// The room depends on the tick labels, and how many ticks there are on the room: again until both agree.
+    /// Label width and number of ticks depend on each other: repeats until they agree.
     void lay_out() {
         for (int attempt = 0; attempt < 4; ++attempt) {
             const std::size_t width_before = label_width_;
@@ -513,7 +513,7 @@ private:
         return shown(figure_.y.label + (y_ticks_.offset.empty() ? "" : " (" + y_ticks_.offset + ")"));
     }
 
-    /// The label of the vertical axis and the legend, on as few lines as they need, but not on many.
+    /// The label of the vertical axis and the legend, on a limited number of lines.
     [[nodiscard]] TextBlock head_lines() const {
         TextBlock lines;
         TextLine line = empty_line();
@@ -556,7 +556,7 @@ private:
         return line;
     }
 
-    /// The letters at the right edge, where the curves end.
+    /// The letters at the right edge at the ends of the curves.
     [[nodiscard]] std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
         std::vector<std::vector<std::uint8_t>> rows(static_cast<std::size_t>(rows_));
         for (std::size_t i = 0; letters_at_ends(figure_) && i < figure_.curves.size(); ++i) {
@@ -627,7 +627,7 @@ private:
             const std::size_t middle = label_width_ + 2 + column;
             const std::size_t start = middle - std::min(middle, text.size() / 2);
             const bool fits = start + text.size() <= static_cast<std::size_t>(format_.columns);
-            if (fits && (numbers.width() == 0 || start > numbers.width())) {  // else it would touch its neighbour
+            if (fits && (numbers.width() == 0 || start > numbers.width())) {  // otherwise it would touch its neighbour
                 numbers.pad(start);
                 numbers.add(text);
             }
@@ -674,18 +674,18 @@ private:
 
     const Figure& figure_;
     const TextFormat& format_;
-    const View seen_;  // of the figure
+    const View seen_;  // the figure's
     View view_;        // on the canvas
     Frame frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;
     std::size_t label_room_;
     std::size_t label_width_ = 0;
-    int columns_ = 0, rows_ = 0;  // of the canvas
-    Box box_{1, 1};               // of the canvas in dots
+    int columns_ = 0, rows_ = 0;  // size of the canvas
+    Box box_{1, 1};               // size of the canvas in dots
 };
 
-/// Figures one below the other, their axes, too.
+/// Figures one below the other with aligned axes.
 TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {
     constexpr int least_rows = 8;
     const int count = static_cast<int>(figures.size());
@@ -707,7 +707,7 @@ TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {
 }  // namespace
 
 std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
-    constexpr double dots = 2;  // of a column, in braille
+    constexpr double dots = 2;  // dots of a column in braille
     const std::vector<Figure> figures = with_envelopes(with_bands(given, dots * format.columns),
                                                        (format.charset == Charset::ascii ? 1 : dots) * format.columns);
     TextFormat each = format;

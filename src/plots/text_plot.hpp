@@ -1,4 +1,4 @@
-// Figures as text: braille or ASCII, for a terminal, a pipe or a text file.
+// Figures as text, braille or ASCII, for a terminal, a pipe or a text file.
 #pragma once
 
 #include <span>
@@ -11,12 +11,13 @@ namespace dinal::plots {
 
 struct TextFormat {
     int columns = 79;
-    int rows = 22;  ///< of a picture, all that is around it included
+    int rows = 22;  ///< rows of the whole picture
     Charset charset = Charset::braille;
-    bool colours = false;  ///< escape sequences, for a terminal only
+    bool colours = false;  ///< whether to use escape sequences; for a terminal only
 };
 
-/// The lines of the picture. Several figures stand side by side where the columns suffice, else one under the other.
+/// The lines of the picture. Several figures stand side by side if there are enough columns, otherwise one below the
+/// other.
 std::string text_plot(std::span<const Figure> given, const TextFormat& format);
 
 }  // namespace dinal::plots

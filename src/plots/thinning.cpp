@@ -14,13 +14,13 @@ class Projected {
 public:
     Projected(const Curve& curve, const Paper& paper) : curve_(curve), paper_(paper) {}
 
-    /// Whether the place has a point: it is finite, and positive on a logarithmic axis.
+    /// Returns whether the point exists: finite, and positive on logarithmic axes.
     [[nodiscard]] bool has(std::size_t i) const {
         return paper_.view.x.has(curve_.x.values[i]) && paper_.view.y.has(curve_.y.values[i]) &&
                (!curve_.base || paper_.view.y.has(curve_.base->values[i]));
     }
     [[nodiscard]] Point operator()(std::size_t i) const {
-        constexpr double far = 1e7;  // pixels; what is further away is far enough
+        constexpr double far = 1e7;  // pixels; larger distances are clamped
         return {std::clamp(paper_.view.x(curve_.x.values[i]) * paper_.pixels.width, -far, far),
                 std::clamp(paper_.view.y(curve_.y.values[i]) * paper_.pixels.height, -far, far)};
     }
@@ -30,8 +30,8 @@ private:
     const Paper& paper_;
 };
 
-/// Leaves out the points between which the curve is straight to within the tolerance: from a corner, a point can be
-/// reached by straight lines of a certain range of directions, and the range narrows with each point on the way.
+/// Drops points on straight parts, within the tolerance: straight lines from a corner reach a point in a range of
+/// directions, which narrows with each further point.
 class Corners {
 public:
     Corners(std::vector<std::size_t>& kept, double tolerance) : kept_(kept), tolerance_(tolerance) {}
@@ -72,7 +72,7 @@ public:
         last_ = i;
         last_point_ = point;
     }
-    /// The piece ends here; the next point begins another one.
+    /// Ends the piece; the next point begins another one.
     void finish() {
         if (open_ && last_ != kept_.back()) {
             kept_.push_back(last_);
@@ -99,7 +99,7 @@ private:
     double middle_ = 0, low_ = 0, high_ = 0, reach_ = 0;
 };
 
-/// The points of one column of pixels that are drawn.
+/// The points drawn in one column of pixels.
 struct ColumnOfPixels {
     static constexpr auto none = std::numeric_limits<std::size_t>::max();
     std::size_t first = none, last = none, lowest = none, highest = none;
@@ -146,7 +146,7 @@ std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
             continue;
         }
         const double x = paper.view.x(curve.x.values[i]) * columns;
-        // All that is left of the paper is one column, and so is all that is right of it.
+        // Everything left of the paper is one column, and everything right of it another.
         const double own = std::floor(std::clamp(x, -1.0, columns + 1));
         if (own != current) {
             column.flush(kept);
@@ -159,7 +159,7 @@ std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
 }
 
 std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
-    const double tolerance = 0.1;  // of a pixel; up to twice of that is lost
+    const double tolerance = 0.1;  // pixels; the error is at most twice this
     const Projected project(curve, paper);
     std::vector<std::size_t> corners;
     Corners piece(corners, tolerance);
@@ -175,7 +175,7 @@ std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
     return corners;
 }
 
-/// The first point in each square of the sheet.
+/// The first point in each pixel.
 std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
     const Projected project(curve, paper);
     std::vector<std::size_t> kept;
@@ -194,7 +194,7 @@ std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
     return kept;
 }
 
-/// A line or an area whose x never falls.
+/// Returns whether it is a line or area with x that never decreases.
 bool has_columns(const Curve& curve) {
     const auto x = curve.x.values.first(curve.size());
     double before = -std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Which points of a curve a sheet of paper can show: the picture stays the same, the file stays small.
+// Selects the points of a curve that paper can show: the picture stays the same, the file small.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,15 @@
 
 namespace dinal::plots {
 
-/// The sheet in pixels: half a pixel is an error that nobody sees.
+/// The sheet in pixels; errors below half a pixel are invisible.
 struct Paper {
     View view;
     Box pixels;
 };
 
-/// The places in the curve of the points to draw, in order; a place without a point lifts the pen. With columns: the
-/// first, last, lowest and highest point of each column of pixels (as good as all of them, extremes included). Of
-/// another line: the corners of one that is nowhere further from the curve than a fifth of a pixel. Of an area: those
-/// of both its edges. Of points: one in each pixel.
+/// The indices of the points to draw, in order; an index without a point lifts the pen. Curves with columns keep the
+/// first, last, lowest and highest point in each column of pixels, which draws the same. Other lines keep the corners
+/// of a polyline within a fifth of a pixel; areas those of both edges; points one for each pixel.
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
 
 }  // namespace dinal::plots

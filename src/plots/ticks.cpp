@@ -8,16 +8,16 @@
 namespace dinal::plots {
 namespace {
 
-constexpr int most_digits = 6;  // of a label, before it is written another way
+constexpr int most_digits = 6;  // digits of a label; longer ones use another notation
 constexpr double most_divisions = 1000;
 
-/// The decimal exponent: 3 for 1000 to 9999. From the text, because log10(1000) may round to 2.999...
+/// The decimal exponent, 3 for 1000 to 9999; from the text, because log10(1000) may round to 2.999...
 int exponent_of(double value) {
     const std::string text = fmt::format("{:.0e}", value);
     return std::stoi(text.substr(text.find('e') + 1));
 }
 
-/// The smallest 1, 2 or 5 times a power of ten that is not below `least`.
+/// The smallest 1, 2 or 5 times a power of ten that is at least `least`.
 double round_step(double least) {
     const int exponent = exponent_of(least) - 1;
     for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
@@ -66,7 +66,7 @@ std::vector<double> powers_of_ten(Interval range, int most) {
     return at.size() > 2 ? at : multiples(round_step(range.length() / most), range);
 }
 
-/// "2e-9" of 2e-09, "1.5e6" of 1.500e+06.
+/// "2e-9" rather than 2e-09, "1.5e6" rather than 1.500e+06.
 std::string scientific(double value, int digits) {
     const std::string text = fmt::format("{:.{}e}", value, std::max(digits, 0));
     const std::size_t e = text.find('e');
@@ -80,7 +80,7 @@ std::string scientific(double value, int digits) {
     return fmt::format("{}e{}", head, std::stoi(text.substr(e + 1)));
 }
 
-/// The same number of decimals for all, as many as the finest of the gaps needs.
+/// All with the number of decimals that the finest gap needs.
 std::vector<std::string> fixed(const std::vector<double>& at, int decimals) {
     std::vector<std::string> text;
     text.reserve(at.size());
@@ -99,8 +99,8 @@ std::vector<std::string> in_powers(const std::vector<double>& at, int finest) {
     return text;
 }
 
-/// The exponent of the last digit that is needed to write all of them: from the numbers themselves, since a user's own
-/// ticks have no common step. No more than four digits of the length of the axis: pi/2 is 1.5708 on an axis of 5.
+/// The exponent of the last digit needed for all numbers, which may have no common step if a user chose them. At most
+/// four digits of the axis's length: pi/2 is 1.5708 on an axis of 5.
 int finest_digit(const std::vector<double>& at, double length) {
     const int least = exponent_of(length) - 4;
     for (int digit = exponent_of(length) + 1; digit > least; --digit) {
@@ -128,7 +128,7 @@ void label_linear(Ticks& ticks, Interval range) {
         std::vector<double> rest = ticks.at;
         for (double& value : rest) {
             const double digit = std::pow(10.0, finest);
-            value = std::round((value - offset) / digit) * digit + 0.0;  // the roundings of large numbers left out
+            value = std::round((value - offset) / digit) * digit + 0.0;  // rounds off the errors of large numbers
         }
         ticks.offset = fmt::format("{:+.15g}", offset);
         ticks.text = finest < -5 ? in_powers(rest, finest) : fixed(rest, std::max(0, -finest));
@@ -139,7 +139,7 @@ void label_linear(Ticks& ticks, Interval range) {
     }
 }
 
-/// Plainly where all are of a size for that, else all but 1 in powers of ten.
+/// Plain numbers if all are of moderate size, otherwise powers of ten except for 1.
 std::vector<std::string> logarithmic(const std::vector<double>& at) {
     const bool plain = std::all_of(at.begin(), at.end(), [](double value) { return value >= 1e-3 && value < 1e5; });
     std::vector<std::string> text;
@@ -164,7 +164,7 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
     } else if (scale.logarithmic()) {
         ticks.at = powers_of_ten(range, most);
     } else {
-        // One tick gives no scale.
+        // A single tick shows no scale.
         double least = range.length() / std::max(most, 1);
         do {
             ticks.at = multiples(round_step(least), range);

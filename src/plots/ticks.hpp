@@ -1,4 +1,4 @@
-// Where the ticks of an axis stand and what is written beside them.
+// The ticks of an axis and their labels.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace dinal::plots {
 struct Ticks {
     std::vector<double> at;
     std::vector<std::string> text;  ///< "-0.5", "2e-9"
-    /// What must be added to every text, "" almost always: "+1000000" where all numbers begin alike.
+    /// Added to every label, usually "": "+1000000" if all numbers begin alike.
     std::string offset;
 };
 
-/// The ticks the axis asks for, else round numbers (1, 2 or 5 times a power of ten) in at most `most` + 1 places.
+/// The axis's own ticks, otherwise round ones (1, 2 or 5 times a power of ten) at no more than `most` + 1 places.
 Ticks ticks_of(const Axis& axis, const Scale& scale, int most);
 
-/// The radii of a figure's circles: through the ticks of the axis that has more of them.
+/// The radii of a figure's circles, through the ticks of the axis with more ticks.
 std::vector<double> circles_of(const Figure& figure, const Ticks& x, const Ticks& y);
 
 }  // namespace dinal::plots

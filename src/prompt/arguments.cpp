@@ -17,7 +17,7 @@ namespace {
 constexpr double longest = 1e8;                         // seconds: 3 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 
-/// "10", "0.5"; 0 when it is no positive number.
+/// "10", "0.5"; 0 if it is not a positive number.
 double seconds_of(std::string_view text) {
     double seconds = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), seconds);
@@ -25,17 +25,17 @@ double seconds_of(std::string_view text) {
     return good && seconds > 0 && seconds <= longest ? seconds : 0;
 }
 
-/// "256M", "1G", "500K", "1000000"; 0 when it is no size.
+/// "256M", "1G", "500K", "1000000"; 0 if it is not a size.
 std::size_t size_of(std::string_view text) {
     std::size_t size = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), size);
     const std::string_view letter = text.substr(static_cast<std::size_t>(parsed.ptr - text.data()));
-    const std::size_t unit = letter.empty() ? 0 : std::string_view("KMG").find(letter) + 1;  // 0 when there is no such
+    const std::size_t unit = letter.empty() ? 0 : std::string_view("KMG").find(letter) + 1;  // 0: unknown letter
     const bool good = parsed.ec == std::errc() && letter.size() <= 1 && (letter.empty() || unit > 0);
     return good && size <= largest >> (10 * unit) ? size << (10 * unit) : 0;
 }
 
-// ---- what an option does; false when the value that stands after it will not do
+// ---- effects of options; they return false if the value is invalid
 
 template <auto... flags>
 bool set(Arguments& arguments, std::string_view /*value*/) {
@@ -49,7 +49,7 @@ bool take(Arguments& arguments, std::string_view value) {
     return !value.empty();
 }
 
-/// What is asked for instead of a run, and of whom or of what.
+/// Requests something instead of a run, with an optional value.
 template <Request request>
 bool ask(Arguments& arguments, std::string_view value) {
     arguments.request = request;
@@ -82,15 +82,15 @@ bool answer_on(Arguments& arguments, std::string_view value) {
 enum class Takes {
     nothing,
     value,   ///< --max-time 10 or --max-time=10
-    joined,  ///< --manual or --manual=runs, and what follows is not looked at
-    all,     ///< nothing, and likewise
+    joined,  ///< --manual or --manual=runs; the rest of the line is ignored
+    all,     ///< no value; the rest of the line is ignored
 };
 
 struct CommandLineOption {
     std::string_view name;
     bool (*carry_out)(Arguments& arguments, std::string_view value);
     Takes takes = Takes::nothing;
-    const char *needs = "", *example = "";  ///< what must stand after it
+    const char *needs = "", *example = "";  ///< description and example of its value
 };
 
 constexpr CommandLineOption options[] = {
@@ -118,7 +118,7 @@ constexpr CommandLineOption options[] = {
     {"--kernel", answer_on, Takes::value},
 };
 
-/// The option that the word is, "--max-time" also for "--max-time=10"; nullptr when it is none of these.
+/// The option for a word, "--max-time" also for "--max-time=10"; nullptr if unknown.
 const CommandLineOption* option_of(std::string_view word) {
     const auto* found = std::find_if(std::begin(options), std::end(options), [word](const CommandLineOption& option) {
         return option.name ==
@@ -127,7 +127,7 @@ const CommandLineOption* option_of(std::string_view word) {
     return found == std::end(options) ? nullptr : found;
 }
 
-/// Carries out the option at place i, which goes to its value if that stands in a word of its own.
+/// Applies the option at index i; advances i to its value if that is a separate word.
 std::optional<text::Error> carry_out(const CommandLineOption& option, Arguments& arguments, std::size_t& i) {
     std::string_view value = arguments.words[i];
     const bool joined = value.size() > option.name.size();
@@ -139,7 +139,7 @@ std::optional<text::Error> carry_out(const CommandLineOption& option, Arguments&
                                    value.empty() ? "" : fmt::format("; '{}' is not one", value))};
 }
 
-/// What safe mode allows where the user has not said otherwise.
+/// Sets the safe-mode limits that the user has not given.
 void complete_safe_limits(lua::ScriptLimits& limits) {
     limits.memory = limits.memory > 0 ? limits.memory : lua::safe_limits.memory;
     limits.seconds = limits.seconds > 0 ? limits.seconds : lua::safe_limits.seconds;
@@ -156,10 +156,10 @@ text::Error no_value(char option) {
                           : "option -l needs the name of a module after it, for example -l lab"};
 }
 
-/// What is not possible together; what safe mode brings with it.
+/// Rejects incompatible options, and adds those that safe mode implies.
 std::optional<text::Error> settle(Arguments& arguments) {
     if (arguments.report) {
-        arguments.safe = arguments.strict = true;  // a page to hand in comes about under the rules that it is marked by
+        arguments.safe = arguments.strict = true;  // a page to hand in is made under the rules of its marking
     }
     if (!arguments.safe) {
         return std::nullopt;
@@ -199,7 +199,7 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
         } else if (word[1] == 'e' || word[1] == 'l') {
             const char* value = arguments.words[i] + 2;
             if (*value == '\0') {
-                // NOTE: as in lua, a value that begins with a dash must be joined to its option: -e-x.
+                // NOTE: as in lua, a value with a leading dash must be joined to its option: -e-x.
                 if (i + 1 == arguments.words.size() || arguments.words[i + 1][0] == '-') {
                     return no_value(word[1]);
                 }

@@ -1,4 +1,4 @@
-// The command line: the options of `lua`, read as `lua` reads them, and those in words, such as --help and --safe.
+// The command line: the options of `lua`, parsed like lua's, and long options such as --help and --safe.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ namespace dinal::prompt {
 
 enum class Request { run, help, version, manual, lab_start, lab_solutions, test_sheet, mark, jupyter_install };
 
-/// -e, -l or -W: they are carried out in the order in which they stand.
+/// -e, -l or -W, which are executed in the order given.
 struct StartStep {
     char option;
-    const char* value;  ///< of -e and -l
+    const char* value;  ///< text for -e, module for -l
 };
 
 struct Arguments {
@@ -28,22 +28,22 @@ struct Arguments {
     bool safe = false;                ///< --safe
     bool report = false;              ///< --report
     bool strict = false;              ///< --strict
-    std::optional<int> kernel;        ///< --kernel: the descriptor for its answers
-    lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
-    std::string lab_marks;            ///< --lab-marks: where answers in the lab are noted; empty: nowhere
-    std::string sheets;               ///< --sheets: a folder with sheets that are not built in
-    std::string student;              ///< --lab-solutions: whose; --test-sheet: the file; --mark: the folder
+    std::optional<int> kernel;        ///< --kernel: descriptor for its answers
+    lua::ScriptLimits limits;         ///< --max-memory, --max-time; always set in safe mode
+    std::string lab_marks;            ///< --lab-marks: file for answers in the lab; empty: none
+    std::string sheets;               ///< --sheets: folder of additional sheets
+    std::string student;              ///< --lab-solutions: student number; --test-sheet: file; --mark: folder
     std::vector<StartStep> steps;
     std::vector<const char*> words;  ///< the whole command line
-    std::size_t script = 0;          ///< its place among the words; words.size() when there is none
+    std::size_t script = 0;          ///< index of the script in `words`; words.size() without a script
 
     [[nodiscard]] bool has_script() const { return script < words.size(); }
 };
 
-/// Fails with a sentence about the first option that is not known or lacks its value.
+/// Fails for the first option that is unknown or lacks its value.
 text::Expected<Arguments> parse_arguments(int count, const char* const* words);
 
-/// What --help prints.
+/// The output of --help.
 std::string help_text();
 
 }  // namespace dinal::prompt

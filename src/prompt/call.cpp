@@ -17,8 +17,8 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::size_t longest_message = 10'000;  // bytes; more only hides the rest
-constexpr std::size_t inner_frames = 10;         // as many as luaL_traceback shows, or so
+constexpr std::size_t longest_message = 10'000;  // bytes; longer messages are cut
+constexpr std::size_t inner_frames = 10;         // about as many as luaL_traceback shows
 constexpr std::size_t outer_frames = 4;
 
 struct Frame {
@@ -29,7 +29,7 @@ struct Frame {
 std::string function_name(const lua_Debug& info) {
     const std::string_view kind = info.namewhat;
     if (*info.what == 'm') {
-        // Of load(), which names it by its text in brackets; or by a name that the script has given it.
+        // A chunk of load() is named by its text in brackets, or by a name chosen by the script.
         const bool in_file = *info.source == '@';
         return fmt::format("in {} {}", in_file ? "file" : "what load() made of", info.short_src);
     }
@@ -42,7 +42,7 @@ std::string function_name(const lua_Debug& info) {
     return fmt::format("in {} '{}'", kind == "method" || kind == "metamethod" ? kind : "function", info.name);
 }
 
-/// The Lua function at this level of the call stack joins the frames; C functions do not.
+/// Adds the Lua function at this level of the call stack; skips C functions.
 void add_frame(lua_State* L, lua_Debug& info, std::vector<Frame>& frames) {
     lua_getinfo(L, "Snl", &info);
     if (*info.what != 'C') {
@@ -50,7 +50,7 @@ void add_frame(lua_State* L, lua_Debug& info, std::vector<Frame>& frames) {
     }
 }
 
-/// How many levels the stack has. NOTE: lua_getstack takes time in proportion to the level, hence no counting.
+/// The number of levels of the stack. NOTE: lua_getstack takes time proportional to the level, so bisection is used.
 int stack_height(lua_State* L) {
     lua_Debug info;
     int above = 1;
@@ -65,7 +65,7 @@ int stack_height(lua_State* L) {
     return above;
 }
 
-/// The Lua functions that run, innermost first. In a deep recursion those in the middle become a frame without place.
+/// The running Lua functions, innermost first. In a deep recursion a frame without place replaces those in the middle.
 std::vector<Frame> lua_frames(lua_State* L) {
     std::vector<Frame> frames;
     lua_Debug info;
@@ -105,7 +105,7 @@ int to_text(lua_State* L) {
     return 1;
 }
 
-/// What the error object says; when it cannot, its type must do, as in lua.
+/// The error object as text; if it has none, its type, as in lua.
 std::string message_of(lua_State* L) {
     const std::string type = luaL_typename(L, 1);
     if (lua_isstring(L, 1) == 0 && luaL_getmetafield(L, 1, "__tostring") == LUA_TNIL) {
@@ -118,7 +118,7 @@ std::string message_of(lua_State* L) {
     return speaks ? text : fmt::format("(error object is a {} value, and its __tostring failed: {})", type, text);
 }
 
-/// "a:1: a:1: a:1: oh" becomes "a:1: oh": each coroutine.wrap on the way out puts its position before the message.
+/// "a:1: a:1: a:1: oh" becomes "a:1: oh": each coroutine.wrap on the way out prepends its position.
 std::string without_repeated_head(const std::string& message) {
     const std::size_t end = message.find(": ");
     if (end == std::string::npos) {
@@ -156,7 +156,7 @@ int message_handler(lua_State* L) {
     return 1;
 }
 
-/// As a function that Lua can call; returns the chunk or the message, and the status.
+/// A Lua function that returns the loaded chunk or the message, and the status.
 int load_named(lua_State* L) {
     lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), lua::load_mode()));
     return 2;
@@ -175,22 +175,22 @@ int call(lua_State* L, int arguments, int results) {
         lua::settle_refusal();
     }
     lua_remove(L, function);
-    if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // also when a pcall was the last thing
+    if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // also if a pcall came last
         lua_settop(L, function - 1);
         lua_pushlstring(L, limit.data(), limit.size());
         return LUA_ERRRUN;
     }
-    if (status < 0) {  // a C++ exception that no binding caught: what is on the stack is not a message
+    if (status < 0) {  // an uncaught C++ exception: the stack has no message
         lua_pop(L, 1);
         lua_pushliteral(L, "internal error: a C++ exception reached Lua; please report it");
     }
     return status;
 }
 
-std::string told_error(lua_State* L, const char* file) {
+std::string load_error_text(lua_State* L, const char* file) {
     const lua::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);
-    // Lua's words are good but for bytecode, which its own program would not take either.
+    // Lua's words suit except for bytecode, which Lua's own program would refuse as well.
     if (text == "not enough memory" && lua::memory_limit() > 0) {
         return lua::limit_sentence(lua::Stop::memory, "");
     }

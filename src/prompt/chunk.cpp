@@ -25,21 +25,21 @@
 namespace dinal::prompt {
 namespace {
 
-// The variable keeps Lua from making a tail call of `return f(x)`, which would take f's name and place from messages.
+// The variable prevents a tail call of `return f(x)`, which would remove f's name and place from messages.
 constexpr std::string_view returning = "local dinal_prompt <close> = nil; return ";
 
 bool load(lua_State* L, const std::string& text) {
     return luaL_loadbufferx(L, text.data(), text.size(), prompt_chunk, "t") == LUA_OK;
 }
 
-/// Pops the function or the message.
+/// Compiles the text; pops the function or the message.
 bool loads(lua_State* L, const std::string& text) {
     const bool good = load(L, text);
     lua_pop(L, 1);
     return good;
 }
 
-/// "...\\" or "...\\z  "
+/// Returns whether a string continues on the next line: "...\\" or "...\\z  ".
 bool goes_on(std::string_view text) {
     if (text.ends_with('\\')) {
         return true;
@@ -48,10 +48,10 @@ bool goes_on(std::string_view text) {
     return last != std::string_view::npos && last > 0 && text.substr(last - 1, 2) == "\\z";
 }
 
-/// The message on the top of the stack says that the chunk ended too early.
+/// Returns whether the message on the top of the stack says that the chunk ended too early.
 bool ended_early(lua_State* L, std::string_view chunk) {
     const std::string_view message = lua::text_at(L, -1);
-    // A string in quotes ends on its line, unless a backslash takes the newline in.
+    // A quoted string ends on its line unless a backslash escapes the newline.
     return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || goes_on(chunk));
 }
 
@@ -59,7 +59,7 @@ std::string returned(std::string_view expression) {
     return std::string(returning).append(expression);
 }
 
-/// The text without the semicolons (and comments) at its end; the same text when there are none.
+/// The text without semicolons and comments at its end.
 std::string_view without_semicolons(std::string_view text) {
     const std::vector<lua::Token> all = lua::tokens(text);
     std::string_view result = text;
@@ -73,7 +73,7 @@ std::string_view without_semicolons(std::string_view text) {
     return result;
 }
 
-/// Where the last value of a text may begin: after a semicolon, and at each line. The last place comes first.
+/// The possible beginnings of the last value: after semicolons, and at lines. The last place comes first.
 std::vector<std::size_t> possible_cuts(const std::string& text) {
     std::vector<std::size_t> cuts;
     for (std::size_t cut = text.rfind('\n'); cut != std::string::npos && cut > 0; cut = text.rfind('\n', cut - 1)) {
@@ -88,8 +88,8 @@ std::vector<std::size_t> possible_cuts(const std::string& text) {
     return cuts;
 }
 
-/// A block whose last lines are an expression becomes one that returns it. Pushes the function when there is one.
-/// NOTE: `cautious` leaves alone lines that Lua may read as the rest of the line before: (f)(), "s", {...}, -x.
+/// Makes a block that ends in an expression return it; pushes the function and returns true if that is possible.
+/// NOTE: `cautious` skips lines that Lua may read as a continuation of the line before: (f)(), "s", {...}, -x.
 bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, bool cautious) {
     for (const std::size_t cut : possible_cuts(text)) {
         const std::size_t first = text.find_first_not_of(" \t\r\n", cut + 1);
@@ -111,7 +111,7 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
     return false;
 }
 
-/// The innermost bracket that is not closed.
+/// The innermost unclosed bracket.
 std::optional<lua::Token> open_bracket(std::string_view text) {
     std::vector<lua::Token> open;
     for (const lua::Token& token : lua::tokens(text)) {
@@ -128,7 +128,7 @@ char partner_of(char bracket) {
     return bracket == '(' ? ')' : bracket == '[' ? ']' : '}';
 }
 
-/// What the message on the top of the stack, of a chunk that ended too early, says is missing.
+/// The missing part, according to the message on the top of the stack about a chunk that ended too early.
 std::string what_is_missing(lua_State* L, std::string_view text) {
     const std::string message(lua::text_at(L, -1));
     const std::size_t line = message.find(':') + 1, words = message.find(": ") + 2;  // input:1: ...
@@ -139,13 +139,13 @@ std::string what_is_missing(lua_State* L, std::string_view text) {
         return open ? fmt::format("{} of line {} waits for {}", open->text, open->line, partner_of(open->text.front()))
                     : fmt::format("line {} goes on", number);
     }
-    if (parsed->opened.empty()) {  // on that line
+    if (parsed->opened.empty()) {  // the missing part is on that line
         return fmt::format("line {} waits for {}", number, parsed->expected);
     }
     return fmt::format("{} of line {} waits for {}", parsed->opened, parsed->opened_line, parsed->expected);
 }
 
-/// The words after `return`, when that is the first word.
+/// The words after an initial `return`.
 std::string_view without_return(std::string_view text) {
     const std::vector<lua::Token> all = lua::tokens(text);
     return !all.empty() && all.front().is("return") ? text.substr(all.front().end()) : text;
@@ -157,7 +157,7 @@ Chunk compile(lua_State* L, const std::string& text) {
     Chunk chunk{Compiled::ready, text, "", false};
     const std::string_view quiet = without_semicolons(text);
     chunk.silent = quiet.size() != text.size();
-    const bool equals = !text.empty() && text[0] == '=';  // = x, as in Lua 5.2 and before
+    const bool equals = !text.empty() && text[0] == '=';  // = x, as in Lua 5.2 and earlier
     const std::string_view expression = without_return(quiet.substr(equals ? 1 : 0));
     if (load(L, returned(expression))) {
         chunk.statements.clear();
@@ -185,7 +185,7 @@ Chunk compile(lua_State* L, const std::string& text) {
     return chunk;
 }
 
-bool only_looks(const Chunk& chunk) {
+bool only_reads_variable(const Chunk& chunk) {
     const std::vector<lua::Token> all = lua::tokens(chunk.expression);
     const auto code = std::count_if(all.begin(), all.end(),
                                     [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
@@ -204,7 +204,7 @@ void set_ans(lua_State* L, int index) {
     lua_pop(L, 1);
 }
 
-/// What a run that failed or was stopped has left behind, or nil.
+/// Pushes the partial result of a run that failed or was stopped, or nil.
 void push_partial(lua_State* L) {
     lua::push_dinal_table(L);
     lua_pushliteral(L, "partial");
@@ -212,7 +212,7 @@ void push_partial(lua_State* L) {
     lua_remove(L, -2);
 }
 
-/// What is done of a run goes on by itself; what is done of a sweep when it is called again.
+/// Prints how to continue: a partial run with run:continue, a partial sweep by calling it again.
 int print_partial(lua_State* L) {
     const lua::Documented kept = lua::documented(L, 1);
     const bool run = kept.owner != nullptr && kept.owner->name == std::string_view("run");
@@ -222,7 +222,7 @@ int print_partial(lua_State* L) {
     return 0;
 }
 
-/// Shows the values on top of `base` by one of the two functions above, which take them.
+/// Shows the values above `base` with one of the two functions above, which pop them.
 void show_by(lua_State* L, lua_CFunction function, int base) {
     luaL_checkstack(L, LUA_MINSTACK, "too many values to show");
     lua_pushcfunction(L, function);
@@ -232,13 +232,13 @@ void show_by(lua_State* L, lua_CFunction function, int base) {
     }
 }
 
-/// The values on top of `base` become ans (the first) and are shown.
+/// Sets ans to the first value above `base`, and shows all.
 void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_values) {
     if (lua_gettop(L) == base) {
         return;
     }
     const bool single = lua_gettop(L) == base + 1;
-    if (!lua_isnil(L, base + 1) && !only_looks(chunk)) {
+    if (!lua_isnil(L, base + 1) && !only_reads_variable(chunk)) {
         set_ans(L, base + 1);
     }
     const std::string element = single && lua_isnil(L, base + 1) ? element_notice(L, chunk) : "";
@@ -253,7 +253,7 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
     }
 }
 
-/// The part of a run that was done before the error is worth keeping. `before` is where the earlier one stands.
+/// Keeps the partial run before an error; `before` is the index of the previous one.
 void keep_partial_run(lua_State* L, int before) {
     push_partial(L);
     if (!lua_isnil(L, -1) && lua_rawequal(L, -1, before) == 0 && luaL_len(L, -1) > 0) {
@@ -262,9 +262,10 @@ void keep_partial_run(lua_State* L, int before) {
     }
 }
 
-/// Runs the function on the top of the stack and shows its values; false, and the message on the stack, when it failed.
+/// Runs the function on the top of the stack and shows its values; returns false with the message on the stack if it
+/// failed.
 bool run_and_show(lua_State* L, const Chunk& chunk, lua_CFunction show_values, Evaluated& result) {
-    const lua::InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
+    const lua::InterruptScope running(L);  // covers a Ctrl-C that arrives while values are shown
     if (call(L, 0, LUA_MULTRET) != LUA_OK) {
         return false;
     }

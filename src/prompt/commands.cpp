@@ -80,7 +80,7 @@ void load(Session& session, const std::string& file) {
     lua_State* L = session.L;
     lua_settop(L, 0);
     if (load_file(L, file.c_str()) != LUA_OK) {
-        say_error(told_error(L, file.c_str()));
+        say_error(load_error_text(L, file.c_str()));
     } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine) {
         if (!session.record.writes(file)) {
             session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));
@@ -100,7 +100,7 @@ void history(Session& session, const std::string& argument) {
     }
 }
 
-/// The text after the user has changed it in an editor; the reason if that fails.
+/// Lets the user change the text in an editor; returns the result or an error.
 text::Expected<std::string> edited(const std::string& text) {
     const char* editor = std::getenv("VISUAL");                                      // NOLINT(concurrency-mt-unsafe)
     editor = editor == nullptr || *editor == '\0' ? std::getenv("EDITOR") : editor;  // NOLINT(concurrency-mt-unsafe)
@@ -178,7 +178,7 @@ void show_folder(Session& /*session*/, const std::string& /*argument*/) {
     wrong ? say_error(":pwd: " + wrong.message()) : say_value(text::displayable(folder.string()) + "\n");
 }
 
-/// A folder as it is typed: ~ is that of the user.
+/// Expands ~ in a folder's name.
 std::string folder_of(const std::string& typed) {
     const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe)
     const bool at_home = home != nullptr && (typed.empty() || typed == "~" || typed.starts_with("~/"));
@@ -228,7 +228,7 @@ struct Command {
     std::string_view usage;
     std::string_view summary;
     void (*run)(Session&, const std::string&);
-    bool file = false;  // the argument is the name of a file
+    bool file = false;  // whether the argument is a file name
 };
 
 constexpr std::array<Command, 14> commands = {{
@@ -271,7 +271,7 @@ void help(Session& session, const std::string& argument) {
     say(text);
 }
 
-/// The command of that name, or the only one that begins so; nullptr when there is none.
+/// The command with this name, or with a unique beginning; otherwise nullptr.
 const Command* find(std::string_view name) {
     const auto* const exact =
         std::find_if(commands.begin(), commands.end(), [name](const Command& c) { return c.name == name; });
@@ -284,7 +284,7 @@ const Command* find(std::string_view name) {
     return only ? first : nullptr;
 }
 
-/// Somebody may write the name of a file as in Lua: :load "lab.lua".
+/// Accepts quotes around a file name as in Lua: :load "lab.lua".
 std::string without_quotes(const std::string& text) {
     const bool is_quoted =
         text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
@@ -353,7 +353,7 @@ Completion complete_command(lua_State* L, std::string_view before) {
 
 namespace {
 
-/// Pushes nothing. The entry for what the words are, if they are an expression of the user's that we know.
+/// The help on an expression of ours; pushes nothing.
 std::string entry(const Meaning& meaning, const terminal::Display& screen) {
     if (meaning.kind == Meaning::Kind::member && meaning.section != nullptr) {
         return help::member_text(*meaning.section, *meaning.member, screen);

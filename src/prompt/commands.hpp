@@ -1,4 +1,4 @@
-// The commands of the prompt, `:help` and its like. Such a line is never valid Lua.
+// The commands of the prompt, such as `:help`. A command is never valid Lua.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@ namespace dinal::prompt {
 
 struct Session;
 
-/// A line that begins with a colon (but ::label:: is Lua) or with a question mark, or ends with one.
+/// Returns whether the line begins with a colon (but ::label:: is Lua), or begins or ends with a question mark.
 bool is_command(std::string_view line);
 
 void run_command(Session& session, const std::string& line);
 
-/// Tab in a line that begins with a colon.
+/// Completion of a line that begins with a colon.
 Completion complete_command(lua_State* L, std::string_view before);
 
-// ?name and name? at the prompt: help, by what the name stands for now, else by the name itself.
+// ?name and name? at the prompt: help on the present value of the name, otherwise on the name.
 
-/// A line that begins or ends with a question mark, which Lua does not have.
+/// Returns whether the line begins or ends with a question mark, which Lua does not use.
 bool is_question(std::string_view line);
 
-/// The help for what stands in the line, which ends with a line end.
+/// The help for the question in the line, with a final newline.
 std::string answer_to(lua_State* L, std::string_view line);
 
 }  // namespace dinal::prompt

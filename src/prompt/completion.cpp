@@ -18,7 +18,7 @@
 namespace dinal::prompt {
 namespace {
 
-/// Those that begin with the word, sorted.
+/// The names that begin with the word, sorted.
 std::vector<std::string> fitting(std::vector<std::string> names, std::string_view word) {
     std::erase_if(names, [word](const std::string& name) { return !name.starts_with(word); });
     std::sort(names.begin(), names.end());
@@ -31,7 +31,7 @@ std::string bracket_after(std::string_view signature) {
     return bracket == '{' ? "{ " : "(";
 }
 
-/// What comes after a name that holds the value on the top: the bracket of a call, or nothing.
+/// The text after a name for the value on the top: the bracket of a call, or nothing.
 std::string suffix(lua_State* L) {
     if (const lua::Documented found = lua::documented(L, -1); found.member != nullptr) {
         return bracket_after(found.member->doc.signature);
@@ -48,7 +48,7 @@ void add_members(const lua::Class& description, char separator, bool calls, std:
     }
 }
 
-/// Names that may stand behind the value on the top and a separator.
+/// Adds the names that may follow the value on the top and a separator.
 void add_fields(lua_State* L, char separator, bool calls, std::vector<std::string>& names) {
     const int value = lua_gettop(L);
     for (const std::string& name : errors::member_names(L)) {
@@ -74,7 +74,7 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     const Meaning owner = meaning(L, typed.owner());
     const help::Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
     if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
-        held = help::result_class(owner.member->doc.signature);
+        held = help::section_of_result(owner.member->doc.signature);
     }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
@@ -91,7 +91,7 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     return names;
 }
 
-/// What is documented about the function of ours that is called; nullptr when it is none.
+/// The documentation of our function in an open call, or nullptr.
 const lua::Doc* called_doc(lua_State* L, const OpenCall& call) {
     const int top = lua_gettop(L);
     const Meaning function = meaning(L, call.function);
@@ -99,10 +99,10 @@ const lua::Doc* called_doc(lua_State* L, const OpenCall& call) {
     return function.kind == Meaning::Kind::member ? &function.member->doc : nullptr;
 }
 
-/// The table that the cursor is in.
+/// The table that contains the cursor.
 struct OpenTable {
-    std::span<const text::Option> options = {};  ///< its fields; none when they are not known
-    bool list = false;                           ///< of tables
+    std::span<const text::Option> options = {};  ///< its fields; empty if unknown
+    bool list = false;                           ///< whether it is a list of tables
 };
 
 OpenTable open_table(lua_State* L, const OpenCall& call) {
@@ -142,12 +142,12 @@ std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
     return names;
 }
 
-/// Functions of ours that make an object of the class.
+/// Our functions that make an object of the class.
 std::vector<std::string> constructors(std::string_view name) {
     std::vector<std::string> calls;
     for (const help::Section& section : help::sections()) {
         for (const lua::Member& member : section.description->members) {
-            const help::Section* made = help::result_class(member.doc.signature);
+            const help::Section* made = help::section_of_result(member.doc.signature);
             if (member.kind == lua::Kind::function && made != nullptr && made->description->name == name) {
                 calls.push_back(help::written_name(section, member) + bracket_after(member.doc.signature));
             }
@@ -156,7 +156,7 @@ std::vector<std::string> constructors(std::string_view name) {
     return calls;
 }
 
-/// What the value of an option may be, as far as its row tells. `quote` stands around choices.
+/// The possible values of an option according to its row. `quote` surrounds choices.
 std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::string_view quote) {
     std::vector<std::string> values;
     for (const text::Option& option : open_table(L, call).options) {
@@ -179,7 +179,7 @@ std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::
     return values;
 }
 
-/// Whether a text that is typed there may be the name of a file: of our functions only those take one that say so.
+/// Returns whether a string at this place may be a file name: of our functions, if their documentation says so.
 bool takes_file(lua_State* L, const OpenCall& call) {
     const lua::Doc* doc = called_doc(L, call);
     if (doc == nullptr) {
@@ -190,7 +190,7 @@ bool takes_file(lua_State* L, const OpenCall& call) {
                : call.option == "file";
 }
 
-/// Globals, keywords, and the names that the chunk itself uses.
+/// Globals, keywords, and names used by the chunk itself.
 std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool calls) {
     std::vector<std::string> names;
     lua_pushglobaltable(L);
@@ -239,7 +239,7 @@ Completion complete(lua_State* L, std::string_view before) {
         const std::vector<std::string> of_options = help::help_option_names();
         names.insert(names.end(), of_options.begin(), of_options.end());
         names = fitting(std::move(names), word);
-        for (std::string& name : names) {  // the editor replaces only the last word
+        for (std::string& name : names) {  // the editor replaces the last word only
             name.erase(0, last == std::string_view::npos ? 0 : last + 1);
         }
         return {names, false};
@@ -362,7 +362,7 @@ void TypedText::find_cursor(std::string_view before) {
     }
 }
 
-/// The expression that ends before token `end`: a name, fields, calls, brackets. Empty when none does.
+/// The expression that ends before token `end`: a name, fields, calls, brackets. Empty if there is none.
 std::span<const lua::Token> TypedText::expression_before(std::size_t end) const {
     std::size_t begin = end;
     while (begin > 0) {
@@ -406,8 +406,8 @@ std::vector<std::size_t> TypedText::open_brackets() const {
     return open;
 }
 
-/// How the table that begins at one bracket stands in what begins at another: under which name, "" without one. None
-/// when it is part of an expression there.
+/// The name under which a table, given by its bracket, is a field of an outer one; "" for a list entry. None if it is
+/// part of an expression.
 std::optional<std::string_view> TypedText::name_of_table(std::size_t bracket, std::size_t outer) const {
     const auto separates_items = [&](std::size_t i) {
         return i == outer || tokens_[i].is(",") || (tokens_[i].is(";") && tokens_[outer].is("{"));
@@ -470,7 +470,7 @@ namespace {
 
 constexpr int most_metatables = 10;  // an __index may lead to itself
 
-/// One that means what stands between its quotes.
+/// Returns whether a string literal has no escapes.
 bool is_plain_string(const lua::Token& token) {
     return token.kind == lua::TokenKind::string && !token.open && token.text.front() != '[' &&
            token.text.find('\\') == std::string_view::npos;
@@ -483,14 +483,13 @@ const lua::Member* member_of(const lua::Class& description, std::string_view nam
     return found == description.members.end() ? nullptr : &*found;
 }
 
-/// As a function that Lua can call: what is in a field of an object of ours.
+/// A Lua function that reads a field of an object of ours.
 int field_of_object(lua_State* L) {
     lua_gettable(L, 1);
     return 1;
 }
 
-/// Replaces the object of ours and the key on the top of it by what is there; nil when that fails. No code of the user
-/// runs.
+/// Replaces an object of ours and a key on the top by the field; nil on failure. Runs no user code.
 void ask_object(lua_State* L) {
     lua_pushcfunction(L, field_of_object);
     lua_insert(L, -3);
@@ -500,7 +499,7 @@ void ask_object(lua_State* L) {
     }
 }
 
-/// What the value on the top is.
+/// The meaning of the value on the top.
 Meaning meaning_of_top(lua_State* L) {
     if (lua_isnil(L, -1)) return {};
     const lua::Documented found = lua::documented(L, -1);
@@ -509,8 +508,8 @@ Meaning meaning_of_top(lua_State* L) {
     return object ? Meaning{Meaning::Kind::object, section_of(found.owner)} : Meaning{Meaning::Kind::value};
 }
 
-/// Walks along the expression. What is known so far is `result`; its value is on the top of the stack, nil where only
-/// its documentation is known.
+/// Evaluates an expression step by step. `result` is the meaning so far; its value is on the top of the stack, nil if
+/// only documentation is known.
 class Walk {
 public:
     explicit Walk(lua_State* L) : L_(L) { lua_pushnil(L_); }
@@ -541,7 +540,7 @@ public:
         }
     }
 
-    /// list[1], of tables as they are, and of our objects: run.events[1].
+    /// Follows an index with a number, in plain tables and our objects: run.events[1].
     void index(lua_Integer number) {
         if (lua_istable(L_, -1)) {
             lua_rawgeti(L_, -1, number);
@@ -561,7 +560,7 @@ public:
             const lua::Documented module = lua::documented(L_, -1);
             doc = module.owner != nullptr ? &module.owner->doc : nullptr;
         }
-        const help::Section* object = doc == nullptr ? nullptr : help::result_class(doc->signature);
+        const help::Section* object = doc == nullptr ? nullptr : help::section_of_result(doc->signature);
         forget();
         if (object != nullptr) {
             result = {Meaning::Kind::object, object, nullptr};
@@ -575,16 +574,16 @@ public:
     }
 
 private:
-    /// The class of what is here, as its value or its documentation tells; nullptr when it is none of ours.
+    /// The class here, according to the value or the documentation; nullptr for others.
     const lua::Class* class_here() {
         if (lua_isuserdata(L_, -1) != 0) return lua::documented(L_, -1).owner;
         const bool field = result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field;
-        const help::Section* section = field ? help::result_class(result.member->doc.signature) : result.section;
+        const help::Section* section = field ? help::section_of_result(result.member->doc.signature) : result.section;
         const bool known = lua_isnil(L_, -1) && (field || result.kind == Meaning::Kind::object);
         return known && section != nullptr ? section->description : nullptr;
     }
 
-    /// Replaces the value on the top by its field, looked up in the tables of __index, too.
+    /// Replaces the value on the top by its field, following __index tables.
     void raw_field(std::string_view name) {
         for (int i = 0; i < most_metatables; ++i) {
             if (lua_istable(L_, -1)) {
@@ -681,7 +680,7 @@ std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Tok
     for (const lua::Member& member : owner.kind == Meaning::Kind::object && owner.section != nullptr && names.empty()
                                          ? owner.section->description->members
                                          : std::span<const lua::Member>()) {
-        const help::Section* held = help::result_class(member.doc.signature);
+        const help::Section* held = help::section_of_result(member.doc.signature);
         if (member.kind == lua::Kind::field && held != nullptr &&
             held->description->name == std::string_view("vector")) {
             names.emplace_back(member.name);
@@ -693,7 +692,7 @@ std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Tok
 
 namespace {
 
-/// Runs `work` with Lua's errors (there is only the lack of memory) kept inside.
+/// Runs `work`, catching Lua errors (only insufficient memory).
 template <class Work>
 void safely(lua_State* L, Work work) {
     const auto trampoline = [](lua_State* state) {
@@ -716,7 +715,7 @@ bool is_simple(std::string_view text, bool unicode) {
     });
 }
 
-/// As much of a list as there is room for, whole words of it.
+/// As many whole words of a list as fit.
 std::string fitting_list(const std::string& list, std::size_t room, bool unicode) {
     if (text::columns(list) <= room) {
         return list;
@@ -733,7 +732,7 @@ Painted paint(lua_State* L, const LineOnScreen& shown) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     const std::size_t before = text::columns(shown.prompt);
     const std::size_t used = before + text::columns(shown.line);
-    constexpr std::size_t spare = 2;  // a row that is full to its end may have been wrapped already
+    constexpr std::size_t spare = 2;  // a completely full row may already have been wrapped
     if (used + spare >= screen.width || !is_simple(shown.prompt, screen.unicode) ||
         !is_simple(shown.line, screen.unicode)) {
         return {};
@@ -751,7 +750,7 @@ Painted paint(lua_State* L, const LineOnScreen& shown) {
         hint.insert(0, hint.empty() ? 0 : gap, ' ');
     }
     if (hint.empty()) return {};
-    // octal where a digit follows: \x1b7 would be one character
+    // octal if a digit follows: \x1b7 would be one character
     const std::string right = used > 0 ? fmt::format("\x1b[{}C", used) : "";
     return {fmt::format("\0337\r{}\x1b[90m{}\x1b[0m\x1b[K\0338", right, hint), true};
 }

@@ -1,4 +1,4 @@
-// Tab: what may follow the text before the cursor. Never runs code of the user.
+// Tab: the possible continuations of the text before the cursor. Runs no user code.
 #pragma once
 
 #include <cstddef>
@@ -16,34 +16,33 @@
 namespace dinal::prompt {
 
 struct Completion {
-    std::vector<std::string> names;  ///< whole words, with what comes next: "simulate{", "theta0 = "
-    bool files = false;              ///< names of files may follow
+    std::vector<std::string> names;  ///< whole words with the following text: "simulate{", "theta0 = "
+    bool files = false;              ///< whether file names are possible
 };
 
-/// `before` is all that was typed of the chunk up to the cursor.
+/// `before` is the text of the chunk up to the cursor.
 Completion complete(lua_State* L, std::string_view before);
 
-/// The signature of the call whose brackets are open at the cursor, without the options that are there already; empty
-/// when no such call is known.
+/// The signature of the innermost open call, without options already given; empty if unknown.
 std::string signature_hint(lua_State* L, std::string_view before);
 
-// Where the cursor stands in a text that is being typed: in a name, a string, the options of a call.
+// The context of the cursor: a name, a string, the options of a call.
 
 enum class Cursor { name, member, option, value, string, nothing };
 
-/// A call whose brackets are open at the cursor.
+/// A call with open brackets at the cursor.
 struct OpenCall {
-    std::span<const lua::Token> function;       ///< the tokens before the bracket: sys : simulate
-    bool options = false;                       ///< the cursor is in a table of options,
-    help::Braces braces = help::Braces::alone;  ///< which is passed like this
-    /// From the options of the call to the table with the cursor: the names that lead there, "" in a list:
-    /// events, "" in f{ events = { { ... } } }.
+    std::span<const lua::Token> function;       ///< tokens before the bracket: sys : simulate
+    bool options = false;                       ///< whether the cursor is in a table of options,
+    help::Braces braces = help::Braces::alone;  ///< passed in this way
+    /// The names from the call's options to the table with the cursor, "" in a list: events, "" in f{ events = { { ...
+    /// } } }.
     std::vector<std::string_view> path = {};
-    std::vector<std::string_view> given = {};  ///< the options that are there already
-    std::string_view option = {};              ///< the one whose value the cursor is at
+    std::vector<std::string_view> given = {};  ///< options already given
+    std::string_view option = {};              ///< the option whose value contains the cursor
 };
 
-/// What stands before the cursor. Refers to the text.
+/// The text before the cursor, to which it refers.
 class TypedText {
 public:
     explicit TypedText(std::string_view before);
@@ -51,9 +50,9 @@ public:
     TypedText& operator=(const TypedText&) = delete;
 
     [[nodiscard]] Cursor cursor() const { return cursor_; }
-    /// The part of a name, or of a string, that is there already.
+    /// The beginning of a name or string at the cursor.
     [[nodiscard]] std::string_view word() const { return word_; }
-    /// Of Cursor::member: the tokens before the separator, and the separator, '.' or ':'.
+    /// For Cursor::member: the tokens before the separator '.' or ':', and the separator.
     [[nodiscard]] std::span<const lua::Token> owner() const { return owner_; }
     [[nodiscard]] char separator() const { return separator_; }
     [[nodiscard]] const std::optional<OpenCall>& call() const { return call_; }
@@ -74,54 +73,52 @@ private:
     std::optional<OpenCall> call_;
 };
 
-// What an expression that is being typed is, or will be: values, where no code of the user must run for them, else
-// documentation.
+// The meaning of an expression being typed: its value if no user code must run for it, otherwise its documentation.
 
 struct Meaning {
     enum class Kind {
         unknown,
-        value,   ///< none of ours
-        object,  ///< it is, or will be, an object of the class `section`
-        member,  ///< it is the method or field `member` of `section`, or one of our functions
+        value,   ///< not an object of ours
+        object,  ///< an object of the class `section`, now or when it runs
+        member,  ///< the method or field `member` of `section`, or a function of ours
     };
     Kind kind = Kind::unknown;
     const help::Section* section = nullptr;
     const lua::Member* member = nullptr;
 };
 
-/// Pushes exactly one value: that of the expression, nil where it cannot be had without running code of the user.
+/// Pushes the value of the expression, or nil if that would require user code; always exactly one value.
 Meaning meaning(lua_State* L, std::span<const lua::Token> expression);
 
-/// The section that describes a class, nullptr when none does.
+/// The section of a class, or nullptr.
 const help::Section* section_of(const lua::Class* description);
 
-/// Adds the names that the object on the top has besides the members of its class: the columns of data, the values of a
-/// fit.
+/// Adds names of the object on the top beyond its class: columns of data, values of a fit.
 void add_own_names(lua_State* L, std::vector<std::string>& names);
 
-/// The columns of the object whose method is called, run:plot: of a run its vectors, of data what it has.
+/// The columns of the object in a method call such as run:plot: vectors of a run, columns of data.
 std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function);
 
-// While a line is typed: the grey hint behind it, and completion that no error of Lua can leave.
+// While a line is typed: the grey hint behind it, and completion without Lua errors.
 
-/// What draws the hint behind a line, and puts the cursor back.
+/// The output that draws the hint behind a line and restores the cursor.
 struct Painted {
-    std::string text;   ///< empty when the line must stay as it is
-    bool hint = false;  ///< something stands behind the line now
+    std::string text;   ///< empty if the line must not change
+    bool hint = false;  ///< whether a hint is visible now
 };
 
-/// The line stands behind the prompt on the row of the cursor.
+/// A line behind the prompt on the row of the cursor.
 struct LineOnScreen {
     std::string_view prompt;
-    const std::string& pending;  ///< the lines before it of a chunk that goes on
+    const std::string& pending;  ///< previous lines of the chunk
     std::string_view line;
-    std::size_t cursor = 0;  ///< a place in the line
-    std::string_view cue;    ///< what the chunk waits for, where nothing is typed yet
-    std::string_view rest;   ///< what history adds to the line
+    std::size_t cursor = 0;  ///< index in the line
+    std::string_view cue;    ///< the missing part of the chunk, shown while nothing is typed
+    std::string_view rest;   ///< suggestion from history
 };
 Painted paint(lua_State* L, const LineOnScreen& shown);
 
-/// complete(), with an empty answer where memory runs out.
+/// complete(), with an empty answer if memory is insufficient.
 Completion complete_safely(lua_State* L, const std::string& before);
 
 }  // namespace dinal::prompt

@@ -28,7 +28,7 @@ std::string_view entry_at(int i) {
     return entry == nullptr ? std::string_view() : entry->line;
 }
 
-/// The errno of what went wrong, or 0. What could be written of the text is taken away again.
+/// Appends the text; returns errno or 0. A partial write is undone.
 int append(const std::string& file, const std::string& text) {
     const files::Descriptor output(::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
     struct stat before {};
@@ -49,7 +49,7 @@ int append(const std::string& file, const std::string& text) {
 }  // namespace
 
 void open_history(const std::string& file) {
-    // With time stamps an entry of several lines is read back as one.
+    // Time stamps let an entry of several lines be read back as one.
     history_comment_char = '#';
     history_write_timestamps = 1;
     stifle_history(longest_history);
@@ -69,7 +69,7 @@ std::string add_to_history(const std::string& entry, const std::string& file) {
     if (file.empty()) {
         return "";
     }
-    // At once: the session may end by a signal or os.exit.
+    // Immediately: the session may end by a signal or os.exit.
     const int why = append(file, "#" + std::to_string(std::time(nullptr)) + "\n" + entry + "\n");
     const bool first = why != 0 && !complained;
     complained = complained || why != 0;
@@ -105,7 +105,7 @@ LinesAbove::LinesAbove(std::string_view lines) {
 LinesAbove::~LinesAbove() {
     for (; count_ > 0 && history_length > 0; --count_) {
         HIST_ENTRY* const entry = remove_history(history_length - 1);
-        std::free(free_history_entry(entry));  // NOLINT: readline allocated it; what is left is the data of the entry
+        std::free(free_history_entry(entry));  // NOLINT: allocated by readline; only the entry's data remain
     }
     using_history();
 }

@@ -1,5 +1,4 @@
-// The inputs of this session and of earlier ones: in a file, in the list that the up arrow goes through, and as what a
-// line that is being typed may become.
+// The inputs of this and earlier sessions: in a file, in readline's list, and as suggestions for the present line.
 #pragma once
 
 #ifdef DINAL_READLINE
@@ -9,17 +8,17 @@
 
 namespace dinal::prompt {
 
-/// Reads the inputs of earlier sessions; `file` may be empty.
+/// Loads the inputs of earlier sessions; `file` may be empty.
 void open_history(const std::string& file);
 
-/// Adds an entry, which may have several lines, to the list and to the file. Returns why that could not be written the
-/// first time it could not; the file is then as it was.
+/// Adds an entry, possibly of several lines, to the list and the file. Returns the first failure to write, with the
+/// file unchanged.
 std::string add_to_history(const std::string& entry, const std::string& file);
 
-/// How the last input that began as this line went on; "" when none did.
+/// The continuation of the last input that begins with this line; "" without one.
 std::string suggested(std::string_view line);
 
-/// While it lives, the up arrow goes through these lines first: those of a chunk that goes on.
+/// While it lives, the up arrow first visits these lines of an unfinished chunk.
 class LinesAbove {
 public:
     explicit LinesAbove(std::string_view lines);

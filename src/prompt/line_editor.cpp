@@ -1,4 +1,4 @@
-// What knows readline, with history.cpp beside it, and what differs when that is not built in.
+// The code that uses readline (with history.cpp), and its replacement without readline.
 #include "prompt/line_editor.hpp"
 
 #ifdef DINAL_READLINE
@@ -34,17 +34,17 @@ namespace {
 
 constexpr const char* erase_to_end = "\x1b[K";
 
-// What readline's callbacks need to know: there is one editor, and they get no argument.
+// The state of readline's callbacks: there is one editor, and they receive no argument.
 struct Editing {
     lua_State* L = nullptr;
-    bool paints = false;   // hints
-    bool hinting = false;  // a hint stands behind the line
+    bool paints = false;   // whether hints are drawn
+    bool hinting = false;  // whether a hint is behind the line
     bool accepted = false;
     TypedLine line;
     std::string prompt;
-    std::string pending;  // earlier lines of the chunk, each with its newline
-    std::string cue;      // what it waits for
-    std::string rest;     // what history adds to the line, in grey
+    std::string pending;  // previous lines of the chunk, each with its newline
+    std::string cue;      // its missing part
+    std::string rest;     // suggestion from history, in grey
     std::vector<std::string> names;
 };
 Editing editing;
@@ -52,7 +52,7 @@ Editing editing;
 void accept(char* text) {
     editing.accepted = true;
     editing.line = text == nullptr ? TypedLine{} : TypedLine{Reading::line, text};
-    std::free(text);               // NOLINT: readline allocated it
+    std::free(text);               // NOLINT: allocated by readline
     rl_callback_handler_remove();  // now, before readline prints another prompt
 }
 
@@ -68,8 +68,8 @@ int finish_line(int count, int key) {
     return rl_newline(count, key);
 }
 
-/// The right arrow and its like, at the end of the line: what history suggests there is taken.
-bool take_rest() {
+/// Accepts the suggestion on a right arrow at the end of the line.
+bool accept_suggestion() {
     if (rl_point != rl_end || editing.rest.empty() || !editing.hinting) {
         return false;
     }
@@ -77,10 +77,10 @@ bool take_rest() {
     return true;
 }
 int go_right(int count, int key) {
-    return take_rest() ? 0 : rl_forward_char(count, key);
+    return accept_suggestion() ? 0 : rl_forward_char(count, key);
 }
 int go_to_end(int count, int key) {
-    return take_rest() ? 0 : rl_end_of_line(count, key);
+    return accept_suggestion() ? 0 : rl_end_of_line(count, key);
 }
 
 /// Moves the cursor to the same column of the line above or below within an input of several lines.
@@ -117,7 +117,7 @@ void bind_to_blocks() {
     }
 }
 
-/// Where the user has not bound them to something else.
+/// Binds keys that the user has not bound otherwise.
 void bind_to_suggestions() {
     for (const char* keys : {"\x1b[C", "\x1bOC", "\x06"}) {
         if (rl_function_of_keyseq(keys, nullptr, nullptr) == rl_forward_char) rl_bind_keyseq(keys, go_right);
@@ -127,12 +127,12 @@ void bind_to_suggestions() {
     }
 }
 
-/// readline draws the line; then a hint comes behind it, where it is one simple row.
+/// Draws the line, and a hint behind it if it is one simple row.
 void redisplay() {
     if (InterruptNote::interrupted()) {
-        return;  // the line is being given up: it stays as it is
+        return;  // a line given up stays as it is
     }
-    erase_hint();  // before the cursor moves: it stands where the hint begins
+    erase_hint();  // before the cursor moves: it is at the hint's beginning
     rl_redisplay();
     constexpr unsigned long other_uses = RL_STATE_ISEARCH | RL_STATE_NSEARCH | RL_STATE_SEARCH | RL_STATE_NUMERICARG |
                                          RL_STATE_COMPLETING | RL_STATE_VIMOTION;
@@ -154,7 +154,7 @@ void redisplay() {
     }
 }
 
-/// readline asks for one name after the other, and wants to free each.
+/// Readline's interface: returns one name after the other, each of which readline frees.
 char* next_name(const char*, int again) {
     static std::size_t next = 0;
     next = again == 0 ? 0 : next;
@@ -167,7 +167,7 @@ bool leads_outside(std::string_view path) {
 
 char** complete_word(const char* word, int, int end) {
     erase_hint();
-    rl_attempted_completion_over = 1;  // no names of files where none belong
+    rl_attempted_completion_over = 1;  // no file names unless they fit
     rl_completion_append_character = '\0';
     const std::string line(rl_line_buffer, static_cast<std::size_t>(end));
     if (!editing.pending.empty() && line.find_first_not_of(' ') == std::string::npos) {
@@ -196,10 +196,10 @@ extern "C" void on_resize(int) {
     resized = 1;
 }
 
-/// readline divides by a third of the width when it scrolls a line sideways.
+/// readline divides by a third of the width when it scrolls sideways.
 constexpr int least_columns = 3;
 
-/// NOTE: readline leaves the old line where it is when somebody else draws: so nobody else does meanwhile.
+/// NOTE: readline leaves the old line if somebody else draws, so nothing else is drawn meanwhile.
 void fit_to_window() {
     if (terminal::display_of(STDOUT_FILENO).columns < least_columns) return;
     erase_hint();
@@ -211,7 +211,7 @@ void fit_to_window() {
     }
 }
 
-/// After Ctrl-Z and fg the shell has written below the line.
+/// Redraws after Ctrl-Z and fg, as the shell has written below the line.
 void draw_again() {
     rl_on_new_line();
     rl_forced_update_display();
@@ -221,24 +221,24 @@ void notice(int signal, void (*handler)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
-    action.sa_flags = SA_RESTART;  // it is no matter of the script
+    action.sa_flags = SA_RESTART;  // the script must not notice it
     sigaction(signal, &action, nullptr);
 }
 
-/// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
+/// Waits for a key or a signal, which readline handles. Returns true if there is a key to read.
 bool key_arrived() {
     bool arrived = false;
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
-    // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
+    // All signals are blocked between the last check and ppoll, so that none is missed.
     sigprocmask(SIG_BLOCK, &all, &before);
     if (rl_pending_signal() == 0 && !InterruptNote::interrupted() && resized == 0 && continued == 0) {
         pollfd input{fileno(rl_instream), POLLIN, 0};
         arrived = ppoll(&input, 1, nullptr, &before) > 0;
     }
     sigprocmask(SIG_SETMASK, &before, nullptr);
-    rl_check_signals();  // raises the signal again for the note, with the terminal in order
+    rl_check_signals();  // raises the signal again for the note, with the terminal restored
     if (resized != 0) {
         resized = 0;
         fit_to_window();
@@ -250,8 +250,8 @@ bool key_arrived() {
     return arrived && !InterruptNote::interrupted();
 }
 
-/// What readline reads the keys with. NOTE: Ctrl-C throws away what was typed before it, so a key that was there may be
-/// gone, and one that is waited for would hold up the Ctrl-C: hence no blocking read.
+/// Reads a key for readline. NOTE: Ctrl-C discards earlier keys, so an announced key may be gone; a blocking read would
+/// then delay the Ctrl-C.
 int read_key(FILE*) {
     static const int keyboard = open("/proc/self/fd/0", O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     while (!InterruptNote::interrupted()) {
@@ -272,8 +272,8 @@ int read_key(FILE*) {
 
 void start_readline(const std::string& history) {
     rl_readline_name = "dinal";
-    rl_catch_signals = 1;               // it restores the terminal before Ctrl-Z and its like take effect,
-    rl_persistent_signal_handlers = 1;  // also when one comes while we wait for a key
+    rl_catch_signals = 1;               // restores the terminal before Ctrl-Z etc. take effect,
+    rl_persistent_signal_handlers = 1;  // also while waiting for a key
     rl_getc_function = read_key;
     rl_attempted_completion_function = complete_word;
     rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
@@ -285,7 +285,7 @@ void start_readline(const std::string& history) {
     int rows = 0, columns = 0;
     rl_get_screen_size(&rows, &columns);
     if (columns < least_columns) rl_set_screen_size(rows, least_columns + 1);
-    // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
+    // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C within half a second.
     rl_variable_bind("blink-matching-paren", "off");
     rl_variable_bind("enable-bracketed-paste", terminal::obeys_escapes() ? "on" : "off");
     open_history(history);
@@ -317,7 +317,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
     editing.prompt = prompt;
     editing.pending = pending.empty() ? "" : pending + "\n";
     editing.cue = cue;
-    rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
+    rl_eof_found = 0;  // left from an earlier line, it would end each further line
     rl_callback_handler_install(prompt.c_str(), accept);
     if (const char key = terminal::key_left_over(); key != '\0') {
         rl_stuff_char(static_cast<unsigned char>(key));
@@ -327,7 +327,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
         if (key_arrived()) {
             rl_callback_read_char();
         }
-        if (InterruptNote::interrupted()) {  // also when the line was accepted just before: it has not run yet
+        if (InterruptNote::interrupted()) {  // also if the line was just accepted: it has not run yet
             give_up();
             return {Reading::interrupted, ""};
         }
@@ -337,7 +337,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
 
 }  // namespace
 
-// NOTE: readline reads a pipe badly (it spins at its end and completes at its tabs): never use it there.
+// NOTE: never use readline on a pipe: it spins at the end and completes at tabs.
 LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
     if (edits_) {
         editing.L = L;
@@ -364,7 +364,7 @@ const char* LineEditor::about() {
 
 LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
-// NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is none
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): otherwise it is not static
 TypedLine LineEditor::read(const std::string& prompt, const std::string&, const std::string&) const {
     return read_plain(prompt);
 }

@@ -1,4 +1,4 @@
-// Lines typed by the user: with GNU readline at a terminal when it is built in, else plain.
+// Lines typed by the user: with GNU readline at a terminal if available, otherwise plain.
 #pragma once
 
 #include <string>
@@ -8,25 +8,25 @@
 
 namespace dinal::prompt {
 
-/// One lives at a time. Lua code may read standard input between two lines.
+/// Only one may exist. Lua code may read standard input between two lines.
 class LineEditor {
 public:
-    /// The state is asked for names at Tab and for signatures.
+    /// Uses the state for completion and signatures.
     explicit LineEditor(lua_State* L);
 
-    /// `pending` are the lines before it of a chunk that goes on, `cue` says in grey what it waits for.
+    /// `pending`: previous lines of an unfinished chunk; `cue`: its missing part, shown in grey.
     [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "",
                                  const std::string& cue = "") const;
 
-    /// Adds an entry, which may have several lines, to the history of this and of later sessions.
+    /// Adds an entry, possibly of several lines, to the history of this and later sessions.
     void remember(const std::string& entry);
 
-    /// For --version: what edits the lines and what that means for the licence of the program.
+    /// For --version: the line editor and its effect on the program's licence.
     static const char* about();
 
 private:
-    [[maybe_unused]] bool edits_;  // readline, not plain reading
-    std::string history_file_;     // empty when there is none
+    [[maybe_unused]] bool edits_;  // whether readline is used
+    std::string history_file_;     // empty: history is not kept
 };
 
 }  // namespace dinal::prompt

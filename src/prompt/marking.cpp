@@ -36,9 +36,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double grace = 5;                          // seconds that a stopped script has for its page
-constexpr rlim_t largest_file = 10'000'000;          // bytes: no hand-in fills the disk with what it prints
-constexpr std::uintmax_t largest_desk = 50'000'000;  // nor with many files
+constexpr double grace = 5;                          // seconds for a stopped script to write its page
+constexpr rlim_t largest_file = 10'000'000;          // bytes: limits the output of a hand-in
+constexpr std::uintmax_t largest_desk = 50'000'000;  // limits its files
 constexpr std::uintmax_t largest_script = 1'000'000;
 constexpr std::size_t longest_name = 60;
 constexpr int deepest_folder = 3;
@@ -46,21 +46,21 @@ constexpr int deepest_folder = 3;
 struct Answer {
     bool right = false;
     int tries = 0;
-    std::string said;  ///< of the first wrong value
+    std::string said;  ///< the remark on the first wrong value
 };
 
 struct HandIn {
     fs::path file;
-    std::string name;                                               ///< as the table shows it
+    std::string name;                                               ///< as shown in the table
     std::string text;                                               ///< the script
-    std::map<std::int64_t, std::map<std::string, Answer>> answers;  ///< of each number that it uses
-    std::int64_t number = 0;                                        ///< whose answers count; 0: none
+    std::map<std::int64_t, std::map<std::string, Answer>> answers;  ///< by student number and question
+    std::int64_t number = 0;                                        ///< the number whose answers count; 0: none
     std::vector<std::string> remarks;
 };
 
-// ---- running
+// ---- running the scripts
 
-/// A file name that no shell, terminal or folder can stumble over.
+/// A file name without special characters.
 std::string safe_name(const std::string& name) {
     std::string plain;
     for (const char c : name.substr(0, longest_name)) {
@@ -69,7 +69,7 @@ std::string safe_name(const std::string& name) {
     return plain;
 }
 
-/// All scripts of the folder and those below it, in the order of their names. Links are not followed.
+/// All scripts in the folder and its subfolders, sorted by name. Does not follow links.
 std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     std::vector<HandIn> all;
     std::error_code wrong;
@@ -85,7 +85,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     return all;
 }
 
-/// In the child: the limits, the streams and the folder of a hand-in; then the program. Never returns.
+/// Runs in the child: sets limits, streams and folder of a hand-in, then executes the program.
 [[noreturn]] void become_hand_in(const std::string& desk, std::vector<std::string>& words) {
     ::setpgid(0, 0);
     const rlimit file_size{largest_file, largest_file};
@@ -104,7 +104,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     ::_exit(exit_code::usage);
 }
 
-/// The bytes of all files below the folder.
+/// The total size of the files in the folder.
 std::uintmax_t size_of_files(const fs::path& folder) {
     std::uintmax_t sum = 0;
     std::error_code wrong;
@@ -118,8 +118,8 @@ std::uintmax_t size_of_files(const fs::path& folder) {
 }
 
 struct Ending {
-    std::optional<int> status;  ///< of the child; nothing if it was killed
-    bool filled = false;        ///< killed because its folder became too large
+    std::optional<int> status;  ///< exit status of the child; none if killed
+    bool filled = false;        ///< whether it was killed because of the size of its folder
 };
 
 Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
@@ -135,12 +135,12 @@ Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
             ending.filled = look % looks_between_sizes == 0 && size_of_files(desk) > largest_desk;
         }
     }
-    ::kill(-child, SIGKILL);  // with all that it has started
+    ::kill(-child, SIGKILL);  // with all processes it has started
     if (!ending.status) ::waitpid(child, &status, 0);
     return ending;
 }
 
-/// The first line that the program has said about an error.
+/// The first line of the error output.
 std::string first_error(const std::string& desk) {
     const auto output = files::read_file(desk + "/output.txt");
     const std::string text = output ? *output : "";
@@ -162,8 +162,8 @@ std::optional<std::string> fault_of(const Ending& ending, const std::string& des
 
 // ---- reading the marks
 
-/// The words of a line of --lab-marks behind the name of the script, which has no quotes here: number, question,
-/// verdict, tries, value, and what was said.
+/// The words of a line of --lab-marks after the script's name, which has no quotes here: number, question, verdict,
+/// tries, value, hint.
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
     std::size_t at = line.find("\",");
@@ -194,7 +194,7 @@ void read_marks(HandIn& hand_in, const std::string& file) {
     }
 }
 
-/// The numbers that stand in a file name, of four digits or more: one of them is probably that of the student.
+/// The numbers of four or more digits in a file name, one of which is probably the student's.
 std::set<std::int64_t> numbers_in(const std::string& name) {
     std::set<std::int64_t> numbers;
     for (std::size_t at = 0; at < name.size();) {
@@ -208,8 +208,7 @@ std::set<std::int64_t> numbers_in(const std::string& name) {
     return numbers;
 }
 
-/// Decides whose answers count: those of the number in the name of the file, else those of the number with most
-/// answers.
+/// Chooses the student number: the one in the file name, otherwise the one with most answers.
 void choose_number(HandIn& hand_in) {
     const auto named = numbers_in(hand_in.name);
     std::size_t most = 0;
@@ -244,7 +243,7 @@ std::set<std::string> sheets_of(const HandIn& hand_in) {
     return sheets;
 }
 
-/// The script without what differs between copies: comments, blanks, the number and the author.
+/// The script without parts that differ between copies: comments, blanks, number and author.
 std::string bare_text(const HandIn& hand_in) {
     const std::vector<lua::Token> all = lua::tokens(hand_in.text);
     std::string text;
@@ -257,9 +256,9 @@ std::string bare_text(const HandIn& hand_in) {
     return text;
 }
 
-/// Several sheets of one student are welcome; the same sheet twice, or the same script, is pointed out.
+/// Reports repeated sheets of one student and equal scripts; several sheets of a student are fine.
 void compare(std::vector<HandIn>& all) {
-    std::map<std::string, const HandIn*> first, texts;  // of a number and sheet, of a bare text
+    std::map<std::string, const HandIn*> first, texts;  // by number and sheet; by bare text
     for (HandIn& hand_in : all) {
         if (const std::string text = bare_text(hand_in); !text.empty()) {
             const auto [same, is_new] = texts.emplace(text, &hand_in);
@@ -278,7 +277,7 @@ void compare(std::vector<HandIn>& all) {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// "+" right at once, a number right after so many tries, "-" wrong, "." not tried, "" another sheet.
+/// "+" right at once, a number: right after so many tries, "-" wrong, "." not tried, "" on another sheet.
 std::string sign_of(const HandIn& hand_in, const std::string& question) {
     const auto answers = hand_in.answers.find(hand_in.number);
     if (answers == hand_in.answers.end()) return "";
@@ -288,7 +287,7 @@ std::string sign_of(const HandIn& hand_in, const std::string& question) {
     return found->second.tries == 1 ? "+" : fmt::format("{}", found->second.tries);
 }
 
-/// The questions of the sheets that anybody has tried.
+/// The questions of all sheets that anybody has tried.
 std::vector<std::string> questions_of(const std::vector<HandIn>& all, const std::string& names) {
     std::set<std::string> tried;
     for (const HandIn& hand_in : all) tried.merge(sheets_of(hand_in));
@@ -321,7 +320,7 @@ Rows table_of(const std::vector<HandIn>& all, const std::vector<std::string>& qu
     return rows;
 }
 
-/// The rows of the summary: how a question went, and the hint that most students got.
+/// The summary: the success of each question, and its most frequent hint.
 Rows summary_of(const std::vector<HandIn>& all, const std::vector<std::string>& questions) {
     Rows rows{{"question", "tried", "right", "at once", "most frequent hint"}};
     for (const std::string& question : questions) {
@@ -344,7 +343,7 @@ Rows summary_of(const std::vector<HandIn>& all, const std::vector<std::string>& 
     return rows;
 }
 
-/// Columns side by side.
+/// The rows as aligned columns.
 std::string aligned(const Rows& rows) {
     std::vector<std::size_t> widths;
     for (const auto& row : rows) {
@@ -367,7 +366,7 @@ std::string csv_of(const Rows& rows) {
     std::string text;
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
-            // A table program takes a text that begins like this for a formula, and a hand-in chooses its name.
+            // Spreadsheets take such a text for a formula, and hand-ins choose their names.
             const bool formula =
                 row[i].size() > 1 && std::string_view("=+-@").find(row[i][0]) != std::string_view::npos;
             std::string field = (formula ? "'" : "") + row[i];
@@ -380,13 +379,13 @@ std::string csv_of(const Rows& rows) {
     return text;
 }
 
-// ---- all of it
+// ---- the whole marking
 
 struct Marking {
-    fs::path folder;  ///< of the hand-ins, as an absolute path
+    fs::path folder;  ///< hand-ins, absolute path
     fs::path marked;  ///< FOLDER-marked
     fs::path sheets;  ///< --sheets
-    double seconds;   ///< for each
+    double seconds;   ///< time limit of a script
 };
 
 void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {
@@ -418,7 +417,7 @@ void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {
     fs::remove(marks, wrong);
 }
 
-/// An empty FOLDER-marked; the reason if there cannot be one.
+/// Makes FOLDER-marked empty; returns an error if that fails.
 std::optional<std::string> empty_folder(const fs::path& marked) {
     std::error_code wrong;
     const bool there = fs::exists(fs::symlink_status(marked, wrong));
@@ -486,8 +485,7 @@ int mark(const Arguments& arguments) {
     return exit_code::ok;
 }
 
-// NOTE: the file is the very text that is built in. Who has it can read the answers out of it, so nothing is lost by
-// showing them; who has not cannot make it.
+// NOTE: the file is the built-in text itself. Its owner can read the answers there anyway, and nobody else can make it.
 text::Expected<std::string> solutions_of(const std::string& student) {
     const std::string file = lab_course_file();
     const auto text = files::read_file(file);
@@ -543,7 +541,7 @@ text::Expected<std::string> test_sheet(const std::string& file) {
     std::string seen = std::move(tested).value();
     const std::string name = fs::path(file).filename().string();
     const std::string digits = name.substr(0, name.find_first_not_of("0123456789"));
-    const std::string number = seen.substr(6, seen.find(':') - 6);  // "Sheet 8: its title, ..."
+    const std::string number = seen.substr(6, seen.find(':') - 6);  // from "Sheet 8: its title, ..."
     if (!digits.empty() && digits != number) {
         seen +=
             fmt::format("{} holds sheet {}: change the name or the number in sheet({}, ...\n", name, number, number);

@@ -25,7 +25,7 @@
 namespace dinal::prompt {
 namespace {
 
-/// Commands of shells, notebooks and other languages, and what does the same here.
+/// Commands of shells, notebooks and other languages, with their equivalents.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 11> words_and_cures = {{
     {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
     {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
@@ -48,7 +48,7 @@ bool closes_block(const lua::Token& token) {
     return token.is("end") || token.is("until");
 }
 
-/// The names that `local`, which is token `at`, declares.
+/// The names declared by `local` at token `at`.
 std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::size_t at) {
     std::vector<std::string_view> names;
     std::size_t i = at + 1 + (at + 1 < all.size() && all[at + 1].is("function") ? 1 : 0);
@@ -61,8 +61,7 @@ std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::
     return names;
 }
 
-/// How often a variable of that name stands there, fields such as lab.given not counted. Once only: where it is
-/// declared.
+/// The number of uses of a variable, without fields such as lab.given. 1 means only its declaration.
 std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
     std::ptrdiff_t count = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -72,7 +71,7 @@ std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
     return count;
 }
 
-/// Raw: to ask must not run the code of a strict _G.
+/// Raw: must not run the code of a strict _G.
 bool is_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
     lua_pushlstring(L, name.data(), name.size());
@@ -110,8 +109,8 @@ std::string element_notice(lua_State* L, const Chunk& chunk) {
     if (all.size() < 3) return "";
     if (all.back().is("]")) {
         const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
-        const std::string told = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
-        return told.empty() ? "" : told.substr(2);
+        const std::string remark = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
+        return remark.empty() ? "" : remark.substr(2);
     }
     if (all.back().kind != lua::TokenKind::name || !all[all.size() - 2].is(".")) return "";
     const int top = lua_gettop(L);
@@ -154,7 +153,7 @@ std::string colon_notice(lua_State* L, const std::string& text) {
                              help::signature(found.member->doc));
 }
 
-/// "for i in range(5): print(i)", which begins a method call for Lua. No method stands behind a blank.
+/// Detects "for i in range(5): print(i)", which Lua reads as a method call. A method never follows a blank.
 std::string python_block(const std::vector<lua::Token>& all) {
     for (std::size_t i = 1; i + 1 < all.size(); ++i) {
         if (!all[i].is(":") || all[i].end() == all[i + 1].at) continue;
@@ -186,7 +185,8 @@ std::string local_notice(const std::string& text) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("local") && depth == 0) {
             for (const std::string_view name : declared(all, i)) {
-                if (script || uses(all, name) == 1) names.push_back(name);  // what is used did its work in this line
+                if (script || uses(all, name) == 1)
+                    names.push_back(name);  // a variable used on the same line is not lost
             }
         }
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
@@ -201,7 +201,7 @@ std::string nil_notice(lua_State* L, const std::string& text) {
     const std::vector<lua::Token> all = lua::tokens(text);
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("function")) {
-            break;  // what it uses may come later
+            break;  // its use may come later
         }
         const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == lua::TokenKind::name;
         const bool alone = i + 1 == all.size() || all[i + 1].is(",") || all[i + 1].is("}") || all[i + 1].is(";") ||
@@ -281,12 +281,13 @@ void say_notice(const std::string& notice) {
 
 namespace {
 
-/// "'theta_0' is nil, so theta0 is not given" for the call in a file that is running, once for each line; or "".
+/// The notice of a misspelt option for the running call in a file, once for each line: "'theta_0' is nil, so theta0 is
+/// not given"; or "".
 std::string nil_option_now(lua_State* L) {
-    thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep come here, too
+    thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep use it, too
     lua_Debug frame{};
     if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return "";
-    // A function on one line ends before its statement does, and behind its end other variables are visible.
+    // A function on one line ends before its statement, where other variables are visible.
     if (frame.linedefined == frame.currentline || !seen.emplace(frame.source, frame.currentline).second) return "";
     const auto source = errors::source_of_frame(L, frame);
     if (!source) return "";
@@ -294,7 +295,7 @@ std::string nil_option_now(lua_State* L) {
     return notice.empty() ? "" : fmt::format("{}:{}: {}", frame.short_src, frame.currentline, notice);
 }
 
-/// _G.name for a name that is not there. Names with _ in front, such as _PROMPT, are looked for by Lua itself.
+/// Raises an error for an unknown global. Lua itself reads names with _ in front, such as _PROMPT.
 int refuse_unknown(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING || *lua_tostring(L, 2) == '_') return 0;
     const std::string name = lua_tostring(L, 2);
@@ -306,7 +307,7 @@ int refuse_unknown(lua_State* L) {
 
 }  // namespace
 
-void tell_nil_option(lua_State* L) {
+void report_nil_option(lua_State* L) {
     const std::string notice = nil_option_now(L);
     if (!notice.empty()) say_notice(notice);
 }

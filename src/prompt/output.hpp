@@ -1,4 +1,4 @@
-// What the program itself says: values and greetings on standard output, errors on standard error.
+// Output of the program itself: values and greetings on standard output, errors on standard error.
 #pragma once
 
 #include <string>
@@ -6,16 +6,16 @@
 
 namespace dinal::prompt {
 
-/// Whether it arrives is asked once, at the end of the program (main.cpp).
+/// Write errors are checked once, at the end of the program (main.cpp).
 void say(std::string_view text);
-/// The same for what others have written, such as names in a file: on a terminal nothing in it steers that.
+/// The same for text from outside, such as names in a file; removes control sequences on a terminal.
 void say_value(std::string_view text);
 void flush_output();
 
-/// A line on standard error, after all that was said before.
+/// Prints a line on standard error, after earlier output.
 void say_error(std::string_view text);
 
-/// While it lives, what say_error() says goes into this text, as lines.
+/// While it lives, the lines of say_error() are appended to this text.
 class ErrorsInto {
 public:
     explicit ErrorsInto(std::string& text);

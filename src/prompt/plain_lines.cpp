@@ -21,7 +21,7 @@ extern "C" void note_interrupt(int) {
     interrupt_seen = 1;
 }
 
-/// "In [12]: ", how long it is; 0 when the line does not begin so.
+/// The length of a prompt "In [12]: " at the beginning of the line, otherwise 0.
 std::size_t numbered_prompt(std::string_view line) {
     constexpr std::string_view head = "In [", tail = "]: ";
     if (!line.starts_with(head)) {
@@ -70,7 +70,7 @@ bool InterruptNote::interrupted() {
 
 TypedLine read_plain(const std::string& prompt) {
     const InterruptNote note;
-    // Ctrl-C is held back until somebody waits for it: between the prompt and the reading it would be lost.
+    // Ctrl-C is blocked until pselect: between prompt and reading it would be lost.
     sigset_t held, before;
     sigemptyset(&held);
     sigaddset(&held, SIGINT);
@@ -88,17 +88,17 @@ TypedLine read_plain(const std::string& prompt) {
     }
     char* buffer = nullptr;
     std::size_t capacity = 0;
-    // From the same FILE as io.read, so that Lua code can read the lines that follow its own.
+    // The same FILE as io.read, so that Lua code can read the following lines.
     const ssize_t size = getline(&buffer, &capacity, stdin);
     std::string text(buffer == nullptr ? "" : buffer, size > 0 ? static_cast<std::size_t>(size) : 0);
-    std::free(buffer);  // NOLINT: getline allocated it
+    std::free(buffer);  // NOLINT: allocated by getline
     if (InterruptNote::interrupted()) {
         std::clearerr(stdin);
         say("\n");
         return {Reading::interrupted, ""};
     }
     if (size < 0) {
-        std::clearerr(stdin);  // Ctrl-D ends this line, not all that may still be typed
+        std::clearerr(stdin);  // Ctrl-D ends this line, not the input
         return {Reading::end, ""};
     }
     if (text.back() == '\n') {

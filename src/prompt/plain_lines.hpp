@@ -1,4 +1,4 @@
-// Lines typed by the user, read without an editor, and the word about Ctrl-C while a line is read.
+// Lines typed by the user, read without an editor, and the handling of Ctrl-C meanwhile.
 #pragma once
 
 #include <csignal>
@@ -20,13 +20,13 @@ struct TypedLine {
     std::string text;  ///< without its newline; a pasted block has newlines inside
 };
 
-/// What stands behind a prompt that was copied along with it, of this program or of others: "> x", ">> x", "dinal> x",
-/// "In [1]: x". None when there is no prompt in front.
+/// The text behind a copied prompt of this or another program: "> x", ">> x", "dinal> x", "In [1]: x". None without a
+/// prompt.
 std::optional<std::string_view> behind_prompt(std::string_view line);
 
 TypedLine read_plain(const std::string& prompt);
 
-/// While it lives, Ctrl-C belongs to the line that is typed, and to nobody else. One at a time.
+/// While it lives, Ctrl-C only affects the line being typed. Only one may exist.
 class InterruptNote {
 public:
     InterruptNote();

@@ -22,23 +22,23 @@
 namespace dinal::prompt {
 namespace {
 
-// ---- One value as the prompt shows it, when it is no plain table.
+// ---- A value other than a plain table, as the prompt shows it.
 
-/// Alone on the screen, a value may take several lines; inside a table it gets a short form on one line.
+/// A value alone may take several lines; inside a table it has a short form on one line.
 enum class Place { alone, inside };
 
 constexpr std::size_t longest_string = 1000;
 constexpr std::size_t longest_inner_string = 60;
-constexpr std::size_t longest_text = 4000;  // a text of several lines, as from run:explain(), is shown as it is
-constexpr int most_source_lines = 12;       // of a function
+constexpr std::size_t longest_text = 4000;  // a longer text of several lines is quoted
+constexpr int most_source_lines = 12;       // lines of a function
 
 int by_tostring(lua_State* L) {
     luaL_tolstring(L, 1, nullptr);
     return 1;
 }
 
-/// What tostring says, or that it failed.
-std::string told(lua_State* L, int index) {
+/// The result of tostring, or its failure.
+std::string tostring_text(lua_State* L, int index) {
     lua_pushvalue(L, index);
     lua_pushcfunction(L, by_tostring);
     lua_insert(L, -2);
@@ -51,7 +51,7 @@ std::string told(lua_State* L, int index) {
     return fine ? text : fmt::format("<error in __tostring: {}>", text);
 }
 
-/// Several lines of nothing but printable characters, too long to be read in quotes.
+/// Returns whether it is a text of several printable lines, too long for quotes.
 bool is_text(std::string_view text, const terminal::Display& screen) {
     const bool is_long = text.find('\n') != std::string_view::npos && text.size() > screen.width;
     return is_long && text.size() <= longest_text && text::is_printable(text);
@@ -67,7 +67,7 @@ std::string string_text(lua_State* L, int index, Place place, const terminal::Di
     return place == Place::alone && string.size() > limit ? fmt::format("{} ({} bytes)", text, string.size()) : text;
 }
 
-/// A function as its source where that is short, else where it is defined; ours as they are called.
+/// A short function as its source, otherwise its place; ours by their signature.
 std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
     if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
         return text::wrapped(fmt::format("function {}", help::signature(found.member->doc)), screen.width - 1);
@@ -90,7 +90,7 @@ std::string in_one_line(const std::string& text) {
     return end == std::string::npos ? text : text.substr(0, end) + "...";
 }
 
-/// A table without a __tostring of its own: it is shown item by item.
+/// Returns whether it is a table without __tostring, which is shown item by item.
 bool is_plain_table(lua_State* L, int index) {
     if (!lua_istable(L, index)) {
         return false;
@@ -102,11 +102,11 @@ bool is_plain_table(lua_State* L, int index) {
     return false;
 }
 
-/// The text for the value at `index`. Runs __tostring, whose errors become part of the text; Ctrl-C is a Lua error.
+/// The text for the value at `index`. Errors of __tostring become part of it; Ctrl-C is a Lua error.
 std::string scalar_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
     switch (lua_type(L, index)) {
         case LUA_TNUMBER:
-            return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
+            return std::isnan(lua_tonumber(L, index)) ? "nan" : tostring_text(L, index);
         case LUA_TSTRING:
             return string_text(L, index, place, screen);
         case LUA_TFUNCTION:
@@ -116,20 +116,20 @@ std::string scalar_text(lua_State* L, int index, Place place, const terminal::Di
     }
     const lua::Documented found = lua::documented(L, index);
     if (place == Place::inside) {
-        return terminal::spelled(in_one_line(told(L, index)), screen);
+        return terminal::spelled(in_one_line(tostring_text(L, index)), screen);
     }
     if (found.owner != nullptr && found.owner->card != nullptr) {
         return found.owner->card(L, lua_absindex(L, index), screen);
     }
-    std::string text = told(L, index);
+    std::string text = tostring_text(L, index);
     return found.owner != nullptr ? text::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
 }
 
-// ---- The items of a Lua table in the order in which they are shown.
+// ---- The items of a table in the order of display.
 
-constexpr std::size_t most_sorted_keys = 500;  // beyond, the first that Lua finds are shown
+constexpr std::size_t most_sorted_keys = 500;  // beyond, the first in Lua's order are shown
 
-/// How many of 1, 2, ... there are. NOTE: not the border of rawlen, which may lie behind holes.
+/// The length of the list 1, 2, ... NOTE: not rawlen's border, which may lie behind holes.
 std::size_t list_length(lua_State* L, int index) {
     const auto border = static_cast<lua_Integer>(lua_rawlen(L, index));
     for (lua_Integer n = 0; n < border; ++n) {
@@ -142,9 +142,9 @@ std::size_t list_length(lua_State* L, int index) {
     return static_cast<std::size_t>(border);
 }
 
-/// 1, 2, ... n, then other numbers, the time t (events have one), other names, and the rest.
-// NOTE: the keys that are not 1 to n stand in a Lua table that this leaves on the stack. No destructor may take it off:
-// while a Lua error unwinds, its message is what is on the top.
+/// In the order 1, 2, ... n, other numbers, the time t (as in events), other names, the rest.
+// NOTE: the keys other than 1 to n are in a Lua table left on the stack. No destructor may remove it: while a Lua error
+// unwinds, its message is on the top.
 class TableItems {
 public:
     TableItems(lua_State* L, int index) : L_(L), table_(index), listed_(list_length(L, index)) {
@@ -155,9 +155,9 @@ public:
     }
 
     [[nodiscard]] std::size_t size() const { return listed_ + others_; }
-    /// Of a huge table not all can be shown.
+    /// The number of items shown, which is limited.
     [[nodiscard]] std::size_t shown() const { return listed_ + order_.size(); }
-    /// Item i is one of 1, 2, ... n.
+    /// Returns whether item i is one of 1, 2, ... n.
     [[nodiscard]] bool in_list(std::size_t i) const { return i < listed_; }
 
     /// Pushes the key and the value of item i.
@@ -172,7 +172,7 @@ public:
     }
 
 private:
-    using Key = std::tuple<int, double, std::string, lua_Integer>;  // rank, number, name, place in the table of keys
+    using Key = std::tuple<int, double, std::string, lua_Integer>;  // rank, number, name, index in the table of keys
 
     void collect() {
         lua_pushnil(L_);
@@ -214,23 +214,23 @@ private:
     std::vector<Key> order_;
 };
 
-constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
-constexpr std::size_t most_lines = 24;        // of one value,
-constexpr std::size_t most_joined_lines = 6;  // of a long list of numbers
+constexpr std::size_t deepest = 3;            // nesting of tables; deeper ones are {...}
+constexpr std::size_t most_lines = 24;        // lines of a value,
+constexpr std::size_t most_joined_lines = 6;  // and of a long list of numbers
 
 bool is_fraction(lua_State* L, int index) {
     const double number = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : 0;
     return std::isfinite(number) && number != std::floor(number);
 }
 
-/// The first columns of a text, and three dots.
+/// The beginning of a text, followed by three dots.
 std::string shortened(std::string_view text, std::size_t width) {
     return std::string(text::cut_to_columns(text, width > 3 ? width - 3 : 0)) + "...";
 }
 
 struct Piece {
     std::string text;
-    bool whole = true;  // nothing was left out for lack of room
+    bool whole = true;  // whether nothing was omitted
 };
 
 class Printer {
@@ -259,7 +259,7 @@ private:
             const bool short_number = brief_ && is_fraction(L_, index);
             Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
             if (lua_isuserdata(L_, index) != 0 &&
-                text::columns(item.text) > room) {  // of our objects the beginning will do
+                text::columns(item.text) > room) {  // the beginning of our objects is enough
                 item = {shortened(item.text, room), false};
             }
             return item;
@@ -271,14 +271,14 @@ private:
         return open_.size() >= deepest ? Piece{"{...}"} : table_line(index, room);
     }
 
-    /// The items that fit, on one line.
+    /// The items that fit on one line.
     Piece table_line(int index, std::size_t room) {
         luaL_checkstack(L_, 8, "tables are nested too deep");
         const int top = lua_gettop(L_);
         open_.push_back(lua_topointer(L_, index));
         const TableItems items(L_, index);
         Piece line{"{"};
-        std::size_t used = 3;  // the braces and a space
+        std::size_t used = 3;  // braces and a space
         for (std::size_t i = 0; i < items.size(); ++i) {
             const std::size_t left = room > used + 2 ? room - used - 2 : 0;
             Piece item = left > 0 && i < items.shown() ? next_item(items, i, left) : Piece{"", false};
@@ -304,7 +304,7 @@ private:
         return "[" + (is_plain_table(L_, index) ? "{...}" : scalar(index)) + "]";
     }
 
-    /// "name = value", or only the value for an item of the list.
+    /// "name = value", or only the value for a list item.
     Piece next_item(const TableItems& items, std::size_t i, std::size_t room) {
         items.push(i);
         const std::string head = items.in_list(i) ? "" : key_text(lua_gettop(L_) - 1) + " = ";
@@ -314,7 +314,7 @@ private:
         return {head + value.text, value.whole};
     }
 
-    /// An item on a line of its own: with short numbers when all of it does not fit otherwise.
+    /// An item on its own line, with shorter numbers if it would not fit otherwise.
     Piece line_item(const TableItems& items, std::size_t i) {
         Piece item = next_item(items, i, width_ - 3);
         if (!item.whole) {
@@ -325,7 +325,7 @@ private:
         return item;
     }
 
-    /// A line for each item, but items that are no tables share lines while they fit.
+    /// A line for each item; items that are not tables share lines.
     std::string table_lines(int index) {
         const int top = lua_gettop(L_);
         open_.push_back(lua_topointer(L_, index));
@@ -368,7 +368,7 @@ private:
     terminal::Display screen_;
     std::size_t width_;
     bool brief_ = false;             // numbers with six digits
-    std::vector<const void*> open_;  // the tables that are being shown, outermost first
+    std::vector<const void*> open_;  // the tables in progress, outermost first
 };
 
 }  // namespace

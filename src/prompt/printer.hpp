@@ -1,4 +1,4 @@
-// Values as the prompt shows them: numbers plain, strings quoted, tables short, objects as cards, the rest by tostring.
+// Values as the prompt shows them: plain numbers, quoted strings, short tables, objects as cards, others by tostring.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace dinal::prompt {
 
-/// The text for the value at `index`: a table on one line when it fits, else on a screen at most.
-/// Tables are read raw; the only user's code that may run is __tostring, and its errors become part of the text. Within
-/// call() only: Ctrl-C during it is a Lua error.
+/// The text for the value at `index`: a table on one line if it fits, otherwise on at most one screen. Reads tables
+/// raw; the only user code that may run is __tostring, whose errors become part of the text. Requires call(): Ctrl-C is
+/// a Lua error.
 std::string show(lua_State* L, int index, const terminal::Display& screen);
 
-/// The beginning of it on one line of `width` columns.
+/// The beginning of the text on one line of `width` columns.
 std::string show_line(lua_State* L, int index, const terminal::Display& screen, std::size_t width);
 
 }  // namespace dinal::prompt

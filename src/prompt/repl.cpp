@@ -27,7 +27,7 @@ namespace dinal::prompt {
 
 namespace {
 
-/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw: a strict _G must not make it an error.
+/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw, because of a strict _G.
 std::string prompt_text(lua_State* L, const char* global, const char* ours) {
     lua_pushglobaltable(L);
     lua_pushstring(L, global);
@@ -37,13 +37,13 @@ std::string prompt_text(lua_State* L, const char* global, const char* ours) {
     return text;
 }
 
-/// Tells the message on the top of the stack, of a text that does not compile.
+/// Reports the syntax error on the top of the stack.
 void reject(Session& session, const std::string& text) {
     source::keep_source(session.L, prompt_chunk, text);  // the message shows the line
-    say_error(told_error(session.L, nullptr));
+    say_error(load_error_text(session.L, nullptr));
 }
 
-/// What the lines that are typed into a chunk mean besides Lua.
+/// Meanings of lines within a chunk that are not Lua.
 enum class Aside { none, blank, leaving, other };
 
 Aside aside(std::string_view line) {
@@ -60,14 +60,14 @@ Aside aside(std::string_view line) {
     return asks ? Aside::other : Aside::none;
 }
 
-/// Ctrl-C is the way out of a chunk, and whoever is lost in one tries other words.
-void tell_way_out(const Chunk& chunk, Aside found) {
+/// Reminds of Ctrl-C if a line within a chunk looks like an attempt to leave.
+void remind_of_cancel(const Chunk& chunk, Aside found) {
     say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
                            found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
 }
 
-/// Reads the lines that are missing of a chunk, and compiles it: its function is then on the stack. When the first
-/// line was copied together with its prompt, so are these.
+/// Reads the missing lines of a chunk and compiles it: the function is then on the stack. `copied`: the lines were
+/// copied with their prompts.
 TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
@@ -88,7 +88,7 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
         const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
         const Aside found = in_text ? Aside::none : aside(more.text);
         if (found != Aside::none) {
-            tell_way_out(chunk, found);
+            remind_of_cancel(chunk, found);
             if (found != Aside::blank) {
                 continue;
             }
@@ -105,7 +105,7 @@ void remember(Session& session, const std::string& input) {
     if (!is_command(input)) session.inputs.push_back(input);
 }
 
-/// Does what an input says that is read, up to lines of a chunk that are still to come.
+/// Executes an input, reading further lines of a chunk if needed.
 Reading take(Session& session, TypedLine input, bool copied) {
     lua_State* L = session.L;
     if (is_command(input.text)) {
@@ -133,8 +133,8 @@ Reading take(Session& session, TypedLine input, bool copied) {
     return Reading::line;
 }
 
-/// Inputs that were copied together with their prompts, one after the other. What stands between them without a prompt
-/// was printed by the first session, unless a chunk is open.
+/// Executes inputs copied with their prompts. Lines without a prompt between them are output of the first session,
+/// unless a chunk is open.
 Reading take_copied(Session& session, std::string_view text) {
     std::string open;
     bool is_open = false;
@@ -162,7 +162,7 @@ Reading take_copied(Session& session, std::string_view text) {
     return is_open ? take(session, {Reading::line, open}, true) : Reading::line;
 }
 
-/// Reads one input and does what it says.
+/// Reads and executes one input.
 Reading read_and_run(Session& session) {
     TypedLine input = session.editor.read(prompt_text(session.L, "_PROMPT", "> "));
     if (input.reading != Reading::line) {
@@ -177,7 +177,7 @@ void run_init_file(lua_State* L) {
         return;
     }
     if (luaL_loadfilex(L, file.c_str(), lua::load_mode()) != LUA_OK) {
-        say_error(told_error(L, file.c_str()));
+        say_error(load_error_text(L, file.c_str()));
     } else if (call(L, 0, 0) != LUA_OK) {
         say_error(take_text(L));
     }
@@ -188,7 +188,7 @@ void run_init_file(lua_State* L) {
 
 bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     source::keep_source(session.L, prompt_chunk,
-                        text);  // errors and files of results may need the text of what is defined here
+                        text);  // errors and files of results may need the text of functions defined here
     const Evaluated result = evaluate(session.L, chunk, session.show_values);
     if (!result.fine) {
         return false;
@@ -212,7 +212,7 @@ bool run_text(Session& session, const std::string& text) {
     if (!ready) {
         reject(session, text);
     }
-    if (chunk.result == Compiled::incomplete) {  // which no further line completes here
+    if (chunk.result == Compiled::incomplete) {  // no further line can complete it
         const std::string notice = unfinished_notice(session.L, text);
         say_notice(notice.empty() ? chunk.waits : notice);
     }
@@ -228,8 +228,8 @@ std::string greeting() {
 bool run_prompt(lua_State* L, Start start) {
     lua_settop(L, 0);
     if (isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
-        // Who reads from a pipe of the session may go: that is an error there, and no end of it. A handler, because
-        // what is ignored would stay so in the programs that are started.
+        // A reader of our pipe may disappear: that is an error there and must not end the session. A handler, because
+        // an ignored signal would stay ignored in started programs.
         lua::set_handler(SIGPIPE, [](int) {});
     }
     if (start == Start::with_init_file) {
@@ -261,19 +261,19 @@ bool has(const std::string& text, std::string_view word) {
     });
 }
 
-/// It must not reach the inputs that follow: its local variables and labels ended with it.
+/// Returns whether statements need a block, so that their local variables and labels end with it.
 bool needs_block(const std::string& statements) {
     return has(statements, "local") || has(statements, "::");
 }
 
-/// The expression between two brackets; a comment at its end must not swallow the second.
+/// The expression inside brackets; a comment at its end must not swallow the closing one.
 std::string in_call(std::string_view function, const std::string& expression) {
     const std::vector<lua::Token> all = lua::tokens(expression);
     const bool comment = !all.empty() && all.back().kind == lua::TokenKind::comment;
     return fmt::format("{}({}{})", function, expression, comment ? "\n" : "");
 }
 
-/// A call is a statement on its own.
+/// Returns whether the expression is a call, which is a statement by itself.
 bool is_call(const std::string& expression) {
     const std::vector<lua::Token> all = lua::tokens(expression);
     const auto last =
@@ -352,10 +352,10 @@ void Record::update() {
 }
 
 bool Record::sets_ans(const Entry& entry) {
-    return entry.result.values > 0 && !entry.result.first_nil && !only_looks(entry.chunk);
+    return entry.result.values > 0 && !entry.result.first_nil && !only_reads_variable(entry.chunk);
 }
 
-/// Before another input sets it.
+/// Returns whether ans is used before the next input sets it.
 bool Record::ans_is_used_after(std::size_t entry) const {
     for (std::size_t i = entry + 1; i < entries_.size(); ++i) {
         if (has(entries_[i].chunk.statements, "ans") || has(entries_[i].chunk.expression, "ans")) {
@@ -379,8 +379,8 @@ std::string Record::script(std::size_t first) const {
             const bool becomes_ans = sets_ans(entries_[i]);
             if (becomes_ans && (ans_is_used_after(i) || (chunk.silent && !is_call(expression)))) {
                 lines += "ans = " + expression + (chunk.silent ? "" : "\nprint(ans)");
-            } else if (chunk.silent && only_looks(chunk)) {
-                continue;  // it did nothing
+            } else if (chunk.silent && only_reads_variable(chunk)) {
+                continue;  // reading a variable has no effect
             } else if (is_call(expression) && (chunk.silent || result.values == 0)) {
                 lines += expression;
             } else {

@@ -1,4 +1,4 @@
-// The prompt: reads a chunk of Lua, runs it, shows its values, and goes on whatever happens.
+// The prompt: reads a chunk of Lua, runs it, shows its values, and continues after errors.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ std::string greeting();
 
 enum class Start { with_init_file, plain };
 
-/// Until the end of input. False when Ctrl-C ended it, which happens only where no terminal is.
+/// Runs until the end of input. Returns false if Ctrl-C ended it, possible only without a terminal.
 bool run_prompt(lua_State* L, Start start);
 
 }  // namespace dinal::prompt

@@ -39,8 +39,8 @@ namespace {
 
 bool was_interrupted = false;
 
-/// After Ctrl-C: the function in dinal.on_interrupt gets what was done of a run or a sweep, or nil. Another Ctrl-C
-/// stops it, too.
+/// After Ctrl-C, passes the partial result of a run or sweep, or nil, to dinal.on_interrupt. Another Ctrl-C stops that
+/// function as well.
 void hand_over_partial(lua_State* L) {
     was_interrupted = true;
     lua::push_dinal_table(L);
@@ -61,13 +61,14 @@ void hand_over_partial(lua_State* L) {
     lua_pop(L, 1);
 }
 
-/// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
-/// did not even compile.
+/// Ends a piece of work, with an error text on the top of the stack if it failed. `file` is the file of a chunk that
+/// did not compile.
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     const bool interrupted = lua::stop_requested() == lua::Stop::interrupted;
     if (status != LUA_OK) {
-        const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
-        // What an error of a chunk that ran left there tells of the interruption itself, and where.
+        const std::string text =
+            status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? load_error_text(L, file) : take_text(L);
+        // A run-time error text already reports the interruption and its place.
         const bool untold = interrupted && status != LUA_ERRRUN;
         complain(untold ? "interrupted" : text);
     } else if (interrupted) {
@@ -80,12 +81,12 @@ bool finished(lua_State* L, int status, const char* file = nullptr) {
 }
 
 bool run_loaded(lua_State* L, int status, int arguments = 0) {
-    // NOTE: Ctrl-C while standard input was read as a script is seen only here.
+    // NOTE: a Ctrl-C during reading a script from standard input is detected here.
     const bool go_on = status == LUA_OK && !lua::interrupt_requested();
     return finished(L, go_on ? call(L, arguments, 0) : status);
 }
 
-/// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
+/// Loads text that is in no file and keeps it, as files of results and errors may need the source of its functions.
 int load_text(lua_State* L, std::string_view text, const char* name) {
     const int status = luaL_loadbufferx(L, text.data(), text.size(), name, lua::load_mode());
     if (status == LUA_OK || status == LUA_ERRSYNTAX) {
@@ -98,7 +99,7 @@ bool run_text(lua_State* L, const char* text, const char* name) {
     return run_loaded(L, load_text(L, text, name));
 }
 
-/// What luaL_loadfile(L, nullptr) does, mark of UTF-8 and `#!` line included, but the text is kept.
+/// Like luaL_loadfile(L, nullptr), including byte order mark and `#!` line, but keeps the text.
 int load_standard_input(lua_State* L) {
     std::string text;
     std::array<char, BUFSIZ> piece{};
@@ -113,7 +114,7 @@ int load_standard_input(lua_State* L) {
         text.erase(0, 3);
     }
     if (text.compare(0, 1, "#") == 0) {
-        text.erase(0, text.find('\n'));  // the end of the line stays: it counts
+        text.erase(0, text.find('\n'));  // the newline stays, to keep line numbers
     }
     return load_text(L, text, "=stdin");
 }
@@ -162,7 +163,7 @@ bool run_steps(lua_State* L, const Arguments& arguments) {
                        [L](const StartStep& s) { return run_step(L, s); });
 }
 
-/// The global `arg`: the script at 0, its arguments from 1, what stands before it at negative places.
+/// Sets the global `arg`: the script at 0, its arguments from 1, words before it at negative indices.
 void set_arg(lua_State* L, const Arguments& arguments) {
     const auto zero = static_cast<lua_Integer>(arguments.has_script() ? arguments.script : 0);
     lua_newtable(L);
@@ -199,7 +200,7 @@ bool run_script(lua_State* L, const Arguments& arguments) {
                             : finished(L, status, standard_input ? nullptr : file);
 }
 
-/// The same, into a page. Its name is told, also when the script failed: what was done stands in it.
+/// Runs a script into a page and reports its name, also if the script failed.
 bool run_reported_script(lua_State* L, const Arguments& arguments) {
     const char* script = arguments.words[arguments.script];
     if (std::string_view(script) != "-" && access(script, R_OK) != 0) {
@@ -233,7 +234,7 @@ void open(lua_State* L, const Arguments& arguments) {
     }
     arguments.safe ? lua::open_safe_libraries(L) : luaL_openlibs(L);
     help::open_library(L);
-    lua::look_at_options = tell_nil_option;
+    lua::look_at_options = report_nil_option;
     set_arg(L, arguments);
     if (arguments.strict) be_strict(L);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
@@ -294,7 +295,7 @@ int protected_run(lua_State* L) {
 }
 
 void close_state(lua_State* L) {
-    // Finalizers run now, and Lua calls no hook in them: an endless one must not be deaf to Ctrl-C.
+    // Finalizers run now without hooks, so a Ctrl-C must be able to end an endless one.
     static_cast<void>(std::signal(SIGINT, SIG_DFL));
     const lua::TimeAllowance time;
     lua_close(L);
@@ -305,12 +306,12 @@ void close_state(lua_State* L) {
 int run(const Arguments& arguments, Kernel kernel) {
     if (!arguments.lab_marks.empty()) {
         const char* script = arguments.has_script() ? arguments.words[arguments.script] : "-";
-        if (const auto wrong = lab::note_lab_answers(arguments.lab_marks, script)) {
+        if (const auto wrong = lab::start_answer_log(arguments.lab_marks, script)) {
             complain(wrong->sentence);
             return exit_code::script_error;
         }
     } else {
-        const bool of_a_stranger = arguments.safe && !arguments.report;  // who shall not use up the tries of anyone
+        const bool of_a_stranger = arguments.safe && !arguments.report;  // a stranger's script must not use up tries
         lab::keep_lab_tries([] { return state_file("lab-tries"); },
                             of_a_stranger ? lab::Tries::read : lab::Tries::write);
     }
@@ -334,7 +335,7 @@ int run(const Arguments& arguments, Kernel kernel) {
         program.code = exit_code::script_error;
     }
     if (!lua::reached_limit().empty()) {
-        lua::exit_in_time(program.code);  // what the script has left open is not closed: that may take for ever, too
+        lua::exit_in_time(program.code);  // does not close the script's objects: that might take for ever
     }
     return program.code;
 }

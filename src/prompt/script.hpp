@@ -1,4 +1,4 @@
-// Running what the command line asks for, in lua's order: LUA_INIT, -e -l -W, the script, the prompt.
+// Executes the command line in lua's order: LUA_INIT, -e -l -W, the script, the prompt.
 #pragma once
 
 #include "lua/lua_headers.hpp"
@@ -13,16 +13,16 @@ constexpr int usage = 2;
 constexpr int interrupted = 130;
 }  // namespace exit_code
 
-/// What --kernel runs in place of the prompt: it answers on the descriptor. False when it cannot.
+/// Replaces the prompt for --kernel: answers on the descriptor. Returns false if it cannot.
 using Kernel = bool (*)(lua_State* L, int answers);
 
-/// Returns the exit code; what went wrong has been told on standard error.
+/// Returns the exit code; errors have been printed on standard error.
 int run(const Arguments& arguments, Kernel kernel);
 
-/// "dinal: text" on standard error.
+/// Prints "dinal: text" on standard error.
 void complain(const std::string& text);
 
-/// The line that -v and the prompt begin with, and what --version prints.
+/// The first line of -v and the prompt, and the output of --version.
 std::string version_line();
 std::string version_text();
 

@@ -1,4 +1,4 @@
-// What one session at the prompt remembers, and what it does with a text that was typed.
+// The state of a session at the prompt, and the execution of input.
 #pragma once
 
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace dinal::prompt {
 
-// What was typed in a session and ran without error, as a script that runs again.
+// The inputs that ran without error, as a script that runs again.
 
 class Record {
 public:
     void add(const Chunk& chunk, const Evaluated& result);
-    /// A statement that stands for a command.
+    /// Adds a statement equivalent to a command.
     void add_statement(const std::string& statement);
     void clear();
 
-    /// From now on the file is kept up to date. What is recorded so far is left out.
+    /// Starts writing a file, without the inputs so far, and keeps it up to date.
     text::Expected<bool> begin(const std::string& file);
-    /// All of the session so far, into this file.
+    /// Writes the whole session to a file.
     text::Expected<bool> save(const std::string& file);
 
     [[nodiscard]] const std::string& file() const { return file_; }
-    /// The file is one of this session: a script that loads itself would never end.
+    /// Returns whether the file belongs to this session: a script that loads itself would never end.
     [[nodiscard]] bool writes(const std::string& file) const;
-    /// Why the file is no longer up to date; empty when it is.
+    /// The reason if the file is no longer up to date; otherwise empty.
     [[nodiscard]] const std::string& problem() const { return problem_; }
 
 private:
@@ -45,8 +45,8 @@ private:
     std::vector<Entry> entries_;
     std::string file_;
     std::string problem_;
-    std::size_t begin_ = 0;             // the first entry of the file
-    std::vector<std::string> written_;  // files of this session: they may be written again
+    std::size_t begin_ = 0;             // the first entry in the file
+    std::vector<std::string> written_;  // files of this session, which may be overwritten
 };
 
 struct Session {
@@ -56,14 +56,15 @@ struct Session {
     LineEditor editor;
     Record record;
     lua_CFunction show_values = print_values;
-    std::vector<std::string> inputs;  ///< what was typed, commands left out: for :history and :edit
-    bool leaving = false;             ///< :quit
+    std::vector<std::string> inputs;  ///< without commands, for :history and :edit
+    bool leaving = false;             ///< set by :quit
 };
 
-/// Compiles and runs a text that is all there is to come, as at the prompt. False after an error, which was told.
+/// Compiles and runs a complete text as at the prompt. Returns false after an error, which has been reported.
 bool run_text(Session& session, const std::string& text);
 
-/// Runs the function on the top of the stack, which `chunk` describes. False after an error, which was told.
+/// Runs the function on the top of the stack, described by `chunk`. Returns false after an error, which has been
+/// reported.
 bool run_chunk(Session& session, const Chunk& chunk, const std::string& text);
 
 }  // namespace dinal::prompt

@@ -14,9 +14,9 @@ std::string absolute_folder(const char* variable) {
     return value != nullptr && value[0] == '/' ? value : "";
 }
 
-/// Our folder in that of the variable, or in this folder of the home; empty when there is neither.
+/// Our folder inside that of the variable, or else inside `in_home` of the home folder; empty without either.
 std::string own_folder(const char* variable, const char* in_home) {
-    std::string folder = absolute_folder(variable);  // the specification of XDG: ignore it unless absolute
+    std::string folder = absolute_folder(variable);  // the XDG specification ignores relative paths
     if (folder.empty()) {
         const std::string home = absolute_folder("HOME");
         folder = home.empty() ? "" : home + in_home;
@@ -26,7 +26,7 @@ std::string own_folder(const char* variable, const char* in_home) {
 
 void make_folders(const std::string& path) {
     for (std::size_t i = path.find('/', 1); i != std::string::npos; i = path.find('/', i + 1)) {
-        mkdir(path.substr(0, i).c_str(), S_IRWXU);  // an error shows when the file is opened
+        mkdir(path.substr(0, i).c_str(), S_IRWXU);  // errors show when the file is opened
     }
     mkdir(path.c_str(), S_IRWXU);
 }

@@ -1,18 +1,18 @@
-// The files that belong to the user and not to his work: the history of the prompt, and what it begins with.
+// The user's personal files: history, settings, lab tries.
 #pragma once
 
 #include <string>
 
 namespace dinal::prompt {
 
-/// ${XDG_STATE_HOME:-~/.local/state}/dinal/NAME, made (for this user only) with its folders if it is missing; empty if
-/// that is not possible. `history` is that of the prompt, `lab-tries` keeps the wrong values of the lab.
+/// ${XDG_STATE_HOME:-~/.local/state}/dinal/NAME, created with its folders for this user only if missing; empty if that
+/// fails. `history` is for the prompt, `lab-tries` has the wrong values of the lab.
 std::string state_file(const char* name);
 
-/// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty when it is not there.
+/// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty if it does not exist.
 std::string init_file();
 
-/// ${XDG_CONFIG_HOME:-~/.config}/dinal/lab-course.lua, which instructors have; empty when there is no such folder.
+/// ${XDG_CONFIG_HOME:-~/.config}/dinal/lab-course.lua for instructors; empty without the folder.
 std::string lab_course_file();
 
 }  // namespace dinal::prompt

@@ -1,5 +1,5 @@
-// The module dinal._dinal: a Lua state with all of dinal in it, and the tables that describe its members. The package
-// in dinal/ makes classes and functions of Python out of these.
+// The module dinal._dinal: a Lua state with all of dinal, and tables that describe its members. The package in dinal/
+// makes Python classes and functions of them.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -31,11 +31,11 @@
 namespace dinal::python {
 namespace {
 
-/// What Python is told of a member. `number` is its place in all_members().
+/// The description of a member. `number` is its index in all_members().
 py::dict description_of(const lua::Member& member, std::size_t number) {
     constexpr const char* kinds[] = {"function", "method", "field", "metamethod"};
     constexpr const char* option_kinds[] = {"other", "number", "flag", "choice", "text", "numbers"};
-    const help::Section* result = help::result_class(member.doc.signature);
+    const help::Section* result = help::section_of_result(member.doc.signature);
     py::list options;
     for (const text::Call* call : help::calls_of(member.doc)) {
         const auto lines = help::option_lines(call->options);
@@ -50,23 +50,23 @@ py::dict description_of(const lua::Member& member, std::size_t number) {
                                           option.wanted));
         }
     }
-    py::dict told;
-    told["number"] = number;
-    told["name"] = std::string(member.name);
-    told["kind"] = kinds[static_cast<std::size_t>(member.kind)];
-    told["form"] = member.doc.signature;
-    told["signature"] = help::signature(member.doc);
-    told["summary"] = member.doc.summary;
-    told["example"] = member.doc.example;
-    told["result"] = result == nullptr ? "" : result->description->name;
-    told["options"] = options;
-    return told;
+    py::dict described;
+    described["number"] = number;
+    described["name"] = std::string(member.name);
+    described["kind"] = kinds[static_cast<std::size_t>(member.kind)];
+    described["form"] = member.doc.signature;
+    described["signature"] = help::signature(member.doc);
+    described["summary"] = member.doc.summary;
+    described["example"] = member.doc.example;
+    described["result"] = result == nullptr ? "" : result->description->name;
+    described["options"] = options;
+    return described;
 }
 
 struct Numbered {
     const lua::Class* owner;
     const lua::Member* member;
-    bool is_long;  ///< a call may take long: other threads of Python go on meanwhile
+    bool is_long;  ///< whether other Python threads may run during the call
 };
 std::vector<Numbered>& all_members() {
     static auto* all = new std::vector<Numbered>();
@@ -83,7 +83,7 @@ bool may_be_long(const lua::Member& member) {
     return false;
 }
 
-/// A list of (title, name, signature, summary, example, what stands before a member, members).
+/// A list of (title, name, signature, summary, example, prefix of members, members).
 py::list sections() {
     py::list all;
     for (const help::Section& section : help::sections()) {
@@ -99,8 +99,8 @@ py::list sections() {
     return all;
 }
 
-/// Calls what stands at `first` on the stack, with what stands after it, with these arguments, and with the options as
-/// a table; or with one table that has all of them, where one list or dictionary is the table itself.
+/// Calls the function at `first` with the values after it, these arguments, and the options as a table; or with a
+/// single table of all of them, where a single list or dictionary is that table.
 py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py::dict& options, bool one_table,
                    bool is_long = true) {
     luaL_checkstack(L, static_cast<int>(arguments.size()) + LUA_MINSTACK, "too many arguments");
@@ -124,7 +124,7 @@ py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py
     return several;
 }
 
-/// A member of a class, with an object of it; or of a module, where `self` is None.
+/// Calls a member of a class on an object, or of a module with `self` None.
 py::object call(std::size_t number, py::handle self, const py::tuple& arguments, const py::dict& options,
                 bool one_table) {
     const Numbered called = all_members().at(number);
@@ -133,7 +133,7 @@ py::object call(std::size_t number, py::handle self, const py::tuple& arguments,
         if (!self.is_none()) {
             to_lua(L, self);
         } else if (called.member->kind == lua::Kind::metamethod) {
-            lua::push_dinal_table(L);  // of the table of the module
+            lua::push_dinal_table(L);  // a member of the module's table
             lua_getfield(L, -1, called.owner->name);
             lua_remove(L, -2);
         }
@@ -148,7 +148,7 @@ py::object call_value(py::handle self, const py::args& arguments, const py::kwar
     });
 }
 
-/// What Lua's operators give, by Lua's number or a word.
+/// The result of a Lua operator, given by Lua's number or a word.
 py::object operated(py::handle operation, py::handle left, py::handle right) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, left);
@@ -173,7 +173,7 @@ py::object operated(py::handle operation, py::handle left, py::handle right) {
     });
 }
 
-/// For a page: of a picture an <svg>, of data a table; None where there is none.
+/// HTML for a page: an <svg> of a picture, a table of data; otherwise None.
 py::object drawn(py::handle self) {
     constexpr std::size_t rows_shown = 50;
     return in_lua([&](lua_State* L) -> py::object {
@@ -186,7 +186,7 @@ py::object drawn(py::handle self) {
     });
 }
 
-/// Returns the figures of a picture for Matplotlib: title, axes, curves, intervals of sticking, whether it is a map.
+/// The figures of a picture for Matplotlib: title, axes, curves, sticking intervals, whether it is a map.
 py::object figures(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);
@@ -214,7 +214,7 @@ py::object figures(py::handle self) {
     });
 }
 
-/// Calls sweep of Lua with a table of options, or begins a sweep in parts, with the mark of a Python function.
+/// Calls Lua's sweep with a table of options, or begins a sweep in parts, with the mark of a Python function.
 template <lua_CFunction function>
 py::object call_sweep(const py::dict& options, const std::string& mark) {
     return in_lua([&](lua_State* L) {
@@ -223,7 +223,7 @@ py::object call_sweep(const py::dict& options, const std::string& mark) {
     });
 }
 
-/// The values of a piece of Lua, an expression if it is one; the names are local variables in it.
+/// The values of a piece of Lua, an expression if possible; `variables` are its local variables.
 py::object run_text(const std::string& text, const py::dict& variables) {
     constexpr const char* name = "=dinal.lua";
     const auto names = py::str(", ").attr("join")(variables).cast<std::string>();
@@ -240,7 +240,7 @@ py::object run_text(const std::string& text, const py::dict& variables) {
     });
 }
 
-/// For pickle: returns Lua text that makes the value again, the variables in it, and the reason if there is no text.
+/// For pickle: Lua text that makes the value again, its variables, and the reason if there is no text.
 py::object written(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);
@@ -259,7 +259,7 @@ py::object written(py::handle self) {
     });
 }
 
-/// For pickle: returns the columns of data as (name, values, unit), and their other fields.
+/// For pickle: the columns of data as (name, values, unit), and other fields.
 py::object parts(py::handle self) {
     return in_lua([&](lua_State* L) -> py::object {
         to_lua(L, self);
@@ -298,7 +298,7 @@ py::object joined(const py::list& columns, const std::vector<std::string>& param
     });
 }
 
-/// What is shown goes to a function of Python; what goes wrong there is told on standard error.
+/// Passes shown objects to a Python function; its errors go to standard error.
 template <class Show>
 void show(const Show& by_python) {
     try {

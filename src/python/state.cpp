@@ -24,15 +24,15 @@
 namespace dinal::python {
 namespace {
 
-// Whoever has Python's lock (the GIL) may use what follows, apart from the signal handler.
+// Protected by Python's lock (the GIL), except for the signal handler.
 lua_State* running = nullptr;
 std::vector<int> released;
-unsigned long owner_thread = 0;  // the thread whose call Lua is in; 0: none
-int calls_within = 0;            // of its calls within each other
-bool is_torn = false;            // this process was forked while another thread was in a call
+unsigned long owner_thread = 0;  // thread of the present Lua call; 0: none
+int calls_within = 0;            // nesting depth of its calls
+bool is_torn = false;            // whether this process was forked during a call of another thread
 unsigned long main_thread = 0;
-PyThreadState* unlocked = nullptr;              // state of the owner's thread, while others run
-auto* const last_exception = new py::object();  // that a function raised during the present call
+PyThreadState* unlocked = nullptr;              // state of the owner's thread while others run
+auto* const last_exception = new py::object();  // exception of a function in the present call
 std::mutex waiting;
 std::condition_variable left;
 
@@ -44,7 +44,8 @@ extern "C" void on_interrupt(int signal) {
     if (auto* next = handler_of_python.load()) next(signal);
 }
 
-/// Puts our handler before Python's, which only notes the signal. At each call, because signal.signal() replaces it.
+/// Installs our handler before Python's, which only records the signal. Repeated at each call, because signal.signal()
+/// replaces it.
 void watch_interrupts() {
     struct sigaction now {};
     sigaction(SIGINT, nullptr, &now);
@@ -56,13 +57,13 @@ void watch_interrupts() {
 }
 
 void flush_python() {
-    PyObject* out = PySys_GetObject("stdout");  // borrowed
+    PyObject* out = PySys_GetObject("stdout");  // borrowed reference
     PyObject* done = out == nullptr || out == Py_None ? nullptr : PyObject_CallMethod(out, "flush", nullptr);
     if (PyErr_Occurred() != nullptr) PyErr_WriteUnraisable(out);
     Py_XDECREF(done);
 }
 
-/// Lets one thread at a time into Lua: a Python function that Lua calls may let other threads of Python run.
+/// Lets one thread at a time into Lua: a Python function called by Lua may let other Python threads run.
 class Turn {
 public:
     Turn() {
@@ -76,7 +77,7 @@ public:
     }
     ~Turn() {
         if (--calls_within > 0) return;
-        const py::object dropped = std::move(*last_exception);  // and the frames that it keeps
+        const py::object dropped = std::move(*last_exception);  // releases the frames that it keeps
         flush_output();
         scope_.reset();
         main_is_in_lua = false;
@@ -87,7 +88,7 @@ public:
     Turn& operator=(const Turn&) = delete;
 
 private:
-    /// What Lua has printed comes after what Python has.
+    /// Keeps the order of Lua's and Python's output.
     static void flush_output() {
         if (__fpending(stdout) == 0) return;
         flush_python();
@@ -158,7 +159,7 @@ int do_job(lua_State* L) {
     throw py::error_already_set();
 }
 
-/// Called with an error value and a py::object, which becomes the exception that Python raises.
+/// Converts an error value to the exception that Python raises; receives the value and a py::object.
 int take_exception(lua_State* L) {
     auto& exception = *static_cast<py::object*>(lua_touserdata(L, 2));
     lua_settop(L, 1);
@@ -166,8 +167,7 @@ int take_exception(lua_State* L) {
     const std::string during = remarks != nullptr ? remarks->during : "";
     if (auto* own = lua::test<Held>(L, 1); own != nullptr && PyExceptionInstance_Check(own->value.ptr()) != 0) {
         exception = hooks().attr("noted")(own->value, during);
-        own->value =
-            py::none();  // Lua may keep the error for long, and the exception keeps all variables of its frames
+        own->value = py::none();  // Lua may keep the error for long, and an exception keeps all variables of its frames
         return 0;
     }
     luaL_tolstring(L, 1, nullptr);
@@ -194,7 +194,7 @@ int object_text(lua_State* L) {
 constexpr lua::Member object_members[] = {{lua::a_metamethod<object_text>("__tostring"), {"", "", ""}}};
 const lua::Class object_class = {"Python object", {"", "", ""}, object_members};
 
-/// os.exit as sys.exit: a plain exit() would skip `finally` and what atexit has registered.
+/// os.exit as sys.exit: a plain exit() would skip `finally` and atexit.
 int exit_of_python(lua_State* L) {
     need_python();
     const lua_Integer code = lua_isboolean(L, 1) ? 1 - lua_toboolean(L, 1) : luaL_optinteger(L, 1, 0);
@@ -202,7 +202,7 @@ int exit_of_python(lua_State* L) {
     raise_exception(L, py::error_already_set());
 }
 
-/// Lua's own, its upvalue, writes at once: what Python has printed goes first.
+/// Calls Lua's print, its upvalue, which writes at once, after flushing Python's output.
 int print_after_python(lua_State* L) {
     need_python();
     flush_python();
@@ -229,7 +229,7 @@ int open(lua_State* L) {
 
 }  // namespace
 
-/// It is never closed: what Python keeps of it may live until the process ends.
+/// Opens the Lua state. It is never closed: Python may keep its objects until the process ends.
 void open_state() {
     running = luaL_newstate();
     if (running == nullptr) throw std::bad_alloc();
@@ -242,7 +242,7 @@ void open_state() {
 
 void after_fork() {
     is_torn = owner_thread != 0 && owner_thread != PyThread_get_thread_ident();
-    new (&waiting) std::mutex;  // whoever held them is not in this process
+    new (&waiting) std::mutex;  // its owner is not in this process
     new (&left) std::condition_variable;
 }
 
@@ -300,12 +300,12 @@ RunningOn::~RunningOn() {
 void raise_exception(lua_State* L, const py::error_already_set& raised) {
     *last_exception = raised.value();
     if (raised.trace()) PyException_SetTraceback(last_exception->ptr(), raised.trace().ptr());
-    // SystemExit and KeyboardInterrupt stop everything: a pcall or a point of a sweep must not catch them as errors.
+    // SystemExit and KeyboardInterrupt stop everything: neither pcall nor a point of a sweep may catch them.
     if (!py::isinstance(*last_exception, py::handle(PyExc_Exception))) lua::request_stop(lua::Stop::interrupted);
     luaL_checkstack(L, 3, "for an exception");
     lua::push(L, Held(*last_exception));
     lua_error(L);
-    std::terminate();  // not reached
+    std::terminate();  // unreachable
 }
 
 void release(int reference) {

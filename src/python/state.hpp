@@ -1,4 +1,4 @@
-// The Lua state of the module: who may use it, and how Python calls into it.
+// The Lua state of the Python module, and calls into it.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -19,11 +19,11 @@ inline py::object& hooks() {
 }
 
 void open_state();
-/// In the child of a fork.
+/// Called in the child of a fork.
 void after_fork();
 
-/// Calls body(L, data) as a protected call and returns what it returns. An error of Lua becomes dinal.Error, one of a
-/// Python function that Lua called that exception again, Ctrl-C KeyboardInterrupt.
+/// Calls body(L, data) as a protected call and returns its result. A Lua error becomes dinal.Error; an exception of a
+/// Python function called by Lua is raised again; Ctrl-C becomes KeyboardInterrupt.
 py::object call_protected(py::object (*body)(lua_State* L, const void* data), const void* data);
 
 template <class Body>
@@ -32,7 +32,7 @@ py::object in_lua(const Body& body) {
         [](lua_State* L, const void* data) -> py::object { return (*static_cast<const Body*>(data))(L); }, &body);
 }
 
-/// While it lives, other threads of Python run: Lua is in a call that may be long. It ends as soon as Lua needs Python.
+/// While it lives, other Python threads run during a long call of Lua. Ends as soon as Lua needs Python.
 class Unlocked {
 public:
     Unlocked();
@@ -40,11 +40,11 @@ public:
     Unlocked(const Unlocked&) = delete;
     Unlocked& operator=(const Unlocked&) = delete;
 };
-/// To be called by whatever Lua calls before it touches Python. The lock is then kept until the call of Lua ends: to
-/// take it anew for each call of an M would be slow where other threads want it, too.
+/// Call from Lua before touching Python. Keeps the lock until the Lua call ends: taking it for each call of an M would
+/// be slow if other threads want it.
 void need_python();
 
-/// A value of Python in Lua, which may drop it at any time.
+/// A Python value in Lua, which may drop it at any time.
 struct Held {
     py::object value;
     explicit Held(py::object own) : value(std::move(own)) {}
@@ -57,8 +57,8 @@ struct Held {
     }
 };
 
-/// Around a call of Python. When the interpreter ends, it ends other threads by pthread_exit, which unwinds the stack,
-/// and Lua's handlers would stop that with an abort. So the thread stays here, and ends with the process.
+/// Guards a call of Python. At its end the interpreter terminates other threads by pthread_exit, which unwinds the
+/// stack; Lua's handlers would abort. So the thread waits here until the process ends.
 class EndsHere {
 public:
     EndsHere() = default;
@@ -68,11 +68,11 @@ public:
     void passed() { passed_ = true; }
 
 private:
-    int exceptions_ = std::uncaught_exceptions();  // those of C++ may pass; a pthread_exit is none of them
+    int exceptions_ = std::uncaught_exceptions();  // C++ exceptions may pass; a pthread_exit is not one
     bool passed_ = false;
 };
 
-/// While it lives, calls from Python continue on this thread of Lua, perhaps a coroutine.
+/// While it lives, calls from Python run on this Lua thread, perhaps a coroutine.
 class RunningOn {
 public:
     explicit RunningOn(lua_State* L);
@@ -84,10 +84,10 @@ private:
     lua_State* before_;
 };
 
-/// Raises the exception of Python as a Lua error.
+/// Raises a Python exception as a Lua error.
 [[noreturn]] void raise_exception(lua_State* L, const py::error_already_set& raised);
 
-/// A value in the registry that Python needs no more. It is given back at the next call: this may be any thread.
+/// Releases a registry value at the next call, as this may be any thread.
 void release(int reference);
 
 }  // namespace dinal::python

@@ -44,7 +44,7 @@ py::object reference_to(lua_State* L, int index) {
 
 // ---- from Lua
 
-/// Each level of a conversion needs some of the C++ stack.
+/// Limits the depth of conversions, which use the C++ stack.
 void check_depth(int depth) {
     constexpr int deepest = 100;
     if (depth <= deepest) return;
@@ -53,11 +53,11 @@ void check_depth(int depth) {
     throw py::error_already_set();
 }
 
-using Seen = std::unordered_map<const void*, py::object>;  // tables that may lead to themselves
+using Seen = std::unordered_map<const void*, py::object>;  // tables that may contain themselves
 py::object value_to_python(lua_State* L, int index, Seen& seen, int depth);
 
-/// Fills the record in an order that is the same in each process, unlike Lua's: that of `names` in the metatable, which
-/// rows of data have, then numbers, then names by the alphabet.
+/// Fills a record in a fixed order, unlike Lua's: first that of `names` in the metatable, as for rows of data, then
+/// numbers, then names alphabetically.
 void fill_record(lua_State* L, int index, py::object& record, Seen& seen, int depth) {
     const int top = lua_gettop(L);
     if (luaL_getmetafield(L, index, "names") == LUA_TTABLE) {
@@ -92,7 +92,7 @@ void fill_record(lua_State* L, int index, py::object& record, Seen& seen, int de
     for (const Field& field : others) record[field.key] = field.value;
 }
 
-/// A list if it has nothing else, otherwise a Record.
+/// A list if the table has no other fields, otherwise a Record.
 py::object table_to_python(lua_State* L, int index, Seen& seen, int depth) {
     check_depth(depth);
     luaL_checkstack(L, LUA_MINSTACK, "too many tables in tables");
@@ -148,12 +148,12 @@ py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
     return own != nullptr ? own->value : reference_to(L, index);
 }
 
-// ---- functions of Python in Lua
+// ---- Python functions in Lua
 
-/// The arguments of a call, with a place before them that Python may use meanwhile.
+/// The arguments of a call; the place before them is for Python's use.
 struct Arguments {
     static constexpr int most = 16;
-    std::array<PyObject*, most + 1> places;  // not filled in advance: a call of M must be quick
+    std::array<PyObject*, most + 1> places;  // uninitialised: a call of M must be quick
     int count = 0;
 
     Arguments() { places[0] = nullptr; }  // NOLINT(cppcoreguidelines-pro-type-member-init)
@@ -165,7 +165,7 @@ struct Arguments {
     void add(py::object value) { places[static_cast<std::size_t>(++count)] = value.release().ptr(); }
 };
 
-/// Writes into the table at `index` what the function has made of its copy: an act sets states.
+/// Copies changes that the function made to its copy back to the table at `index`: an action sets states.
 void give_back(lua_State* L, int index, py::handle copy) {
     lua_Integer place = 0;
     for (const py::handle key_or_item : copy) {
@@ -188,7 +188,7 @@ int push_results(lua_State* L, const py::object& result) {
     return static_cast<int>(several.size());
 }
 
-/// As many arguments as it must have: Lua's own functions ignore what is too much, and get nil for what is missing.
+/// Passes exactly the required number of arguments, like Lua: ignores additional ones, and fills with nil.
 int call_function(lua_State* L, const lua::Foreign& foreign) {
     Arguments arguments;
     const int given = lua_gettop(L);
@@ -206,7 +206,7 @@ int call_function(lua_State* L, const lua::Foreign& foreign) {
     return push_results(L, result);
 }
 
-/// No exception of Python leaves it: the C++ code of Lua below would take it for an error of unknown kind.
+/// Lets no Python exception escape: Lua's C++ code would take it for an unknown error.
 int call_from_lua(lua_State* L) {
     need_python();
     const RunningOn note(L);
@@ -240,15 +240,15 @@ void text_to_lua(lua_State* L, PyObject* value) {
     Py_ssize_t size = 0;
     const char* text = PyUnicode_AsUTF8AndSize(value, &size);
     if (text != nullptr) return static_cast<void>(lua_pushlstring(L, text, static_cast<std::size_t>(size)));
-    PyErr_Clear();  // not all of it is Unicode
+    PyErr_Clear();  // it is not valid Unicode
     const auto bytes = py::reinterpret_steal<py::object>(PyUnicode_AsEncodedString(value, "utf-8", "surrogateescape"));
     if (!bytes) throw py::error_already_set();
     to_lua(L, bytes);
 }
 
-/// Whatever is no type of Python itself for numbers, text, lists and dictionaries.
+/// Other types than Python's own numbers, texts, lists and dictionaries.
 void other_to_lua(lua_State* L, py::handle value, int depth) {
-    const bool is_array = py::isinstance<py::array_t<double>>(value) && !py::hasattr(value, "filled");  // no masked one
+    const bool is_array = py::isinstance<py::array_t<double>>(value) && !py::hasattr(value, "filled");  // not masked
     if (is_array && py::reinterpret_borrow<py::array>(value).ndim() == 1) {
         const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
         if (!array) throw py::error_already_set();
@@ -262,7 +262,7 @@ void other_to_lua(lua_State* L, py::handle value, int depth) {
     lua::push(L, Held(plain));
 }
 
-/// A tuple that ends with a dictionary has named entries, too: ("motor", "load", dict(k=90)), (x, y, dict(label="y")).
+/// A tuple with a final dictionary also has named entries: ("motor", "load", dict(k=90)), (x, y, dict(label="y")).
 void list_to_lua(lua_State* L, const py::tuple& list, bool is_tuple, int depth) {
     const std::size_t last = list.empty() ? 0 : list.size() - 1;
     const bool named = is_tuple && last > 0 && PyDict_Check(list[last].ptr()) != 0 && PyDict_Check(list[0].ptr()) == 0;
@@ -325,10 +325,10 @@ void table_to_lua(lua_State* L, const py::tuple& list, const py::dict& fields, i
         lua_rawseti(L, -2, ++place);
     }
     for (const auto& [key, value] : fields) {
-        const auto kept = py::reinterpret_borrow<py::object>(value);  // user's code that runs may change the dictionary
+        const auto kept = py::reinterpret_borrow<py::object>(value);  // user code may change the dictionary meanwhile
         to_lua(L, py::reinterpret_borrow<py::object>(key), depth + 1);
         to_lua(L, kept, depth + 1);
-        lua_settable(L, -3);  // raises when None or nan is the key
+        lua_settable(L, -3);  // raises an error for the key None or nan
     }
 }
 

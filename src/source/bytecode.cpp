@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t get_upvalue = 9, get_global = 11, set_global = 15;  // OP_GETUPVAL, OP_GETTABUP, OP_SETTABUP
 constexpr int no_environment = -1;
 
-/// Which variable of an inner function is the table of globals, which is this one of the function around it.
+/// The upvalue of an inner function that is this function's table of globals.
 int environment_within(const lua::Prototype& inner, int environment) {
     int found = no_environment;
     for (std::size_t i = 0; i < inner.variables.size(); ++i) {
@@ -22,7 +22,7 @@ int environment_within(const lua::Prototype& inner, int environment) {
 
 void note_names(const lua::Prototype& function, int environment, CodeFacts& facts) {
     if (environment == no_environment) return;
-    constexpr std::size_t most_indexed = 255;  // the name of a later constant comes to the table in a register
+    constexpr std::size_t most_indexed = 255;  // names of later constants are passed in a register
     const auto& texts = function.constants;
     bool hidden = texts.size() > most_indexed;
     for (std::size_t at = 0; at < function.size(); ++at) {

@@ -1,5 +1,4 @@
-// What a compiled Lua function says about itself: which globals it names, and what its code is, whatever lines it
-// stands on.
+// Facts in the bytecode of a Lua function: the globals it names, and a digest independent of its lines.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +12,16 @@
 namespace dinal::source {
 
 struct CodeFacts {
-    std::vector<std::string> globals;  ///< names that it, or a function within it, looks up or sets in its environment
-    std::vector<std::string> perhaps;  ///< texts in a function that may look up such names in a way that is not seen
-    std::uint64_t digest = 0;          ///< of instructions and constants
+    std::vector<std::string> globals;  ///< names that it, or an inner function, reads or sets in its environment
+    std::vector<std::string> perhaps;  ///< texts that may be such names, used in a way that cannot be traced
+    std::uint64_t digest = 0;          ///< hash of instructions and constants
 };
 
-/// Of what lua_dump has written, with its debug information; `environment` is the number (from 0) of the upvalue that
-/// is the table of globals, -1 when none is. None when it is not written as Lua 5.4 writes it.
+/// Analyses the output of lua_dump with debug information; `environment` is the upvalue (from 0) that is the table of
+/// globals, -1 for none. None if the format is not that of Lua 5.4.
 std::optional<CodeFacts> facts_of_code(std::string_view dumped, int environment);
 
-/// FNV-1a, 64 bits: of `bytes` after what `before` is of.
+/// FNV-1a, 64 bits: continues the hash `before` with `bytes`.
 constexpr std::uint64_t digest_start = 0xcbf29ce484222325U;
 std::uint64_t digest_of(std::string_view bytes, std::uint64_t before = digest_start);
 

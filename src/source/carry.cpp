@@ -18,9 +18,9 @@
 namespace dinal::source {
 namespace {
 
-constexpr int deepest_value = 5000;  // tables within tables; each takes some of the C++ stack
+constexpr int deepest_value = 5000;  // nesting depth of tables, each of which uses the C++ stack
 
-const char memory_key = 0;  // registry key, in the state that is carried to
+const char memory_key = 0;  // registry key in the target state
 
 }  // namespace
 
@@ -48,7 +48,7 @@ Carrier::Carrier(lua_State* from, lua_State* to, CarryObject other_objects)
     lua_pop(from, 2);
 }
 
-/// What stands on the tops of both states belongs together, if it is the same there.
+/// Registers the values on the tops of both states as corresponding, if they are the same.
 void Carrier::note_standard(const std::string& library, const std::string& name) {
     const int type = lua_type(from_, -1);
     const bool same_type = type == lua_type(to_, -1);
@@ -62,7 +62,7 @@ void Carrier::note_standard(const std::string& library, const std::string& name)
     }
 }
 
-/// The tables of a library stand on the tops of both states.
+/// Registers a library, whose tables are on the tops of both states.
 void Carrier::note_library(const std::string& library) {
     lua_pushnil(from_);
     while (lua_next(from_, -2) != 0) {
@@ -77,7 +77,7 @@ void Carrier::note_library(const std::string& library) {
     }
 }
 
-/// Pushes, in `to`, what stands there.
+/// Pushes the value at a place in `to`.
 void Carrier::push_place(const Place& place) {
     lua_pushglobaltable(to_);
     for (const std::string& name : {place.module, place.name}) {
@@ -88,14 +88,14 @@ void Carrier::push_place(const Place& place) {
     }
 }
 
-/// A user's string.trim and its like, which nothing may name where it is called: ("x"):trim(). What cannot be carried
-/// is left out, since it need not be used.
+/// Carries functions that a user has added to libraries, such as string.trim, because ("x"):trim() does not name them.
+/// Failures are ignored, as they may be unused.
 void Carrier::carry_additions() {
     for (const Place& place : std::exchange(additions_, {})) {
         lua::push_standard_globals(from_);
         lua_getfield(from_, -1, place.module.c_str());
         lua_getfield(from_, -1, place.name.c_str());
-        way_ = {place.name};
+        path_ = {place.name};
         if (value(-1)) {
             push_place({place.module, ""});
             lua_insert(to_, -2);
@@ -112,20 +112,20 @@ std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
     lua_rawgetp(to_, LUA_REGISTRYINDEX, &memory_key);
     memory_ = lua_gettop(to_);
     carry_additions();
-    way_ = {name};
+    path_ = {name};
     error_.reset();
     const bool good = value(index);
     lua_remove(to_, memory_);
     return good ? std::nullopt : error_;
 }
 
-/// "run > helper > cfg.last"; of a long one, its beginning and its end.
-std::string Carrier::way() const {
+/// The path to the value: "run > helper > cfg.last"; a long one is shortened in the middle.
+std::string Carrier::path() const {
     constexpr std::size_t most = 12;
     std::string text;
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-        const bool left_out = way_.size() > most && i >= most / 2 && i + most / 2 < way_.size();
-        if (!left_out) text += way_[i];
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        const bool left_out = path_.size() > most && i >= most / 2 && i + most / 2 < path_.size();
+        if (!left_out) text += path_[i];
         if (left_out && i == most / 2) text += "...";
     }
     return text;
@@ -135,12 +135,12 @@ bool Carrier::fail(int index, std::string_view cure) {
     const std::string what = lua_iscfunction(from_, index) != 0      ? "a function that is written in C"
                              : lua_type(from_, index) == LUA_TTHREAD ? "a coroutine"
                                                                      : lua::describe(from_, index);
-    std::string culprit = way_.back();
+    std::string culprit = path_.back();
     culprit.erase(0, culprit.find_first_not_of(" >."));
-    const std::string whole = way();
-    const std::string_view first = way_.front();
+    const std::string whole = path();
+    const std::string_view first = path_.front();
     error_ =
-        way_.size() == 1
+        path_.size() == 1
             ? text::Error{.sentence = fmt::format("{} is {}, which cannot be in another thread{}", whole, what, cure)}
             : text::Error{.sentence = fmt::format("{} uses {}, {}, which cannot be in another thread{}", first,
                                                   whole.substr(first.size() + (whole[first.size()] == ' ' ? 3 : 0)),
@@ -149,14 +149,14 @@ bool Carrier::fail(int index, std::string_view cure) {
     return false;
 }
 
-/// The value on the top of `to` is what `identity` is in `from`.
+/// Registers the value on the top of `to` as the counterpart of `identity`.
 void Carrier::remember(const void* identity) {
     lua_pushvalue(to_, -1);
     lua_rawsetp(to_, memory_, identity);
 }
 
-/// Pushes it if it was carried before, or is of a library.
-bool Carrier::known(int index) {
+/// Pushes the counterpart if the value was carried before or belongs to a library.
+bool Carrier::push_counterpart(int index) {
     const void* identity = lua_topointer(from_, index);
     if (lua_rawgetp(to_, memory_, identity) != LUA_TNIL) return true;
     lua_pop(to_, 1);
@@ -166,7 +166,7 @@ bool Carrier::known(int index) {
     return true;
 }
 
-/// Leaves the value on the top of `to`, or nothing when it fails.
+/// Pushes the value to `to`; pushes nothing on failure.
 bool Carrier::value(int index) {
     luaL_checkstack(from_, 8, "to carry values");
     luaL_checkstack(to_, 12, "for values that are carried");
@@ -189,11 +189,12 @@ bool Carrier::value(int index) {
             lua_pushlightuserdata(to_, lua_touserdata(from_, index));
             return true;
         case LUA_TTABLE:
-            return known(index) || table(index);
+            return push_counterpart(index) || table(index);
         case LUA_TFUNCTION:
-            return known(index) || (lua_iscfunction(from_, index) != 0 ? c_function(index) : function(index));
+            return push_counterpart(index) ||
+                   (lua_iscfunction(from_, index) != 0 ? c_function(index) : function(index));
         case LUA_TUSERDATA:
-            return known(index) || object(index);
+            return push_counterpart(index) || object(index);
         default:
             return fail(index);
     }
@@ -209,23 +210,23 @@ bool Carrier::table(int index) {
     lua_pushnil(from_);
     while (good && lua_next(from_, index) != 0) {
         const bool named = lua_type(from_, -2) == LUA_TSTRING && lua::is_name(lua::text_at(from_, -2));
-        way_.push_back(named ? fmt::format(".{}", lua_tostring(from_, -2))
-                             : fmt::format("[{}]", lua_isinteger(from_, -2) != 0
-                                                       ? std::to_string(lua_tointeger(from_, -2))
-                                                       : lua::describe(from_, -2)));
+        path_.push_back(named ? fmt::format(".{}", lua_tostring(from_, -2))
+                              : fmt::format("[{}]", lua_isinteger(from_, -2) != 0
+                                                        ? std::to_string(lua_tointeger(from_, -2))
+                                                        : lua::describe(from_, -2)));
         good = value(-2) && value(-1);
         if (good) {
             lua_rawset(to_, top_there + 1);
-            way_.pop_back();
+            path_.pop_back();
             lua_pop(from_, 1);
         }
     }
     if (good && lua_getmetatable(from_, index) != 0) {
-        way_.emplace_back(" > its metatable");
+        path_.emplace_back(" > its metatable");
         good = value(-1);
         if (good) {
             lua_setmetatable(to_, top_there + 1);
-            way_.pop_back();
+            path_.pop_back();
         }
     }
     lua_settop(from_, top);
@@ -238,7 +239,7 @@ bool Carrier::c_function(int index) {
     const bool plain = lua_getupvalue(from_, index, 1) == nullptr;
     if (!plain) lua_pop(from_, 1);
     if (!plain || lua::documented(from_, index).member == nullptr) return fail(index);
-    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours that was taken out of its object
+    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours taken out of its object
     return true;
 }
 
@@ -259,10 +260,10 @@ bool Carrier::function(int index) {
     bool good = variables(index, lua_gettop(to_));
     if (const auto facts = facts_of_code(dumped, environment); good && facts && environment >= 0) {
         for (const std::string& name : facts->globals) good = good && global(name);
-        const std::vector<std::string> here = way_;
+        const std::vector<std::string> here = path_;
         for (const std::string& name : facts->perhaps) {
             if (!good || global(name)) continue;
-            way_ = here;  // nobody knows that it is needed
+            path_ = here;  // it may not be needed
             error_.reset();
         }
     }
@@ -271,7 +272,7 @@ bool Carrier::function(int index) {
     return good;
 }
 
-/// The upvalues of the function at `index`, for its copy in `to`.
+/// Carries the upvalues of the function at `index` to its copy in `to`.
 bool Carrier::variables(int index, int copy) {
     for (int i = 1; const char* name = lua_getupvalue(from_, index, i); ++i) {
         const auto [place, is_new] =
@@ -283,19 +284,19 @@ bool Carrier::variables(int index, int copy) {
             lua_pop(from_, 1);
             continue;
         }
-        way_.push_back(fmt::format(" > {}", *name == '\0' ? "a variable" : name));
+        path_.push_back(fmt::format(" > {}", *name == '\0' ? "a variable" : name));
         if (!value(-1)) {
             lua_pop(from_, 1);
             return false;
         }
         lua_setupvalue(to_, copy, i);
-        way_.pop_back();
+        path_.pop_back();
         lua_pop(from_, 1);
     }
     return true;
 }
 
-/// A global that a function names, if it is a user's.
+/// Carries a global that a function names, if it is a user's.
 bool Carrier::global(const std::string& name) {
     if (!globals_.insert(name).second) return true;
     lua_pushglobaltable(from_);
@@ -309,10 +310,10 @@ bool Carrier::global(const std::string& name) {
     lua_pop(from_, 2);
     bool good = true;
     if (!standard) {
-        way_.push_back(fmt::format(" > {}", name));
+        path_.push_back(fmt::format(" > {}", name));
         good = value(-1);
         if (good) {
-            way_.pop_back();
+            path_.pop_back();
             lua_pushglobaltable(to_);
             lua_insert(to_, -2);
             lua::push_text(to_, name);
@@ -325,7 +326,7 @@ bool Carrier::global(const std::string& name) {
     return good;
 }
 
-// Objects of our classes, carried: what is native is shared, a user's functions in them are carried, too.
+// Objects of our classes: native parts are shared, user functions in them are carried.
 
 bool Carrier::object(int index) {
     const auto shared = [this](const auto* own) {
@@ -359,25 +360,25 @@ bool Carrier::object(int index) {
     return true;
 }
 
-/// The function as it is in the other state; itself where it, or something before it, cannot be there.
+/// The function in the other state; the same function if it, or an earlier value, cannot be carried.
 Carrier::Function Carrier::user_function(const Function& function) {
     if (error_ || function == nullptr) return function;
     const auto* own = dynamic_cast<const lua::LuaFunction*>(function.get());
     if (own == nullptr) return controller(dynamic_cast<const model::Controller&>(*function));
-    way_.emplace_back(" > its function");
+    path_.emplace_back(" > its function");
     own->push(from_);
     const bool good = value(-1);
     lua_pop(from_, 1);
     if (!good) return function;
-    way_.pop_back();
+    path_.pop_back();
     auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
     lua_pop(to_, 1);
     if (!own->push_start(from_)) return copy;
-    way_.emplace_back(" > start");
+    path_.emplace_back(" > start");
     const bool starts = value(-1);
     lua_pop(from_, 1);
     if (!starts) return function;
-    way_.pop_back();
+    path_.pop_back();
     copy->remember_from(to_, -1);
     lua_pop(to_, 1);
     return copy;
@@ -404,7 +405,7 @@ model::Excitation Carrier::excitation(const model::Excitation& own) {
     for (const model::Component& component : own.components()) {
         model::Term term = component.term;
         if (auto* script = std::get_if<model::Scripted>(&term)) script->function = user_function(script->function);
-        // As it was made once, so it is right.
+        // valid, as the original was
         const model::Excitation one = model::Excitation::make(std::move(term)).value();
         sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
     }

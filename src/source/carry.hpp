@@ -1,9 +1,8 @@
-// Values carried from one Lua state to another, for threads that run users' functions.
+// Copies values from one Lua state to another, for threads that run users' functions.
 //
-// Functions keep what they take from outside: local variables (those that functions share stay shared), the globals
-// that they name, tables with their metatables, vectors, systems, excitations, laws of friction, springs and
-// integrators. What the libraries provide is found again by its name. What cannot be in two states at once is refused
-// with the way to it.
+// Functions are copied with their upvalues (shared ones stay shared), the globals they name, tables with metatables,
+// vectors, systems, excitations, friction laws, springs and integrators. Values of libraries are found by name. Others
+// are refused, with the path to them.
 #pragma once
 
 #include <optional>
@@ -21,16 +20,16 @@
 
 namespace dinal::source {
 
-/// Pushes to `to` what the userdata of `from` at the index is there, if it is of a class that this room does not know.
+/// Pushes the counterpart of the userdata at the index to `to`, if this room does not know its class.
 using CarryObject = bool (*)(lua_State* from, int index, lua_State* to);
 
 class Carrier {
 public:
-    /// To a state that was just opened, and has nothing of a user in it.
+    /// To a new state without user data.
     Carrier(lua_State* from, lua_State* to, CarryObject other_objects);
 
-    /// Pushes to `to` what stands at the index in `from`; `name` stands for it in sentences. Raises in neither state
-    /// unless memory is lacking; to be called in a protected call of `to`.
+    /// Pushes the counterpart of the value at the index to `to`; `name` is its name in errors. Raises a Lua error only
+    /// if memory is insufficient, so call it in a protected call of `to`.
     std::optional<text::Error> carry(int index, const std::string& name);
 
 private:
@@ -39,7 +38,7 @@ private:
         std::string name;    ///< "format"; empty for the module itself
     };
     struct Variable {
-        const void* function;  // of `from`
+        const void* function;  // identity in `from`
         int number;
     };
 
@@ -49,7 +48,7 @@ private:
     void carry_additions();
 
     bool value(int index);
-    bool known(int index);
+    bool push_counterpart(int index);
     bool table(int index);
     bool function(int index);
     bool variables(int index, int copy);
@@ -58,7 +57,7 @@ private:
     bool object(int index);
     bool fail(int index, std::string_view cure = "");
     void remember(const void* identity);
-    [[nodiscard]] std::string way() const;
+    [[nodiscard]] std::string path() const;
 
     using Function = std::shared_ptr<model::terms::UserFunction>;
     Function user_function(const Function& function);
@@ -68,12 +67,12 @@ private:
     lua_State* from_;
     lua_State* to_;
     CarryObject other_objects_;
-    int memory_ = 0;  // index in `to` of the table from identities in `from` to values
+    int memory_ = 0;  // index in `to` of the table that maps identities in `from` to values
     std::unordered_map<const void*, Place> standard_;
-    std::vector<Place> additions_;  // what a user has put into libraries
+    std::vector<Place> additions_;  // functions that a user added to libraries
     std::unordered_map<const void*, Variable> variables_;
     std::unordered_set<std::string> globals_;
-    std::vector<std::string> way_;
+    std::vector<std::string> path_;
     int depth_ = 0;
     std::optional<text::Error> error_;
 };

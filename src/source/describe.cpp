@@ -39,7 +39,7 @@ std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole
 
 namespace {
 
-/// "{ I = 1, k = 4, Rd = 0.3 }", or of a link "{ \"motor\", \"load\", k = 90 }".
+/// "{ I = 1, k = 4, Rd = 0.3 }", or for a link "{ \"motor\", \"load\", k = 90 }".
 std::string joint_text(lua_State* L, const model::System& system, std::size_t j, ValueText* whole) {
     const model::Joint& joint = system.joints[j];
     std::vector<std::string> parts;
@@ -117,7 +117,7 @@ std::string lua_text(motion::MethodView method) {
 
 namespace {
 
-/// `whole` writes functions down with all that they refer to; without it, text is for the eye.
+/// `whole` writes functions with everything they refer to; without it, the text is for display.
 struct Context {
     lua_State* L;
     ValueText* whole;
@@ -156,7 +156,7 @@ std::string text_of(const Context& context, const model::Polyline& line) {
                        between.empty() ? "" : " " + between.substr(2));
 }
 
-/// Of the function on the top of the stack, which is popped.
+/// The text of the function on the top of the stack, which is popped.
 std::string popped_text(lua_State* L, ValueText* whole) {
     std::string text;
     if (whole != nullptr) {
@@ -178,7 +178,7 @@ std::string popped_text(lua_State* L, ValueText* whole) {
     return text;
 }
 
-/// ", start = function ... end" of a controller that has one.
+/// ", start = function ... end" if the controller has one.
 std::string start_text(const Context& context, const model::UserFunction& function) {
     const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
     if (own == nullptr || !own->push_start(context.L)) return "";

@@ -1,4 +1,4 @@
-// Systems, excitations and integrators as the Lua text that makes them again.
+// Systems, excitations and integrators as Lua text that makes them again.
 #pragma once
 
 #include <string>
@@ -17,12 +17,12 @@ namespace dinal::source {
 
 class ValueText;
 
-/// The function where the excitation is nothing else; nullptr otherwise.
+/// The function if the excitation is only that, otherwise nullptr.
 const lua::LuaFunction* function_alone(const model::Excitation& excitation);
 
-/// Lua text that makes the excitation again: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". Where
-/// that is not possible (a long table, a function whose source is not at hand), a comment stands in its place.
-/// With `whole`, functions come with the variables that they take from outside, and tables whole.
+/// Lua text that makes the excitation again: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". A
+/// comment replaces parts that cannot be written (a long table, a function without source). `whole` includes the
+/// upvalues of functions, and complete tables.
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
 
 /// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }" or "system{ bodies = { a = { I = 1, k = 4 } } }" makes the same
@@ -33,13 +33,13 @@ std::string lua_text(lua_State* L, const model::System& system, ValueText* whole
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
 std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);
 
-/// "spring.polynomial{ [3] = 0.5 }", or the function that a user wrote.
+/// "spring.polynomial{ [3] = 0.5 }", or a user's function.
 std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole = nullptr);
 
-/// A user's function as text, or a comment that says which one it was.
+/// A user's function as text, or a comment that identifies it.
 std::string function_text(lua_State* L, const model::UserFunction& function, ValueText* whole);
 
-/// "integrator.rk4{ h = 0.001 }": makes the same integrator again.
+/// "integrator.rk4{ h = 0.001 }": makes the integrator again.
 std::string lua_text(motion::MethodView method);
 
 }  // namespace dinal::source

@@ -1,6 +1,6 @@
-// The value and what it leads to are a graph, perhaps deep and with circles. It is walked object after object, each
-// when its turn comes; an object that is met gets the next number, and whoever refers to it again has that number. So
-// the order in which they are met must be the same in every process, which Lua's own order of fields is not.
+// A value and its references form a graph, possibly deep and cyclic. It is traversed object by object; each new object
+// gets the next number, by which later references identify it. So the order of traversal must be the same in every
+// process, unlike Lua's order of fields.
 #include "source/fingerprint.hpp"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ std::uint64_t joined_digest(std::uint64_t a, std::uint64_t b) {
     return digest_of({reinterpret_cast<const char*>(&b), sizeof b}, a);
 }
 
-/// Digests that are to be summed: every bit of the result depends on every bit (the finalizer of MurmurHash3). Without
-/// it the sum is often the same when two fields have changed their values with each other.
+/// Mixes a digest before summation, so that every bit affects every bit (the finalizer of MurmurHash3). Otherwise the
+/// sum would often stay the same when two fields exchange values.
 std::uint64_t stirred(std::uint64_t digest) {
     digest = (digest ^ digest >> 33U) * 0xff51afd7ed558ccdU;
     digest = (digest ^ digest >> 33U) * 0xc4ceb9fe1a85ec53U;
@@ -70,8 +70,8 @@ void Fingerprint::add_value(int index) {
     lua_settop(L_, objects_ - 1);
 }
 
-/// What the libraries had at the start is known by its name. A function that a user has put there since, a string.trim,
-/// belongs to every value: nothing may name it where it is called, ("x"):trim().
+/// Names the initial contents of libraries. Functions added by a user, such as string.trim, belong to every value:
+/// ("x"):trim() does not name them.
 void Fingerprint::libraries() {
     const int top = lua_gettop(L_), globals = top + 1, fields = top + 2, library = top + 4, copy = top + 5;
     std::vector<std::pair<std::string, Piece>> additions;
@@ -150,8 +150,7 @@ std::uint64_t Fingerprint::reference(const Piece& piece) {
     return joined_digest(piece.digest, place->second);
 }
 
-/// What can be said of a value without numbers of objects, to put keys that are objects in an order. Where two look the
-/// same the order is as it happens.
+/// A digest without object numbers, to order keys that are objects. The order of equal ones is undefined.
 std::uint64_t Fingerprint::sketch(int index, int depth) {
     luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
     index = lua_absindex(L_, index);
@@ -195,7 +194,7 @@ void Fingerprint::table(int index) {
     };
     constexpr int deep_enough = std::tuple_size_v<decltype(sketches_)>;
     std::vector<Entry> entries;
-    std::uint64_t sum = 0;  // of the others, in whatever order lua_next gives them
+    std::uint64_t sum = 0;  // digest of other fields, independent of the order of lua_next
     lua_pushnil(L_);
     while (lua_next(L_, index) != 0) {
         const Piece key = piece(-2), value = piece(-1);
@@ -221,8 +220,8 @@ void Fingerprint::table(int index) {
 }
 
 void Fingerprint::function(int index) {
-    if (lua_iscfunction(L_, index) != 0) {  // a method that was taken out of its object; others cannot be carried
-        if (const lua::Foreign* other = lua::foreign(L_, index)) return join(other->number);  // nobody knows its text
+    if (lua_iscfunction(L_, index) != 0) {  // a method taken out of its object; others cannot be carried
+        if (const lua::Foreign* other = lua::foreign(L_, index)) return join(other->number);  // its text is unknown
         const lua::Documented found = lua::documented(L_, index);
         if (found.member != nullptr) add(found.member->doc.signature);
         return;
@@ -258,7 +257,7 @@ void Fingerprint::global(const std::string& name) {
     lua_settop(L_, top);
 }
 
-/// As print shows it.
+/// The text that print shows.
 std::string Fingerprint::printed(int index) {
     luaL_tolstring(L_, index, nullptr);
     std::string text(lua::text_at(L_, -1));
@@ -295,7 +294,7 @@ void Fingerprint::excitation(const model::Excitation& excitation) {
     }
 }
 
-/// By its text, in which the functions are left out, and by these.
+/// Adds an object by its text without functions, and by those functions.
 void Fingerprint::object(int index) {
     if (const auto* vector = lua::test<lua::Vector>(L_, index)) {
         join(vector->size());

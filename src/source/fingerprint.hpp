@@ -1,5 +1,5 @@
-// A number that stands for a Lua value and all that it takes from outside, the same in every process: whether what is
-// asked now was asked before.
+// A hash of a Lua value and everything it refers to, the same in every process; it detects that a computation is
+// repeated.
 #pragma once
 
 #include <array>
@@ -16,21 +16,21 @@ namespace dinal::source {
 
 class Fingerprint {
 public:
-    /// Adds the object of a class that this room does not know, at that index; false when it is none.
+    /// Adds an object of a class that this room does not know; returns false if it is not one.
     using AddObject = bool (*)(lua_State* L, int index, Fingerprint& print);
 
     Fingerprint(lua_State* L, AddObject other_objects) : L_(L), other_objects_(other_objects) {}
 
     void add(std::string_view bytes);
     void add(double number);
-    /// Functions by their code (not by the lines where it stands), their local variables and the globals that they
-    /// name; tables whatever the order of their fields; what is there twice or leads back to itself as such.
+    /// Functions count by their code (not their lines), their upvalues and the globals they name; tables regardless of
+    /// the order of fields; shared and cyclic references as such.
     void add_value(int index);
 
     [[nodiscard]] std::uint64_t number() const { return number_; }
 
 private:
-    /// A value on the way: one that says all by itself, or a table, function or object whose turn will come.
+    /// A visited value: a complete digest, or a table, function or object to be visited later.
     struct Piece {
         std::uint64_t digest;
         const void* object = nullptr;
@@ -55,11 +55,11 @@ private:
     lua_State* L_;
     AddObject other_objects_;
     std::uint64_t number_ = 0xcbf29ce484222325U;
-    int objects_ = 0;                                          // index of a Lua table: identity -> what was met
-    std::unordered_map<const void*, std::uint64_t> standard_;  // what is known by its name
-    std::unordered_map<const void*, std::uint64_t> numbers_;   // of objects and variables, by when they were met first
-    std::vector<const void*> order_;                           // of objects
-    std::array<std::unordered_map<const void*, std::uint64_t>, 2> sketches_;  // by depth, from 1
+    int objects_ = 0;                                          // index of a Lua table: identity -> known object
+    std::unordered_map<const void*, std::uint64_t> standard_;  // values known by name
+    std::unordered_map<const void*, std::uint64_t> numbers_;   // numbers of objects and variables by first visit
+    std::vector<const void*> order_;                           // objects in the order of visits
+    std::array<std::unordered_map<const void*, std::uint64_t>, 2> sketches_;  // digests by depth, from 1
 };
 
 }  // namespace dinal::source

@@ -11,15 +11,15 @@
 namespace dinal::source {
 namespace {
 
-const char kept_key = 0;   // registry key of the table of kept texts: name -> list of texts
-const char known_key = 0;  // registry key of the table of what was found: function -> its text
+const char kept_key = 0;   // registry key of kept texts: name -> list of texts
+const char known_key = 0;  // registry key of results: function -> its text
 
 int append(lua_State*, const void* piece, std::size_t size, void* text) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
     return 0;
 }
 
-/// What tells one function from another: its lines and names, and the bytes of its code.
+/// Distinguishes functions: lines, names, and bytes of code.
 struct Shape {
     lua_Debug about{};
     std::vector<std::string> upvalues;
@@ -44,7 +44,7 @@ struct Shape {
     }
 };
 
-/// "function(t) ... end" out of "function M(t) ... end"; empty for a method, whose self is not in its text.
+/// "function(t) ... end" from "function M(t) ... end"; empty for a method, whose text lacks self.
 std::string without_name(std::string_view function) {
     const std::size_t parameters = function.find('(');
     if (parameters == std::string_view::npos || function.substr(0, parameters).find(':') != std::string_view::npos) {
@@ -55,7 +55,7 @@ std::string without_name(std::string_view function) {
 
 enum class Likeness { none, shape, code };
 
-/// Compiles the text on the same line and with the same variables around it, and compares.
+/// Compiles the text at the same line with the same variables around it, and compares.
 Likeness likeness(lua_State* L, const std::string& source, const Shape& wanted) {
     std::string chunk;
     for (const std::string& name : wanted.upvalues) {
@@ -65,7 +65,7 @@ Likeness likeness(lua_State* L, const std::string& source, const Shape& wanted) 
     chunk += "return " + source;
     const int top = lua_gettop(L);
     Likeness result = Likeness::none;
-    // Calling it only makes the function: the chunk is a list of variables and one function.
+    // The call only makes the function: the chunk is a list of variables and one function.
     if (luaL_loadbufferx(L, chunk.data(), chunk.size(), "=source", "t") == LUA_OK && lua_pcall(L, 0, 1, 0) == LUA_OK &&
         lua_isfunction(L, -1)) {
         const Shape found(L, -1);
@@ -77,9 +77,9 @@ Likeness likeness(lua_State* L, const std::string& source, const Shape& wanted) 
     return result;
 }
 
-/// The texts that may be the wanted function, as expressions, each once.
-// NOTE: the code of a function inside of another also numbers the variables of that one, which its own text does not
-// show. So the shape must do where no code is equal, if only one text has it.
+/// The texts of possible matches, as expressions, each once.
+// NOTE: the code of an inner function also numbers the variables of the outer one, which its own text lacks. So if no
+// code is equal, the shape decides, provided that it is unique.
 struct Found {
     std::vector<std::string> by_shape;
     std::vector<std::string> by_code;
@@ -114,7 +114,7 @@ void find_in_kept(lua_State* L, const Shape& wanted, Found& found) {
     }
 }
 
-/// "math.sin" for the C function at `index`, when a loaded module has it under that name.
+/// "math.sin" for the C function at `index` if a loaded module has it under that name.
 std::optional<std::string> library_name(lua_State* L, int index) {
     const int top = lua_gettop(L);
     std::optional<std::string> name;
@@ -123,7 +123,7 @@ std::optional<std::string> library_name(lua_State* L, int index) {
     while (!name && lua_next(L, top + 1) != 0) {
         if (lua_type(L, top + 2) == LUA_TSTRING && lua_istable(L, top + 3)) {
             const std::string module = lua_tostring(L, top + 2);
-            if (module == LUA_GNAME) {  // not under a name that the user has given it
+            if (module == LUA_GNAME) {  // not under a user's own name
                 lua::push_standard_globals(L);
                 lua_replace(L, top + 3);
             }
@@ -141,7 +141,7 @@ std::optional<std::string> library_name(lua_State* L, int index) {
     return name;
 }
 
-/// A whole chunk is loaded again: from its file, or from its text, which is its name when load("...") made it.
+/// A main chunk is loaded again: from its file, or for load("...") from its text, which is its name.
 std::optional<std::string> whole_chunk(std::string_view source) {
     if (source.starts_with('=')) {
         return std::nullopt;
@@ -150,7 +150,7 @@ std::optional<std::string> whole_chunk(std::string_view source) {
                                    : "load(" + text::quoted(source) + ")";
 }
 
-/// Pushes the table of texts by function, which keeps no function alive.
+/// Pushes the weak table of texts by function.
 void push_known(lua_State* L) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &known_key) == LUA_TTABLE) return;
     lua_pop(L, 1);
@@ -165,7 +165,7 @@ void push_known(lua_State* L) {
 
 }  // namespace
 
-// What is found stays right: a function never changes, whatever becomes of its file.
+// Results stay valid: a function never changes, even if its file does.
 std::optional<std::string> function_source(lua_State* L, int index) {
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     index = lua_absindex(L, index);
@@ -222,7 +222,7 @@ void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
     lua_pushvalue(L, -1);
     lua_rawseti(L, texts, 0);  // the last one
     lua_pushvalue(L, -1);
-    if (lua_rawget(L, texts) == LUA_TNIL) {  // a text is listed once, however often it is loaded
+    if (lua_rawget(L, texts) == LUA_TNIL) {  // each text is listed once, however often it is loaded
         lua_pushvalue(L, texts + 1);
         lua_pushboolean(L, 1);
         lua_rawset(L, texts);

@@ -1,4 +1,4 @@
-// The source text of a Lua function, for whoever writes down what was simulated.
+// The source text of Lua functions, to document simulations.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace dinal::source {
 
-/// The function at `index` as a Lua expression: "function(t) return 1 end", "math.sin", "load(...)"; none when its text
-/// is not at hand or it cannot be told from others on its lines. Values of upvalues are not in the text.
+/// The function at `index` as a Lua expression: "function(t) return 1 end", "math.sin", "load(...)"; none if its text
+/// is unavailable or ambiguous. Does not include values of upvalues.
 std::optional<std::string> function_source(lua_State* L, int index);
 
-/// Remembers the text of a chunk that is in no file (-e, stdin, an input at the prompt), by the name it was loaded
-/// with ("=stdin"). Many texts may have the same name.
+/// Keeps the text of a chunk without a file (-e, stdin, prompt input) under its chunk name ("=stdin"). Several texts
+/// may share a name.
 void keep_source(lua_State* L, const char* chunk_name, std::string_view text);
 
-/// The text that was kept last under that name.
+/// The last text kept under that name.
 std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name);
 
 }  // namespace dinal::source

@@ -27,7 +27,7 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
     }
 }
 
-/// As its author wrote it, where M is nothing but a function.
+/// The text of an excitation; if it is only a function, the author's text.
 std::string excitation_text(lua_State* L, const model::Excitation& excitation, ValueText& writer) {
     const lua::LuaFunction* function = function_alone(excitation);
     if (function == nullptr) return describe(L, excitation, &writer);
@@ -37,7 +37,7 @@ std::string excitation_text(lua_State* L, const model::Excitation& excitation, V
     return text;
 }
 
-/// "dt = 0.01", or the times themselves, ten to a line.
+/// "dt = 0.01", or the times, ten a line.
 std::string rows_text(const motion::Grid& rows) {
     if (rows.dt() != 0) {
         return fmt::format("dt = {}", rows.dt());
@@ -49,7 +49,7 @@ std::string rows_text(const motion::Grid& rows) {
     return text + " }";
 }
 
-/// Appends "local states = { ... }" and "local events = { ... }" if the run has some.
+/// Appends "local states = { ... }" and "local events = { ... }" if there are any.
 void append_states_and_events(std::vector<std::string>& lines, lua_State* L, const model::Drive& drive,
                               ValueText& writer) {
     if (!drive.states.empty()) {
@@ -80,7 +80,7 @@ void append_states_and_events(std::vector<std::string>& lines, lua_State* L, con
     }
 }
 
-/// "{ a = 1, b = 2 }", or of one body without a name its number.
+/// "{ a = 1, b = 2 }", or for one unnamed body its number.
 std::string by_body(const model::System& system, const std::vector<double>& numbers) {
     if (!system.named) return fmt::format("{}", numbers.front());
     std::string text;
@@ -90,7 +90,7 @@ std::string by_body(const model::System& system, const std::vector<double>& numb
     return "{" + text + " }";
 }
 
-/// The line "local M = ..." by body or joint; none where nothing acts.
+/// Appends "local M = ..." by body or joint, if anything acts.
 void append_acting(std::vector<std::string>& lines, lua_State* L, const char* name, const model::System& system,
                    const std::vector<model::Excitation>& acting, ValueText& writer) {
     std::string text;
@@ -107,7 +107,7 @@ bool acts(const std::vector<model::Excitation>& acting) {
     return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
 }
 
-/// The lines that make a system and all that drives it. Without functions of a user Lua is not asked, and may be null.
+/// The lines that make a system and its drive. L may be null if there are no user functions.
 std::vector<std::string> set_up_lines(lua_State* L, const model::System& system, const model::Drive& drive) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");

@@ -1,4 +1,4 @@
-// Where a run came from: what was asked, and the Lua text that asks it again.
+// The origin of a run: its task, and Lua text that repeats it.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace dinal::source {
 
-/// All that sys:simulate{...} was told, checked for kind but not yet for sense.
+/// The arguments of sys:simulate{...}, of the right types but not yet validated.
 struct Task {
     model::SystemHandle system;
     model::Drive drive;
@@ -20,16 +20,16 @@ struct Task {
     motion::Integrator integrator;
 };
 
-/// What was simulated. A trajectory that was read from a file has none.
+/// The origin of a simulated trajectory; one read from a file has none.
 struct Origin : Task {
-    /// Lua text that makes M and the system again, with the values that the variables of their functions had when the
-    /// run was started; empty where there are no functions, and the text can be had at any time.
+    /// Lua text rebuilding M and the system, upvalues as at the start; empty without functions, when it can be made
+    /// later.
     std::vector<std::string> set_up;
 };
 
 Origin origin_of(lua_State* L, Task task);
 
-/// Lua text that makes the same run again, as lines.
+/// Lua text that repeats the run, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);
 
 }  // namespace dinal::source

@@ -18,12 +18,11 @@ namespace dinal::source {
 
 namespace {
 
-constexpr std::size_t deepest = 50;  // tables and functions within each other; each takes some of the C++ stack
+constexpr std::size_t deepest = 50;  // nesting depth of tables and functions, which use the C++ stack
 
 const char sources_key = 0;  // registry key of a weak table: function -> its text, or false
 
-/// function_source(), which may have to read a whole script, is asked once for each function: sweeps run the same M
-/// often.
+/// Caches function_source(), which may have to read a whole script, as sweeps run the same M often.
 std::optional<std::string> known_source(lua_State* L, int index) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &sources_key) != LUA_TTABLE) {
         lua_newtable(L);
@@ -41,7 +40,7 @@ std::optional<std::string> known_source(lua_State* L, int index) {
         lua_pushvalue(L, index);
         source ? static_cast<void>(lua_pushlstring(L, source->data(), source->size())) : lua_pushboolean(L, 0);
         lua_pushvalue(L, -1);
-        lua_replace(L, -4);  // in the place of nil
+        lua_replace(L, -4);  // replaces nil
         lua_rawset(L, -4);
     }
     std::optional<std::string> source;
@@ -92,7 +91,7 @@ std::string ValueText::table(int index) {
         return nothing("a table that contains itself");
     }
     const int top = lua_gettop(L_);
-    // That of rows of data and of balances only has the order of their names.
+    // The metatable of rows of data and balances only stores the order of names.
     if (lua_getmetatable(L_, index) != 0 && luaL_getmetafield(L_, index, "names") == LUA_TNIL) {
         remarks_.emplace_back("-- the metatable of a table could not be written down");
     }
@@ -119,7 +118,7 @@ std::string ValueText::table(int index) {
     }
     std::sort(named.begin(), named.end());  // the same text in each process
     for (const std::string& entry : named) text += (text.empty() ? "" : ", ") + entry;
-    lua_settop(L_, top);  // the loop may have been left in the middle
+    lua_settop(L_, top);  // the loop may end early
     open_.pop_back();
     return text.empty() ? "{}" : "{ " + text + " }";
 }
@@ -181,10 +180,10 @@ std::string ValueText::function(int index) {
     return text;
 }
 
-/// (function() local a = 1; return function(t) return a*t end end)() for a function with local variables from outside.
+/// (function() local a = 1; return function(t) return a*t end end)() for a function with upvalues.
 std::string ValueText::with_locals(int index, const std::string& source) {
     std::string locals;
-    std::string own_name;  // local function f(t) ... f(t - 1) ... end: f is a variable of f
+    std::string own_name;  // in local function f(t) ... f(t - 1) ... end, f is an upvalue of f
     for (int i = 1; const char* name = lua_getupvalue(L_, index, i); ++i) {
         const bool environment = std::string_view(name) == "_ENV";
         if (lua_rawequal(L_, -1, index) != 0) {
@@ -229,8 +228,8 @@ void ValueText::note_global(int environment, const std::string& name) {
     if (users) {
         names_.push_back(name);
         const bool itself = std::find(open_.begin(), open_.end(), lua_topointer(L_, -1)) != open_.end();
-        // function M(t) return M_old(t) end needs M_old; a function that calls itself is there already, if it has a
-        // name.
+        // function M(t) return M_old(t) end needs M_old first; a function that calls itself already exists under its
+        // name, if it has one.
         if (itself && aside_) nothing("the global function " + name + ", which calls itself: make it local");
         globals_.push_back(name + " = " + (itself ? "nil" : expression(-1)));
     }

@@ -1,4 +1,4 @@
-// The Lua text of values and functions, so that a file of results can say how to repeat the run.
+// The Lua text of values and functions, so that a file of results can state how to repeat the run.
 #pragma once
 
 #include <functional>
@@ -14,27 +14,26 @@
 
 namespace dinal::source {
 
-/// Turns values into Lua expressions, with everything that the functions among them take from outside: local variables
-/// go into the expression, global ones become lines of their own.
+/// Converts values to Lua expressions. Functions include their upvalues; globals that they use become separate lines.
 class ValueText {
 public:
-    /// At most so many values are written down; what is larger belongs into a file of its own.
+    /// `most_values` limits the number of values; larger data belong in a file.
     explicit ValueText(lua_State* L, int most_values = 10'000) : L_(L), budget_(most_values) {}
 
-    /// A variable that stands for the value at `index`, which travels by itself: a vector, a function of another
-    /// language, an object that has no text; empty when there is none. Then nothing is too large.
+    /// Returns a variable for a value that is transferred separately: a vector, a function of another language, an
+    /// object without text; empty for others. Size is then unlimited.
     using Aside = std::function<std::string(int index)>;
     ValueText(lua_State* L, Aside aside) : L_(L), aside_(std::move(aside)), budget_(std::numeric_limits<int>::max()) {}
 
-    /// An expression that gives the value at `index` again; `nil` and one of the remarks() when there is none.
+    /// An expression that makes the value at `index` again; `nil` and an entry in remarks() if there is none.
     std::string expression(int index);
 
-    /// Returns the variable that stands for the numbers, if vectors travel by themselves.
+    /// The variable for the numbers, if vectors are transferred separately.
     std::optional<std::string> aside(const std::vector<double>& numbers);
 
-    /// "w = 3": what must stand before the expressions.
+    /// Lines such as "w = 3" that must precede the expressions.
     [[nodiscard]] const std::vector<std::string>& globals() const { return globals_; }
-    /// Comment lines about what could not be written down.
+    /// Comments on values that could not be written.
     [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
 
 private:
@@ -49,10 +48,10 @@ private:
     lua_State* L_;
     Aside aside_ = {};
     std::vector<std::string> globals_;
-    std::vector<std::string> names_;  // of globals that are done or being done
-    std::vector<const void*> open_;   // tables and functions being written: a cycle has no text
+    std::vector<std::string> names_;  // globals finished or in progress
+    std::vector<const void*> open_;   // tables and functions in progress: a cycle has no text
     std::vector<std::string> remarks_;
-    int budget_;  // values that may still be written down
+    int budget_;  // number of values that may still be written
 };
 
 }  // namespace dinal::source

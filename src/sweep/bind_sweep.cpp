@@ -1,4 +1,4 @@
-// sweep{ ... }: a function of a point asked at all points of a grid, by several threads.
+// sweep{ ... }: calls a function at all points of a grid, on several threads.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ using namespace api;
 
 namespace {
 
-// ---- bifurcation{ ... }: what a motion does once a period, over a parameter; on top of the workers of a sweep.
+// ---- bifurcation{ ... }: stroboscopic states of a motion over a parameter, computed by workers of a sweep.
 
 struct BifurcationOptions {
     double skip = 200;
@@ -88,12 +88,12 @@ constexpr lua::Doc bifurcation_doc{
     "-->   4    1     -5",
     {&bifurcation_call}};
 
-/// The results of a point have names: "theta 1", "velocity 1", ...
+/// The names of a point's results: "theta 1", "velocity 1", ...
 std::string look_name(const char* column, std::size_t look) {
     return fmt::format("{} {}", column, look + 1);
 }
 
-/// Pushes a field of the table at the index, which loses it; returns its type.
+/// Pushes a field of the table at the index and removes it there; returns its type.
 int take_field(lua_State* L, int table, const char* name) {
     const int type = lua_getfield(L, table, name);
     lua_pushnil(L);
@@ -101,7 +101,7 @@ int take_field(lua_State* L, int table, const char* name) {
     return type;
 }
 
-/// The period among the options at the index, as period, frequency or omega, which are taken out.
+/// The period in the options at the index, given as period, frequency or omega, which are removed.
 double period_of_point(lua_State* L, int more, double otherwise) {
     const auto period = [](const char* name, double x) {
         return *name == 'p' ? x : *name == 'f' ? 1 / x : 2 * std::numbers::pi / x;
@@ -122,7 +122,7 @@ double period_of_point(lua_State* L, int more, double otherwise) {
     return found;
 }
 
-/// What the bifurcation itself says to sys:simulate.
+/// Raises an error for options that bifurcation itself passes to sys:simulate.
 void refuse_own_options(lua_State* L, int more) {
     for (const char* name : {"t_end", "dt", "times", "dense"}) {
         if (lua_getfield(L, more, name) != LUA_TNIL) {
@@ -135,7 +135,7 @@ void refuse_own_options(lua_State* L, int more) {
     }
 }
 
-/// The function that the workers ask, with a point; upvalues: the user's function, period, skip, keep.
+/// The function that workers call with a point; upvalues: the user's function, period, skip, keep.
 int looks_of_point(lua_State* L) {
     lua_settop(L, 1);
     lua_pushvalue(L, lua_upvalueindex(1));
@@ -145,7 +145,7 @@ int looks_of_point(lua_State* L) {
         lua::raise(
             L, fmt::format("at must return a table such as {{ system = sys, M = M }}, got {}", lua::describe(L, 1)));
     }
-    lua::push_copy(L, 1);  // at 2 the options of simulate
+    lua::push_copy(L, 1);  // index 2: the options of simulate
     take_field(L, 2, "system");
     const auto* system = lua::test<model::SystemHandle>(L, 3);
     if (system == nullptr) {
@@ -193,7 +193,7 @@ int looks_of_point(lua_State* L) {
     return 1;
 }
 
-/// A row for each look at each of these points; one for a point that failed.
+/// A row for each sample of these points; one row for a failed point.
 std::vector<DataColumn> looks_as_rows(const PointGrid& grid, const SweepResults& results,
                                       const std::vector<std::size_t>& done, std::size_t keep) {
     std::vector<std::size_t> points;
@@ -243,21 +243,22 @@ int bifurcation(lua_State* L) {
         lua_pushinteger(worker, static_cast<lua_Integer>(asked.keep));
         lua_pushcclosure(worker, lua::guarded<looks_of_point>, 4);
     };
-    return push_data(L, swept(L, {.call = bifurcation_call.name,
-                                  .grid = grid,
-                                  .function = function,
-                                  .workers = of_workers.workers,
-                                  .file = of_workers.file,
-                                  .max_time = of_workers.max_time.value_or(0),
-                                  .settings = {period, asked.skip, asked.keep},
-                                  .adapt = adapt,
-                                  .form = {.columns = {}, .points_of = "theta"},
-                                  .told = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
-                                      return looks_as_rows(grid, results, points, keep);
-                                  }}));
+    return push_data(
+        L, swept(L, {.call = bifurcation_call.name,
+                     .grid = grid,
+                     .function = function,
+                     .workers = of_workers.workers,
+                     .file = of_workers.file,
+                     .max_time = of_workers.max_time.value_or(0),
+                     .settings = {period, asked.skip, asked.keep},
+                     .adapt = adapt,
+                     .form = {.columns = {}, .points_of = "theta"},
+                     .make_columns = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
+                         return looks_as_rows(grid, results, points, keep);
+                     }}));
 }
 
-/// Makes a task of the options of sweep.
+/// Makes a task from the options of sweep.
 SweepTask task_of(const lua::Options& options, int function, const PointGrid& grid) {
     SweepOptions asked;
     options.fill(asked);
@@ -323,12 +324,12 @@ void register_sweep(lua_State* L) {
     lua::add_functions(L, sweep_functions);
 }
 
-// minimise{ over, run }: the least value of a function of one or two parameters within limits. A coarse grid finds the
-// valley; The golden section follows it in one parameter, the method of Nelder and Mead (1965) in two.
+// minimise{ over, run }: the minimum of a function of one or two parameters within limits. A coarse grid locates the
+// valley; golden sections follow it in one parameter, the method of Nelder and Mead (1965) in two.
 
 namespace {
 
-constexpr double accuracy = 1.5e-8;  // of the range: below it a function near its least value is rounding
+constexpr double accuracy = 1.5e-8;  // part of the range: closer to the minimum, values differ by rounding only
 
 struct Range {
     std::string name;
@@ -336,14 +337,14 @@ struct Range {
     [[nodiscard]] double at(double part) const { return low + (high - low) * part; }
 };
 
-/// The place in parts of the ranges, and the value there.
+/// A place as fractions of the ranges, and its value.
 struct Spot {
     std::array<double, 2> at{};
     double value = 0;
 };
 using Cost = std::function<double(const std::array<double, 2>& at)>;
 
-/// The golden section between two parts of the range.
+/// Golden sections between two fractions of the range.
 Spot golden_section(const Cost& cost, double a, double b) {
     constexpr double part = 0.6180339887498949;
     Spot left{{b - part * (b - a)}, 0}, right{{a + part * (b - a)}, 0};
@@ -359,7 +360,7 @@ Spot golden_section(const Cost& cost, double a, double b) {
     return left.value <= right.value ? left : right;
 }
 
-/// The simplex of Nelder and Mead, kept within the ranges.
+/// The simplex method of Nelder and Mead within the ranges.
 Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
     const auto look = [&](std::array<double, 2> at) {
         for (double& x : at) x = std::clamp(x, 0.0, 1.0);

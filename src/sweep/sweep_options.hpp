@@ -1,4 +1,4 @@
-// What help() and the manual say about sweeps, and their options besides the parameters.
+// The documentation of sweeps, and their options besides the parameters.
 #pragma once
 
 #include <optional>

@@ -53,20 +53,20 @@ using namespace api;
 
 namespace {
 
-// ---- The threads of a sweep, each with a Lua state of its own into which the user's function was carried.
+// ---- The threads of a sweep, each with its own Lua state and a copy of the user's function.
 
-/// What the workers share.
+/// Shared by the workers.
 struct SweepWork {
     const PointGrid& grid;
     SweepResults& results;
-    std::vector<std::size_t> points;  ///< to be done
+    std::vector<std::size_t> points;  ///< still to be computed
     std::size_t first = 0;            ///< the point of the first result
-    long long seed = 0;               ///< of math.random, with the number of the point
-    const char* call = "sweep";       ///< heads sentences
-    double max_time = 0;              ///< seconds of a point; 0: any
-    /// In the state of a worker: replaces the carried function on the top by the one that is asked.
+    long long seed = 0;               ///< seed of math.random, combined with the number of the point
+    const char* call = "sweep";       ///< beginning of error sentences
+    double max_time = 0;              ///< time limit of a point, seconds; 0: none
+    /// Runs in a worker's state: replaces the copied function on the top by the function to be called.
     const std::function<void(lua_State* worker)>& adapt;
-    /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
+    /// Called 50 times a second on the waiting thread, and at the end; false stops the sweep.
     std::function<bool()> look = {};
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> finished = 0;
@@ -92,7 +92,7 @@ bool carry_data(lua_State* from, int index, lua_State* to) {
     return data != nullptr;
 }
 
-/// Called in the new state with a Carrying; returns the function.
+/// Runs in the new state with a Carrying; returns the function.
 int carry_function(lua_State* L) {
     auto& carrying = *static_cast<Carrying*>(lua_touserdata(L, 1));
     source::Carrier carrier(carrying.from, L, carry_data);
@@ -103,7 +103,7 @@ int carry_function(lua_State* L) {
     return 1;
 }
 
-/// The same text whichever worker it is: not where a table lies in memory.
+/// An error text independent of the worker: without memory addresses.
 int error_as_text(lua_State* L) {
     lua_settop(L, 1);
     if (lua_isstring(L, 1) != 0) return 1;
@@ -114,7 +114,7 @@ int error_as_text(lua_State* L) {
     return 1;
 }
 
-/// The loop of one worker: the places of its stack that stay.
+/// The loop of a worker, with its fixed stack indices.
 struct PointLoop {
     static constexpr int handler = 1, function = 2, seed = 3, columns = 4;
 
@@ -132,7 +132,8 @@ struct PointLoop {
         }
     }
 
-    /// Many points at once as long as there are many: they may be short, and the last ones must not be waited for.
+    /// Takes many points at once while many are left, as they may be short, and few at the end, so that no worker
+    /// waits.
     [[nodiscard]] bool take(std::size_t& first, std::size_t& last) const {
         constexpr std::size_t most = 64;
         const std::size_t count = work.points.size();
@@ -143,7 +144,7 @@ struct PointLoop {
         return first < last;
     }
 
-    /// False when it was stopped.
+    /// Computes a point; returns false if it was stopped.
     [[nodiscard]] bool point(std::size_t number) const {
         lua_settop(L, columns);
         lua_pushvalue(L, seed);
@@ -181,7 +182,7 @@ struct PointLoop {
         return true;
     }
 
-    /// Ends the task; whether it was given up, which is then its result.
+    /// Ends a task; returns whether it was given up, which is then its result.
     [[nodiscard]] bool is_given_up(std::size_t place) const {
         const bool late = watch.has_given_up();
         ++watch.task;
@@ -192,7 +193,7 @@ struct PointLoop {
         return true;
     }
 
-    /// What is wrong with the result on the top of the stack. Afterwards each name in it has its column.
+    /// Returns the error in the result on the top of the stack. Afterwards each of its names has a column.
     [[nodiscard]] std::string complaint() const {
         if (!lua_istable(L, -1)) {
             return fmt::format("run must return a table of named numbers such as {{ A = s.amplitude }}, got {}",
@@ -235,14 +236,14 @@ struct PointLoop {
     }
 };
 
-/// Called with the function, the SweepWork and the WorkerWatch.
+/// Receives the function, the SweepWork and the WorkerWatch.
 int work_on_points(lua_State* L) {
     auto& work = *static_cast<SweepWork*>(lua_touserdata(L, 2));
     auto& watch = *static_cast<lua::WorkerWatch*>(lua_touserdata(L, 3));
     lua_settop(L, 1);
     lua_pushcfunction(L, lua::guarded<error_as_text>);
     lua_insert(L, 1);
-    lua::push_standard_globals(L);  // a user may have a `math` of his own
+    lua::push_standard_globals(L);  // a user may have redefined `math`
     lua_getfield(L, -1, LUA_MATHLIBNAME);
     lua_getfield(L, -1, "randomseed");
     lua_insert(L, 3);
@@ -254,8 +255,8 @@ int work_on_points(lua_State* L) {
 
 class SweepWorkers {
 public:
-    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible. A function of
-    /// another language stays where it is, and the thread of the call does all points.
+    /// Copies the function at `index` to a new state for each worker; raises an error if that is impossible. A function
+    /// of another language is not copied: the calling thread computes all points.
     SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
         if (const lua::Foreign* other = lua::foreign(L, index)) {
             if (work.max_time > 0) {
@@ -280,7 +281,7 @@ public:
         }
     }
 
-    /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
+    /// Computes all points, or until a stop is requested. Raises an error if memory is insufficient.
     void run(lua_State* L) {
         using std::chrono::milliseconds;
         constexpr milliseconds look_again{20};
@@ -355,29 +356,29 @@ private:
         --running_;
         ended_.notify_one();
     }
-    /// Gives up what has taken too long.
+    /// Gives up tasks that take too long.
     void watch(std::vector<std::thread>& threads) {
         const double now = now_in_seconds();
         for (std::size_t i = 0; i < threads.size(); ++i) {
             lua::WorkerWatch& own = watches_[i];
             const std::uint64_t task = own.task;
             if (now - own.since <= work_.max_time) continue;
-            own.given_up = task;  // no other one, should it have ended meanwhile
+            own.given_up = task;  // only this one: the worker may already have a new task
             lua::nudge(threads[i].native_handle());
         }
     }
 
     SweepWork& work_;
     std::vector<lua::OwnedState> states_;
-    std::deque<lua::WorkerWatch> watches_;  // of the threads
+    std::deque<lua::WorkerWatch> watches_;  // one for each thread
     std::mutex ending_;
     std::condition_variable ended_;
     std::size_t running_ = 0;
     std::string trouble_;
-    int function_ = 0;  // on the stack, of another language; 0: it is in the states
+    int function_ = 0;  // stack index of a function of another language; 0: it is in the states
 };
 
-// ---- what Ctrl-C has broken off, for the same call to go on
+// ---- sweeps stopped by Ctrl-C, continued by the same call
 
 const char unfinished_key = 0;  // in the registry
 
@@ -435,7 +436,7 @@ std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
 
 struct Failures {
     std::size_t count = 0;
-    std::string place, message;  ///< of the first one: "r = 0.5, g = 1"
+    std::string place, message;  ///< the first failure: "r = 0.5, g = 1"
 };
 
 Failures failures_in(const Data& data, const PointGrid& grid) {
@@ -451,7 +452,7 @@ Failures failures_in(const Data& data, const PointGrid& grid) {
     return found;
 }
 
-/// The most threads that this machine allows a sweep: DINAL_WORKERS, if its administrator or user has set it.
+/// The greatest number of threads for a sweep: DINAL_WORKERS, if set by an administrator or user.
 std::size_t most_workers(lua_State* L) {
     const char* variable = std::getenv("DINAL_WORKERS");
     if (variable == nullptr || *variable == '\0') return std::numeric_limits<std::size_t>::max();
@@ -476,7 +477,7 @@ const lua::Class unfinished_class = {"unfinished sweep", {"", "", ""}, std::span
 
 class SweepRun {
 public:
-    /// Takes what was done before: in this process, or of a file.
+    /// Loads points computed before, in this process or in a file.
     SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {
         if (!task.file.empty()) open_journal();
         if (task.file.empty() && !task.points) results_ = take_unfinished(L_, print_);
@@ -485,7 +486,7 @@ public:
     }
 
     Data run() {
-        if (journal_ && journal_->result()) return told(*journal_->result());
+        if (journal_ && journal_->result()) return with_heading(*journal_->result());
         work();
         if (lua::interrupt_requested()) stop();
         if (trouble_) fail();
@@ -501,7 +502,7 @@ public:
         }
         return firsts;
     }
-    /// Returns how many points are done.
+    /// Stores results; returns the number of finished points.
     std::size_t take(lua_State* L, std::size_t first, const Data& data) {
         L_ = L;
         std::vector<std::size_t> points(data.size());
@@ -511,16 +512,16 @@ public:
         if (trouble_) fail();
         return results_->done();
     }
-    /// Puts the finished points into dinal.partial.
+    /// Puts the finished points in dinal.partial.
     void keep(lua_State* L) {
         L_ = L;
         if (!journal_) keep_unfinished(L_, print_, results_);
-        push_data(L_, told());
+        push_data(L_, finished_data());
         set_partial(L_);
     }
     Data finish(lua_State* L) {
         L_ = L;
-        return journal_ && journal_->result() ? told(*journal_->result()) : finished();
+        return journal_ && journal_->result() ? with_heading(*journal_->result()) : finished();
     }
 
 private:
@@ -566,8 +567,8 @@ private:
         workers.run(L_);
     }
 
-    /// With what the first line says when points have failed: nobody looks into a column that should be empty.
-    [[nodiscard]] Data told(std::vector<DataColumn> columns) const {
+    /// Adds a heading that reports failed points, as nobody checks a column that should be empty.
+    [[nodiscard]] Data with_heading(std::vector<DataColumn> columns) const {
         Data data = task_.form;
         data.columns = std::move(columns);
         if (const Failures failed = failures_in(data, task_.grid); failed.count > 0) {
@@ -577,15 +578,15 @@ private:
         return data;
     }
 
-    /// What is done.
-    [[nodiscard]] Data told() const {
+    /// The data of the finished points.
+    [[nodiscard]] Data finished_data() const {
         const std::vector<std::size_t> points = results_->done_points();
-        if (task_.told) return told(task_.told(*results_, points));
+        if (task_.make_columns) return with_heading(task_.make_columns(*results_, points));
         std::vector<std::size_t> places = points;
         for (std::size_t& place : places) place += first();
         std::vector<DataColumn> columns = task_.grid.columns(places);
         for (DataColumn& column : results_->columns(points)) columns.push_back(std::move(column));
-        return told(std::move(columns));
+        return with_heading(std::move(columns));
     }
 
     [[noreturn]] void stop() {
@@ -598,14 +599,14 @@ private:
     }
 
     [[noreturn]] void fail() {
-        push_data(L_, told());
+        push_data(L_, finished_data());
         set_partial(L_);
         trouble_->sentence += fmt::format(
             "; finished points are kept in '{}' and dinal.partial, and the same call continues", journal_->path());
         lua::fail(L_, task_.call, *trouble_);
     }
 
-    /// A mistake in the function makes all points fail; that is one error, and no map.
+    /// Raises an error if all points failed, as from a mistake in the function.
     void raise_if_all_failed(const Data& data) const {
         const Failures failed = failures_in(data, task_.grid);
         if (failed.count < task_.grid.size()) return;
@@ -618,9 +619,9 @@ private:
     }
 
     Data finished() {
-        if (task_.points) return told();
+        if (task_.points) return finished_data();
         if (!journal_) keep_unfinished(L_, 0, nullptr);
-        Data data = told();
+        Data data = finished_data();
         raise_if_all_failed(data);
         if (journal_) trouble_ = journal_->finish(data);
         if (trouble_) fail();
@@ -635,7 +636,7 @@ private:
     std::optional<text::Error> trouble_;
 };
 
-// ---- a sweep whose points are computed by Python's executors, as a Lua object without documentation
+// ---- a sweep computed by Python's executors, an undocumented Lua object
 
 struct PartedSweep {
     explicit PartedSweep(std::vector<DataColumn> parameters) : grid(std::move(parameters)) {}
@@ -646,7 +647,7 @@ struct PartedSweep {
 };
 using PartedHandle = std::shared_ptr<PartedSweep>;
 
-/// The first points of the chunks that are left.
+/// The first points of the remaining chunks.
 std::vector<double> left_of(const PartedHandle& sweep) {
     return sweep->run->left();
 }
@@ -699,7 +700,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes columns as CSV, after a line with the size and a digest that show whether the block is whole.
+/// Columns as CSV, after a line with size and digest that detect truncation.
 std::string block_of(std::span<const DataColumn> columns) {
     std::string text;
     for (const DataColumn& column : columns) text += (text.empty() ? "" : ",") + files::field_of(column.name);
@@ -718,7 +719,7 @@ std::string block_of(std::span<const DataColumn> columns) {
     return fmt::format("# {} bytes, {:016x}\n", text.size(), source::digest_of(text)) + text;
 }
 
-/// Removes the first block from the text and returns its columns; empty if the block is not whole.
+/// Takes the first block off the text and returns its columns; none if it is incomplete.
 std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
     const std::size_t line = text.find('\n') + 1;
     std::size_t bytes = 0;
@@ -733,7 +734,7 @@ std::optional<std::vector<DataColumn>> take_block(std::string_view& text) {
     text.remove_prefix(line + bytes);
     std::vector<DataColumn> columns;
     for (files::ReadColumn& column : read.value().columns) {
-        // A column of empty messages was read as numbers.
+        // A column of empty messages looks like numbers.
         const bool is_error = column.name == "error" && !column.of_words;
         columns.push_back(is_error ? column_of("error", std::vector<std::string>(column.numbers.size()))
                                    : column_of(std::move(column)));
@@ -795,7 +796,7 @@ std::optional<text::Error> SweepJournal::open() {
     return take_result();
 }
 
-/// Reads the whole blocks and cuts off the rest.
+/// Reads complete blocks and truncates the rest.
 std::optional<text::Error> SweepJournal::take_points() {
     std::string text;
     char buffer[1U << 16U];
@@ -818,7 +819,7 @@ std::optional<text::Error> SweepJournal::take_points() {
     return rest.empty() ? std::nullopt : append("");
 }
 
-/// Writes after the last whole block.
+/// Writes after the last complete block.
 std::optional<text::Error> SweepJournal::append(std::string_view text) {
     const int file = journal_->number();
     bool good = ::ftruncate(file, static_cast<off_t>(size_)) == 0;
@@ -885,7 +886,8 @@ double* SweepResults::column(std::string_view name) {
 }
 
 namespace {
-constexpr std::uint64_t nan_of_words = 0xFFF8'0000'0000'0000U;  ///< and the place of the word
+constexpr std::uint64_t nan_of_words =
+    0xFFF8'0000'0000'0000U;  ///< bits of a nan that stands for a word; its index is added
 }
 
 double SweepResults::word(std::string_view text) {

@@ -1,4 +1,4 @@
-// A sweep from the call to its results: what was broken off before, the workers, Ctrl-C.
+// A sweep from the call to its results: resumption, workers, Ctrl-C.
 #pragma once
 
 #include <algorithm>
@@ -26,25 +26,25 @@ namespace dinal::sweep {
 
 using api::Data, api::DataColumn, api::PointGrid;
 
-// What the points of a sweep gave: named columns that several threads fill, each its own points.
+// The results of a sweep: named columns that several threads fill, each for its own points.
 
 class SweepResults {
 public:
-    /// Told chunk by chunk: so many points each.
+    /// Completion is tracked in chunks of this size.
     explicit SweepResults(std::size_t points, std::size_t chunk_size);
 
-    /// The numbers of a column, nan until they are set; made when it is first asked for, nullptr when there are too
-    /// many. It stays where it is.
+    /// The numbers of a column, nan until set; created on first use, nullptr if there are too many. Its address stays
+    /// valid.
     double* column(std::string_view name);
     static constexpr std::size_t most_columns = 20'000;
 
-    /// Adds results of these points, by name; the last column has the messages.
+    /// Adds results for these points by name; the last column has the messages.
     void take(const std::vector<std::size_t>& points, std::span<const DataColumn> columns);
 
-    /// A word as a number that can stand in a column: a nan of its own.
+    /// Encodes a word as a special nan for a column.
     double word(std::string_view text);
 
-    /// The point has all its numbers, or a message instead. Each point is told once, by one thread.
+    /// Marks a point as complete, with numbers or a message. Call once for each point.
     void finish(std::size_t point) {
         done_[point] = 1;
         done_in_chunk_[point / chunk_size_].fetch_add(1, std::memory_order_release);
@@ -55,99 +55,98 @@ public:
     [[nodiscard]] bool is_done(std::size_t point) const { return done_[point] != 0; }
     [[nodiscard]] std::size_t chunk_size() const { return chunk_size_; }
     [[nodiscard]] std::size_t chunks() const { return done_in_chunk_.size(); }
-    /// Also while others work: once it is true, what the chunk gave does not change any more.
+    /// May be called while others work: once true, the results of the chunk are final.
     [[nodiscard]] bool is_complete(std::size_t chunk) const {
         const std::size_t first = chunk * chunk_size_;
         return done_in_chunk_[chunk].load(std::memory_order_acquire) == std::min(chunk_size_, size() - first);
     }
-    /// All results of these points by their names, then `error`, empty where there is none. Also while others work, of
-    /// points that are done.
+    /// The results of these finished points by name, followed by `error`, empty without one. May be called while others
+    /// work.
     [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
 
-    // What follows is for one thread, while no other changes anything.
+    // The following are for a single thread, while no other changes anything.
 
     [[nodiscard]] const std::map<std::size_t, std::string>& failures() const { return failures_; }
     [[nodiscard]] std::size_t done() const;
-    /// nullptr when there is none of this name.
+    /// The column of this name, or nullptr.
     [[nodiscard]] const double* find(std::string_view name) const;
-    /// The points that are done, in their order.
+    /// The finished points in order.
     [[nodiscard]] std::vector<std::size_t> done_points() const;
 
 private:
-    /// These numbers of a column as words, when a word is among them.
+    /// The words in these numbers of a column, if there are any.
     [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
 
     std::size_t chunk_size_;
-    mutable std::mutex changing_;  // of the columns, the failures and the words, not of the numbers
+    mutable std::mutex changing_;  // guards the columns, failures and words, but not the numbers
     std::map<std::string, std::vector<double>, std::less<>> columns_;
     std::map<std::size_t, std::string> failures_;
     std::vector<std::string> words_;
-    std::map<std::string, std::uint64_t, std::less<>> places_;  // of the words, from 1
+    std::map<std::string, std::uint64_t, std::less<>> places_;  // indices of words, from 1
     std::vector<unsigned char> done_;
     std::vector<std::atomic<std::size_t>> done_in_chunk_;
 };
 
 struct SweepTask {
-    const char* call;  ///< heads sentences
+    const char* call;  ///< beginning of error sentences
     const PointGrid& grid;
-    int function;  ///< its index on the stack
+    int function;  ///< its stack index
     std::optional<double> workers = {};
     double seed = 0;
-    std::string file = {};  ///< none: it is not kept
-    double max_time = 0;    ///< seconds of a point; 0: any
-    std::string mark = {};  ///< stands for the function where it is written in another language
-    std::optional<std::pair<std::size_t, std::size_t>> points = {};  ///< these alone, to the one before the second
-    std::vector<double> settings = {};                               ///< what else decides about the results
-    /// In the state of a worker: replaces the carried function on the top by the one that is asked.
+    std::string file = {};                                           ///< empty: not stored
+    double max_time = 0;                                             ///< time limit of a point, seconds; 0: none
+    std::string mark = {};                                           ///< identifies a function of another language
+    std::optional<std::pair<std::size_t, std::size_t>> points = {};  ///< half-open range to compute; none: all
+    std::vector<double> settings = {};                               ///< other inputs that determine the results
+    /// Runs in a worker's state: replaces the copied function on the top by the function to be called.
     std::function<void(lua_State* worker)> adapt = {};
-    /// What the data are besides their columns.
+    /// The properties of the resulting data besides columns.
     Data form = {};
-    /// The columns of these points, if they are others than the parameters and the results.
-    std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)> told =
-        {};
+    /// Makes the columns of these points, if they differ from parameters and results.
+    std::function<std::vector<DataColumn>(const SweepResults& results, const std::vector<std::size_t>& points)>
+        make_columns = {};
 };
 
-/// An error of the call when the name of the file is none.
+/// Raises an error if the file name is invalid.
 void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked);
 
-/// All points. Raises when all of them fail; after Ctrl-C, when what is done is in dinal.partial, and the same task
-/// goes on from there, with a file also in another process.
+/// Computes all points. Raises an error if all fail, and after Ctrl-C: then dinal.partial has the finished points, and
+/// the same task continues from there, with a file also in another process.
 Data swept(lua_State* L, const SweepTask& task);
 
-/// Pushes a sweep whose points the caller computes: left(), take(first, data), keep() and finish().
+/// Pushes a sweep whose points the caller computes, with left(), take(first, data), keep() and finish().
 void push_parted(lua_State* L, std::vector<DataColumn> parameters,
                  const std::function<SweepTask(const PointGrid&)>& task);
 /// sweep{ ... }
 int run_sweep(lua_State* L);
-/// Does that for the options of sweep, and the mark of a function of another language.
+/// Calls push_parted() with the options of sweep and the mark of a function of another language.
 int sweep_in_parts(lua_State* L);
 
-/// sweep, bifurcation and minimise; in bind_sweep.cpp.
+/// Registers sweep, bifurcation and minimise; in bind_sweep.cpp.
 void register_sweep(lua_State* L);
 extern const lua::Class sweep_functions;
 void register_unfinished_sweep(lua_State* L);
 
-/// The number of points of a chunk: at most so many are lost when the process is killed.
+/// The number of points in a chunk, the most that are lost if the process is killed.
 std::size_t chunk_size_for(std::size_t points);
 
-/// The finished points of a sweep in FILE.part, to whose end chunks are added as they are completed, by this process
-/// alone; in the end they become the file. What a death has cut off is not taken. A mark of grid and function keeps
-/// different sweeps apart.
+/// The finished points of a sweep in FILE.part, to which this process alone appends completed chunks; finally it
+/// becomes the file. Truncated chunks are dropped. A mark of grid and function distinguishes sweeps.
 class SweepJournal {
 public:
-    /// `mark` is that of what is asked.
+    /// `mark` identifies the task.
     SweepJournal(std::string file, const std::string& mark, SweepResults& results);
 
-    /// Takes what is done, or the result if the file is there. Fails when something of another sweep is there, another
-    /// process is at it, or nothing can be written.
+    /// Loads finished points, or the complete file. Fails if it belongs to another sweep, is in use by another process,
+    /// or cannot be written.
     std::optional<text::Error> open();
     [[nodiscard]] const std::optional<std::vector<DataColumn>>& result() const { return result_; }
 
-    /// Adds the chunks that were completed since it was last asked, also while others work; or what there is of all.
+    /// Appends chunks completed since the last call, also while others work; `incomplete`: also partial ones.
     std::optional<text::Error> write(bool incomplete);
-    /// The file of the result; the journal goes.
+    /// Writes the result file and removes the journal.
     std::optional<text::Error> finish(const Data& result);
-    /// Nothing of it is worth keeping.
+    /// Removes a journal without useful points.
     void discard() const;
 
     [[nodiscard]] const std::string& path() const { return path_; }
@@ -160,9 +159,9 @@ private:
 
     std::string file_, path_, mark_;
     SweepResults& results_;
-    std::vector<bool> written_;  // chunks
+    std::vector<bool> written_;  // by chunk
     std::shared_ptr<files::Descriptor> journal_ = {};
-    std::size_t size_ = 0;  // of what is whole in it
+    std::size_t size_ = 0;  // length of its complete part
     std::optional<std::vector<DataColumn>> result_;
 };
 

@@ -12,7 +12,7 @@
 namespace dinal::terminal {
 namespace {
 
-constexpr int narrowest = 20;  // text laid out for less is unreadable anyway
+constexpr int narrowest = 20;  // text laid out for fewer columns is unreadable anyway
 
 std::string_view variable(const char* name) {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets variables
@@ -34,7 +34,7 @@ Display display_of(int descriptor) {
     if (!screen.terminal) {
         return screen;
     }
-    screen.colour = obeys_escapes() && variable("NO_COLOR").empty();  // as https://no-color.org says
+    screen.colour = obeys_escapes() && variable("NO_COLOR").empty();  // see https://no-color.org
     winsize size{};
     if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         screen.columns = size.ws_col;

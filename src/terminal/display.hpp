@@ -1,4 +1,4 @@
-// What the other end of an output can show: how wide it is, which characters and whether colours.
+// The abilities of a terminal or another output: its width, its characters and its colours.
 #pragma once
 
 #include <cstddef>
@@ -8,22 +8,22 @@
 namespace dinal::terminal {
 
 struct Display {
-    std::size_t width = 80;  ///< for text: 20 at least
-    bool unicode = true;     ///< UTF-8, else ASCII
-    bool colour = false;     ///< a terminal that knows colours, and no NO_COLOR
+    std::size_t width = 80;  ///< columns for text, at least 20
+    bool unicode = true;     ///< whether it shows UTF-8; otherwise only ASCII
+    bool colour = false;     ///< whether it is a terminal with colours and NO_COLOR is not set
     bool terminal = false;
-    bool draws = true;  ///< bars and braille: UTF-8, and no dumb terminal
-    int columns = 80;   ///< of the window, however narrow
+    bool draws = true;  ///< whether it shows bars and braille: UTF-8, and TERM is not "dumb"
+    int columns = 80;   ///< the width of the window, however narrow
     int rows = 24;
 };
 
-/// As it is now: a terminal may have got another size. What is no terminal is 80 columns wide.
+/// The present abilities (the window may have been resized). An output that is no terminal counts as 80 columns wide.
 Display display_of(int descriptor);
 
-/// The terminal obeys escape sequences: TERM is set, and not to "dumb".
+/// Returns whether the terminal obeys escape sequences: TERM is set, and not to "dumb".
 bool obeys_escapes();
 
-/// Our own text for a screen: Greek letters and the like are spelled out when it must be so.
+/// Spells out Greek letters and the like if the screen cannot show them; for text of dinal itself.
 std::string spelled(std::string_view text, const Display& screen);
 
 }  // namespace dinal::terminal

@@ -23,7 +23,7 @@ void write_out(std::string_view text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
 }
 
-/// Keys one by one, without an echo, as long as it lives; Ctrl-C is a key, too.
+/// Reads single keys without echo during its lifetime; Ctrl-C is read as a key, too.
 class Keys {
 public:
     Keys() : good_(::tcgetattr(STDIN_FILENO, &before_) == 0) {
@@ -39,7 +39,7 @@ public:
     Keys(const Keys&) = delete;
     Keys& operator=(const Keys&) = delete;
 
-    /// '\0' when there is none any more, or a signal came.
+    /// Returns '\0' at the end of the input or after a signal.
     [[nodiscard]] char read() const {
         char key = '\0';
         return good_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
@@ -58,11 +58,11 @@ bool keys_wait() {
 bool has_pages(const Display& screen) {
     const char* pager = std::getenv("PAGER");  // NOLINT(concurrency-mt-unsafe): nobody sets variables
     const bool wanted = pager == nullptr || (*pager != '\0' && std::string_view(pager) != "cat");
-    // What is typed already is meant for the prompt.
+    // Keys that have been typed already are meant for the prompt.
     return wanted && screen.terminal && obeys_escapes() && ::isatty(STDIN_FILENO) != 0 && !keys_wait();
 }
 
-/// The rows of the screen, each a part of the text with its end of line.
+/// Returns the rows of the screen, each a part of the text with its end of line.
 std::vector<std::string_view> rows_of(std::string_view text, std::size_t width) {
     std::vector<std::string_view> rows;
     while (!text.empty()) {
@@ -92,7 +92,7 @@ Wanted ask(std::size_t shown, std::size_t all, std::size_t width) {
     return Wanted::nothing;
 }
 
-/// The rows that are not shown yet, cut anew for a terminal that has another width by now.
+/// Breaks the remaining rows again after a change of the terminal's width.
 void cut_anew(std::vector<std::string_view>& rows, std::size_t shown, std::string_view text, std::size_t width) {
     const auto at = static_cast<std::size_t>(rows[shown].data() - text.data());
     rows.resize(shown);
@@ -120,7 +120,7 @@ void show_in_pages(std::string_view text) {
         for (; wanted > 0 && shown < rows.size(); --wanted, ++shown) write_out(rows[shown]);
         if (shown == rows.size()) break;
         const Wanted more = ask(shown, rows.size(), screen.width);
-        const Display now = display_of(STDOUT_FILENO);  // somebody may have pulled at the window meanwhile
+        const Display now = display_of(STDOUT_FILENO);  // the window may have been resized meanwhile
         if (now.width != screen.width) cut_anew(rows, shown, text, now.width);
         screen = now;
         page = static_cast<std::size_t>(std::max(screen.rows, least_rows)) - 1;

@@ -25,14 +25,14 @@ constexpr long period_ms = 100;
 constexpr long never_ms = std::numeric_limits<long>::max();
 
 std::vector<Progress*> under_way;  // the outermost first
-long next_ms = never_ms;           // when the line is drawn next
-std::size_t drawn = 0;             // columns of the line that stands there, or more; 0: there is none
-bool within_line = false;          // the script has written a part of a line
-std::mutex drawing;                // what threads beside that of the progress write erases the line, too
+long next_ms = never_ms;           // time of the next redraw
+std::size_t drawn = 0;             // columns of the line on the screen, or more; 0: no line
+bool within_line = false;          // whether the script has written part of a line
+std::mutex drawing;                // output of other threads erases the line, too
 thread_local bool hides_progress = false;
-ProgressViewer viewer = nullptr;  // in place of the terminal
+ProgressViewer viewer = nullptr;  // replaces the terminal if set
 
-/// Some milliseconds coarse and very quick: a stepping loop asks for it.
+/// A clock with a resolution of some milliseconds, cheap enough for a stepping loop.
 long now_ms() {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC_COARSE, &now);
@@ -57,7 +57,7 @@ void erase() {
 
 }  // namespace
 
-/// Of what is under way at that place of the stack, what lies within included. Less than 0: nobody knows.
+/// The fraction done of the task at `place` of the stack, including the tasks inside it. Negative: unknown.
 double fraction_from(std::size_t place) {
     const Progress& own = *under_way[place];
     if (!std::isfinite(own.end_)) {
@@ -125,7 +125,7 @@ void Progress::advance(double reached) {
     next_ms = viewer != nullptr || isatty(STDERR_FILENO) != 0 ? now + period_ms : never_ms;
     const std::lock_guard lock(drawing);
     if (viewer != nullptr) {
-        constexpr std::size_t page = 79;  // columns that a page shows without wrapping
+        constexpr std::size_t page = 79;  // columns that a web page shows without wrapping
         viewer(progress_text(facts(), page, Letters::utf8));
         drawn = page;
         return;
@@ -134,11 +134,11 @@ void Progress::advance(double reached) {
         return;
     }
     const Display screen = display_of(STDERR_FILENO);
-    // Without the last column, in which some terminals go on to the next line.
+    // The last column stays empty: some terminals wrap after writing it.
     const auto columns = static_cast<std::size_t>(screen.columns) - 1;
     const std::string text = progress_text(facts(), columns, screen.draws ? Letters::utf8 : Letters::ascii);
     erase();
-    write_line(text + "\r");  // at its beginning, so that the ^C of the terminal is not put behind it and wraps
+    write_line(text + "\r");  // to the start, so that the terminal's ^C does not wrap the line
     drawn = columns;
 }
 
@@ -166,10 +166,10 @@ void end_progress() {
 
 namespace {
 
-constexpr std::size_t longest_bar = 30;  // columns within its ends
+constexpr std::size_t longest_bar = 30;  // columns between its ends
 constexpr std::size_t shortest_bar = 6;
 
-/// A text and its columns on the screen.
+/// A text and its width in columns.
 struct Piece {
     std::string text;
     std::size_t width = 0;
@@ -180,7 +180,7 @@ Piece ascii_piece(std::string text) {
     return {std::move(text), width};
 }
 
-/// The label in at most so many columns.
+/// The label, cut to `columns`.
 Piece label_piece(const std::string& label, std::size_t columns, Letters letters) {
     const std::string clean = text::displayable(label);
     const std::string shown = letters == Letters::utf8 ? clean : text::in_ascii(clean);
@@ -192,7 +192,7 @@ Piece label_piece(const std::string& label, std::size_t columns, Letters letters
     return {cut, text::columns(cut)};
 }
 
-/// With its ends `columns` wide.
+/// A bar of `columns` including its ends.
 Piece bar_piece(double fraction, std::size_t columns, Letters letters) {
     constexpr std::array<const char*, 8> parts{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
     const std::size_t inner = columns - 2;
@@ -212,7 +212,7 @@ Piece bar_piece(double fraction, std::size_t columns, Letters letters) {
     return {text, columns};
 }
 
-/// Pieces with a blank between them; empty ones take no room.
+/// Joins pieces by blanks; empty ones take no space.
 Piece joined(const std::vector<Piece>& pieces) {
     Piece result;
     for (const Piece& piece : pieces) {
@@ -235,7 +235,7 @@ Piece listed(const std::vector<std::string>& facts) {
 std::string progress_text(const ProgressFacts& facts, std::size_t columns, Letters letters) {
     const bool known = facts.fraction >= 0;
     const Piece label = label_piece(facts.label, columns / 3, letters);
-    // Rounded down: 100% would be a lie before the end.
+    // Rounded down: 100% must not appear before the end.
     const Piece percent = ascii_piece(known ? fmt::format("{:3.0f}%", std::floor(100 * facts.fraction)) : "");
     const std::string left = known ? duration_text(facts.seconds_left) + " left" : "";
     const std::array<std::vector<std::string>, 4> choices{

@@ -1,8 +1,8 @@
-// The progress line: on standard error when that is a terminal, after half a second, ten times a second, erased in the
-// end. A program that is not a terminal, such as a notebook, gets the same line by a function of its own.
+// The progress line: on standard error if that is a terminal, shown after half a second, redrawn ten times a second and
+// erased at the end. Other front ends, such as a notebook, get the same line through a function.
 //
-// What is under way is a stack: a run within a loop within a loop. The line is that of the outermost, and what lies
-// within it counts as the part of a step that is done.
+// Tasks form a stack: a run within a loop within a loop. The line shows the outermost; progress of the inner ones
+// counts as part of its current step.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace dinal::terminal {
 
-// How far a computation has come, as one line that fits the window.
+// The progress of a computation as one line that fits the window.
 
 enum class Letters { ascii, utf8 };
 
 struct ProgressFacts {
-    std::string label;        ///< the user's; anything may be in it
-    double fraction = 0;      ///< 0 to 1; less than 0 when nobody knows
+    std::string label;        ///< given by the user; may contain any bytes
+    double fraction = 0;      ///< 0 to 1; negative if unknown
     std::string done;         ///< "3 of 10"
     std::string rate;         ///< "12/s"
-    double seconds_left = 0;  ///< only when there is a fraction
+    double seconds_left = 0;  ///< valid if the fraction is known
 };
 
-/// "sweep   42% [########............] 42 of 100, 3.2/s, 0:18 left" in at most so many columns. What does not fit goes,
-/// the least important first: `done`, most of the bar, the rate, all of the bar, the time, the end of the label.
+/// "sweep   42% [########............] 42 of 100, 3.2/s, 0:18 left" in at most `columns`. If it is too long, parts are
+/// dropped in this order: `done`, most of the bar, the rate, all of the bar, the time, the end of the label.
 std::string progress_text(const ProgressFacts& facts, std::size_t columns, Letters letters);
 
 /// "8 s", "2:05", "1:02:05"
@@ -31,15 +31,15 @@ std::string duration_text(double seconds);
 
 class Progress {
 public:
-    /// Of a loop: `total` steps, infinity when nobody knows.
+    /// A loop of `total` steps; infinity if their number is unknown.
     static Progress of_steps(std::string label, double total) { return {std::move(label), 0, total, Kind::steps}; }
-    /// Of a run from one time to another.
+    /// A run from one time to another.
     static Progress of_time(double start, double end) { return {"", start, end, Kind::time}; }
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// To be called often, with the number of steps that are done, or the time reached.
+    /// Reports the number of steps done, or the time reached. Cheap: call it often.
     void advance(double reached);
 
 private:
@@ -55,19 +55,19 @@ private:
     bool hidden_;
 };
 
-/// From now on this function gets each line in place of the terminal, and "" when the line goes. It is called on the
-/// thread of the progress, and what scripts print needs no room from it. nullptr: the terminal again.
+/// Redirects each line to this function instead of the terminal; "" means that the line disappears. The function is
+/// called on the progress thread. nullptr: the terminal again.
 using ProgressViewer = void (*)(const std::string& line);
 void show_progress_by(ProgressViewer viewer);
 
-/// From now on nothing that is under way on this thread is shown: it is a part of what another thread waits for.
+/// Hides all progress of this thread: it works for a task that another thread reports.
 void show_no_progress_here();
 
-/// Something else is about to be written to the terminal: the line goes, until there is something new to say.
-/// `ends_line` is false when what is written leaves the cursor within a line, which nothing may then write over.
+/// Removes the line before other output; it returns with the next news. `ends_line`: whether that output ends its line;
+/// otherwise nothing may be written over it.
 void make_way_for_output(bool ends_line);
 
-/// What ran has ended, however it ended: the line goes, and what was under way is forgotten.
+/// Removes the line and clears the stack, however the task ended.
 void end_progress();
 
 }  // namespace dinal::terminal

@@ -15,7 +15,7 @@ enum class Kind { letter, blank, control, none };
 struct Character {
     utf8proc_int32_t code = 0xFFFD;
     std::size_t bytes = 1;
-    Kind kind = Kind::none;  // a byte that is no UTF-8
+    Kind kind = Kind::none;  // none: a byte that is not UTF-8
     std::size_t columns = 1;
 };
 
@@ -31,26 +31,26 @@ Kind kind_of(utf8proc_int32_t code) {
         case UTF8PROC_CATEGORY_ZP:
             return Kind::blank;
         default:
-            return (code & 0xFFFE) == 0xFFFE ? Kind::control : Kind::letter;  // no characters, and XML refuses them
+            return (code & 0xFFFE) == 0xFFFE ? Kind::control : Kind::letter;  // noncharacters, which XML forbids
     }
 }
 
-/// The character that begins the text, which is not empty.
+/// The first character of a non-empty text.
 Character first_of(std::string_view text) {
     Character first;
-    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: all may be seen so
+    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: bytes are unsigned
     const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &first.code);
     if (size <= 0) {
         return {};
     }
     first.bytes = static_cast<std::size_t>(size);
     first.kind = kind_of(first.code);
-    // Not wcwidth(), which knows nothing but ASCII in the locale "C".
+    // Not wcwidth(), which in the locale "C" knows only ASCII.
     first.columns = first.kind == Kind::letter ? static_cast<std::size_t>(utf8proc_charwidth(first.code)) : 1;
     return first;
 }
 
-/// Takes the character that begins the text, which is not empty, out of it.
+/// Removes the first character of a non-empty text and returns it.
 Character taken_from(std::string_view& text) {
     const Character first = first_of(text);
     text.remove_prefix(first.bytes);
@@ -66,12 +66,12 @@ constexpr std::array<std::pair<char32_t, std::string_view>, 37> spelled{
      {U'·', "."},     {U'−', "-"},     {U'…', "..."},   {U'′', "'"},      {U'│', "|"},       {U'─', "-"},
      {U'→', "->"}}};
 
-/// A sign between the sides of a formula, or a factor.
+/// Returns whether a formula must not be broken beside this word: a relation, an operator or the factor k.
 bool binds(std::string_view word) {
     return word == "=" || word == "<=" || word == ">" || word == "-" || word == "+" || word == "k";
 }
 
-/// The bytes of the first word, with what a formula binds to it as long as that fits.
+/// The length in bytes of the first word, including the words that a formula binds to it while they fit.
 std::size_t unbroken(std::string_view line, std::size_t width) {
     std::size_t end = std::min(line.find(' '), line.size());
     std::string_view word = line.substr(0, end);

@@ -1,4 +1,4 @@
-// UTF-8 text for a terminal: what can be shown of a user's words, how wide that is, and where its lines are broken.
+// UTF-8 text for a terminal: printable characters, widths and line breaks.
 #pragma once
 
 #include <cstddef>
@@ -7,33 +7,33 @@
 
 namespace dinal::text {
 
-/// The columns it takes on a terminal. A byte that is no UTF-8 and a control character count as one.
+/// Returns the columns of a text on a terminal. Control characters and bytes that are not UTF-8 count as one.
 std::size_t columns(std::string_view text);
 
-/// The longest beginning that takes at most `width` columns.
+/// Returns the longest beginning of at most `width` columns.
 std::string_view cut_to_columns(std::string_view text, std::size_t width);
 
-/// No byte of it steers a terminal or is no UTF-8; newlines may be in it.
+/// Returns whether the text is valid UTF-8 without characters that control a terminal, except newlines.
 bool is_printable(std::string_view text);
 
-/// One line of valid UTF-8: blanks for white space and for what steers the direction of writing, '?' for other control
-/// characters, U+FFFD for what is no UTF-8.
+/// Returns one line of valid UTF-8: white space and direction marks become blanks, other control characters '?',
+/// invalid bytes U+FFFD.
 std::string displayable(std::string_view text);
 
-/// For a terminal without UTF-8: Greek letters by name, other letters as '?'.
+/// Returns text for a terminal without UTF-8: Greek letters by name, other letters as '?'.
 std::string in_ascii(std::string_view text);
 
-/// "..." with Lua's escapes for quotes, control characters and what is no UTF-8, so that Lua reads the same bytes from
-/// it; at most `limit` bytes are shown, and `...` stands for the rest. Without `unicode`, all but ASCII is escaped.
+/// Returns the text as a Lua string literal "..." that Lua reads back as the same bytes. Shows at most `limit` bytes,
+/// followed by `...`. Without `unicode`, everything except ASCII is escaped.
 std::string quoted(std::string_view text, std::size_t limit = std::string_view::npos, bool unicode = true);
 
 inline constexpr std::size_t readable_width = 79;  ///< longer lines are hard to read, however wide the screen is
 
-/// Words in lines of at most `width` columns; newlines in the text stay. A line that begins with a blank is laid out
-/// already, and stays as it is. A short formula is broken nowhere: "theta = 0.155".
+/// Wraps words into lines of at most `width` columns. Newlines stay; lines that begin with a blank are already laid out
+/// and stay. Short formulas such as "theta = 0.155" are not broken.
 std::string wrapped(std::string_view text, std::size_t width = readable_width);
 
-/// All lines but the first moved to the right.
+/// Indents all lines except the first.
 std::string indented(std::string text, std::size_t blanks);
 
 }  // namespace dinal::text

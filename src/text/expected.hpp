@@ -1,4 +1,4 @@
-// A value, or the error that tells the user why there is none.
+// A value, or an error for the user.
 #pragma once
 
 #include <string>
@@ -8,20 +8,20 @@
 
 namespace dinal::text {
 
-/// What is wrong, where the limit is and what to do about it, in one sentence without a final stop; and the facts in
-/// it, so that nobody who marks the culprit or looks for a cure has to find them in the words.
+/// An error: its sentence says what is wrong, the limit and what to do, without a final stop. The facts are stored
+/// separately, so that error markers and hints need not parse the sentence.
 struct Error {
     std::string sentence;
-    std::string call = {};    ///< what was called, as it is written: "vector", "run:at(t)", "sys:simulate{ t_end = 1 }"
-    std::string option = {};  ///< the option that is wrong or missing: "t_end"
-    std::string culprit = {};  ///< what the user wrote: a name that does not exist, a value; "nil" where nothing is
-    std::string cure = {};     ///< what goes on after the sentence: "; did you mean 'theta0'?"
-    std::string instead = {};  ///< the same where nobody who reads the script knows better: "; it has t, theta"
+    std::string call = {};     ///< the call as written: "vector", "run:at(t)", "sys:simulate{ t_end = 1 }"
+    std::string option = {};   ///< the option that is wrong or missing: "t_end"
+    std::string culprit = {};  ///< the user's text at fault: an unknown name, a value; "nil" for a missing value
+    std::string cure = {};     ///< appended to the sentence: "; did you mean 'theta0'?"
+    std::string instead = {};  ///< appended if the script offers no better hint: "; it has t, theta"
 
     [[nodiscard]] std::string message() const { return sentence + cure; }
 };
 
-/// The same error, told by the call in which it came up: "system: I = -1 must be positive".
+/// Returns the error with the call in front: "system: I = -1 must be positive".
 inline Error in_call(std::string_view call, Error error) {
     error.sentence.insert(0, std::string(call) + ": ");
     error.call = call;
@@ -31,7 +31,7 @@ inline Error in_call(std::string_view call, Error error) {
 template <class T>
 class [[nodiscard]] Expected {
 public:
-    // Implicit on purpose: `return value;` and `return Error{...};` both read as they should.
+    // Implicit on purpose, for `return value;` and `return Error{...};`.
     Expected(const T& value) : content_(value) {}          // NOLINT(google-explicit-constructor)
     Expected(T&& value) : content_(std::move(value)) {}    // NOLINT(google-explicit-constructor)
     Expected(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor)

@@ -1,4 +1,4 @@
-// Texts put together while the program is compiled, for tables of constants.
+// Texts assembled at compile time, for tables of constants.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace dinal::text {
 
-/// At most `room` - 1 characters; more are an error of compilation.
+/// Holds at most `room` - 1 characters; a longer text does not compile.
 template <std::size_t room>
 class FixedText {
 public:

@@ -9,7 +9,8 @@ namespace dinal::text {
 
 namespace {
 
-/// How long a sequence is that sets a colour, bold or underlined letters, or all back; 0 when none begins the text.
+/// Returns the length of an escape sequence for colour, bold, underlined or reset at the front of the text, otherwise
+/// 0.
 std::size_t colour_at(std::string_view text) {
     if (!text.starts_with("\x1b[")) {
         return 0;
@@ -18,7 +19,7 @@ std::size_t colour_at(std::string_view text) {
     if (end == std::string_view::npos || text[end] != 'm') {
         return 0;
     }
-    constexpr std::array<std::string_view, 5> styles = {"", "0", "1", "4", "7"};  // and no blinking, no hiding
+    constexpr std::array<std::string_view, 5> styles = {"", "0", "1", "4", "7"};  // neither blinking nor hidden
     for (std::string_view numbers = text.substr(2, end - 2);;) {
         const std::size_t size = std::min(numbers.find(';'), numbers.size());
         const std::string_view one = numbers.substr(0, size);
@@ -33,7 +34,7 @@ std::size_t colour_at(std::string_view text) {
     }
 }
 
-/// The bytes of the first character, or one that is no UTF-8.
+/// The length in bytes of the first character, or 1 if it is not UTF-8.
 std::size_t first_bytes(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text.front());
     const std::size_t bytes = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;

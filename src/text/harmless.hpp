@@ -1,4 +1,4 @@
-// What others have written, made so that it cannot steer the terminal that shows it.
+// Text from outside, made safe to show on a terminal.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace dinal::text {
 
-/// The text with its lines, tabs and colours, and '?' for all else that steers a terminal.
+/// Keeps lines, tabs and colours; replaces all other control characters by '?'.
 std::string harmless(std::string_view text);
 
 }  // namespace dinal::text

@@ -10,14 +10,14 @@ namespace {
 constexpr std::string_view no_letter = "\xEF\xBF\xBD";  // U+FFFD
 
 struct Letter {
-    std::size_t bytes = 0;  ///< 0 when it is no UTF-8
-    bool shown = false;     ///< and neither a control character nor a turn of the direction of writing
+    std::size_t bytes = 0;  ///< 0 if it is not UTF-8
+    bool shown = false;     ///< whether it is neither a control character nor a direction mark
 };
 
-/// The one that begins the text.
+/// The first letter of the text.
 Letter letter_at(std::string_view text) {
     utf8proc_int32_t code = 0;
-    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: all may be seen so
+    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: bytes are unsigned
     const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code);
     if (size <= 0) return {};
     const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);

@@ -1,4 +1,4 @@
-// Text that a browser shows as it stands.
+// Escapes text so that a browser shows it unchanged.
 #pragma once
 
 #include <string>
@@ -6,12 +6,11 @@
 
 namespace dinal::text {
 
-/// & < > " ' become entities; control characters but for tab and line end, which no page may have, what turns the
-/// direction of writing round, and what is no UTF-8 become U+FFFD.
+/// & < > " ' become entities. Control characters except tab and newline, direction marks and bytes that are not UTF-8
+/// become U+FFFD.
 std::string html(std::string_view text);
 
-/// For Markdown: & < > become entities, since not every reader takes \< for text; a backslash comes before each of the
-/// `marks`.
+/// For Markdown: & < > become entities, as some readers do not know \<; the `marks` get a backslash.
 std::string markdown(std::string_view text, std::string_view marks);
 
 }  // namespace dinal::text

@@ -19,7 +19,7 @@ std::string complaint(const Range& range, double x, const std::string& name) {
     return fmt::format("{} = {:.6g} must {}", name, x, range.must);
 }
 
-/// Empty when there is nothing to write: the value is absent, or a number without limit.
+/// Returns the value as Lua text; empty if it is absent or an infinite number.
 std::string literal(const Option& option, const OptionValue& value) {
     switch (static_cast<OptionKind>(value.index())) {
         case OptionKind::other:
@@ -49,7 +49,7 @@ std::optional<Error> complaint(const Option& option, const OptionValue& value) {
         wrong = complaint(option.range, *number, option.name);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-        for (std::size_t i = 0; i < numbers->size() && !wrong; ++i) {  // counted from 1, as the user does
+        for (std::size_t i = 0; i < numbers->size() && !wrong; ++i) {  // the user counts from 1
             const double x = (*numbers)[i];
             if (!fits(option.range, x)) wrong = complaint(option.range, x, fmt::format("{}[{}]", option.name, i + 1));
         }
@@ -66,7 +66,7 @@ std::string default_text(const Option& option) {
     }
     const OptionValue value = option.filled.initial();
     const auto* text = std::get_if<std::string>(&value);
-    // A number that a user could not give himself stands for none.
+    // A default outside the option's range means "absent".
     return complaint(option, value) || (text != nullptr && text->empty()) ? "" : literal(option, value);
 }
 
@@ -107,7 +107,7 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
         const OptionValue value = option.filled.get(object);
         const bool same = option.otherwise != needed && value == option.filled.initial();
         std::string text = defaults == Defaults::left_out && same ? "" : literal(option, value);
-        if (text.empty() && defaults == Defaults::told) text = default_text(option);
+        if (text.empty() && defaults == Defaults::described) text = default_text(option);
         if (!text.empty()) {
             list += fmt::format("{}{} = {}", list.empty() ? "" : ", ", option.name, text);
         }

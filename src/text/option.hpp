@@ -1,5 +1,5 @@
-// The named options of a call as data: one row an option, written beside the struct that it fills and nowhere else.
-// The check of a user's table, the signature, Tab, help, the manual and the text of a value read the same rows.
+// The named options of a call as data: one row an option, beside the struct that it fills. The check of the user's
+// table, the signature, Tab, help, the manual and printed values all read these rows.
 //
 //     struct Pulse { double amplitude = 1, at = 0, width = 0; };
 //     inline constexpr text::Option pulse_options[] = {
@@ -27,11 +27,11 @@
 
 namespace dinal::text {
 
-/// Which numbers an option may have, and how the sentence goes on that refuses another: "width = -1 must be positive".
+/// The allowed numbers of an option, and the end of the sentence that rejects others: "width = -1 must be positive".
 struct Range {
     const char* must;        ///< after "must "
-    bool (*holds)(double);   ///< asked of numbers that are not nan
-    bool unlimited = false;  ///< inf and -inf are asked, too; else a number must be finite first
+    bool (*holds)(double);   ///< called for numbers other than nan
+    bool unlimited = false;  ///< whether inf and -inf are passed to `holds`; otherwise a number must be finite
 };
 constexpr bool is_whole(double x, double least, double most) {
     return x >= least && x <= most && x == static_cast<double>(static_cast<int>(x));
@@ -43,35 +43,36 @@ inline constexpr Range not_negative{"not be negative", [](double x) { return x >
 inline constexpr Range not_zero{"not be zero", [](double x) { return x != 0; }};
 inline constexpr Range between_0_and_1{"lie between 0 and 1", [](double x) { return x > 0 && x < 1; }};
 
-/// What a user writes: nothing; a number; true or false; one of the choices, by its place; text; numbers.
+/// The value that a user writes: nothing; a number; true or false; a choice, by its index; text; numbers.
 using OptionValue = std::variant<std::monostate, double, bool, std::size_t, std::string, std::vector<double>>;
 
-/// In the order of OptionValue. `other` is read by the call itself: a system, the name of a column.
+/// In the order of OptionValue. `other` is read by the call itself: a system, a column name.
 enum class OptionKind { other, number, flag, choice, text, numbers };
 
-/// Where the value of an option goes. fills<&Pulse::width> and sets<set_frequency> make it.
+/// The destination of an option's value, made by fills<&Pulse::width> or sets<set_frequency>.
 struct OptionTarget {
     OptionKind kind = OptionKind::other;
     const void* owner = nullptr;  ///< &owner_tag<Pulse>
     void (*set)(void* object, OptionValue value) = nullptr;
-    OptionValue (*get)(const void* object) = nullptr;  ///< none: another option tells the same
-    OptionValue (*initial)() = nullptr;                ///< what a new object has
+    OptionValue (*get)(const void* object) = nullptr;  ///< null: another option shows the same value
+    OptionValue (*initial)() = nullptr;                ///< the value in a new object
 };
 
-/// Values of Option::otherwise, which is else the Lua text of the default: "0.6 T0", the name of another option.
+/// Special values of Option::otherwise, which is normally the Lua text of the default: "0.6 T0", the name of another
+/// option.
 inline constexpr const char* needed = nullptr;
-inline constexpr const char* its_own = "";  ///< what a new object has; nothing to tell when that is infinite or absent
+inline constexpr const char* its_own = "";  ///< the value of a new object; not shown if infinite or absent
 
 struct Call;
 
-/// An option that is a table with named fields of its own, as walls = { lower = -1 }: what they are, and where.
+/// An option that is a table with named fields, as walls = { lower = -1 }.
 struct Fields {
     enum class Place {
         itself,   ///< { lower = -1 }
         listed,   ///< a list of such tables: { { when = f } }
-        by_name,  ///< such tables under names of the user's: { e = { rate = f } }
+        by_name,  ///< tables under names that the user chooses: { e = { rate = f } }
     };
-    const Call* call = nullptr;  ///< that describes them; none: the option is no such table
+    const Call* call = nullptr;  ///< describes the fields; null: the option is not a table
     Place place = Place::itself;
 };
 
@@ -79,27 +80,28 @@ struct Option {
     const char* name = "";
     const char* unit = "";
     const char* otherwise = its_own;
-    Range range = any_finite;  ///< of a number, and of each number of a list
+    Range range = any_finite;  ///< for a number, and for each number of a list
     const char* meaning = "";  ///< a few words without a full stop
     OptionTarget filled = {};
-    std::span<const char* const> choices = {};  ///< Lua strings, in the order of the enumerators
-    bool instead_of_previous = false;           ///< frequency | omega | period: one of them is given, never two
-    const char* object = "";                    ///< the class of Lua whose constructors Tab offers: "integrator"
-    const char* wanted = "";                    ///< of a kind `other`: "a system such as system{ I = 1, k = 39.5 }"
+    std::span<const char* const> choices = {};  ///< as Lua strings, in the order of the enumerators
+    bool instead_of_previous = false;           ///< exactly one of a group may be given: frequency | omega | period
+    const char* object = "";                    ///< the Lua class whose constructors Tab offers: "integrator"
+    const char* wanted = "";                    ///< for `other`: "a system such as system{ I = 1, k = 39.5 }"
     Fields fields = {};
 };
 
 /// A call that takes one table of named options.
 struct Call {
-    const char* name;     ///< heads all sentences: "excitation.pulse"
-    const char* example;  ///< a right one: "excitation.pulse{ at = 1, width = 0.2 }"
+    const char* name;     ///< begins all its error sentences: "excitation.pulse"
+    const char* example;  ///< a valid call: "excitation.pulse{ at = 1, width = 0.2 }"
     std::span<const Option> options = {};
-    bool may_be_bare = false;         ///< run:continue() without a table is as good as with an empty one
-    const Call* neighbour = nullptr;  ///< whose options are given to this one by mistake
-    const char* bare_value = "";      ///< the option that a number or a string stands for: run:continue(40)
+    bool may_be_bare = false;         ///< whether the table may be omitted, as in run:continue()
+    const Call* neighbour = nullptr;  ///< a call whose options users often give to this one
+    const char* bare_value = "";      ///< the option that a bare number or string sets: run:continue(40)
 };
 
-/// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.
+/// Returns an error such as "width = -1 must be positive", "breaks[2] = inf must be finite"; none if the value is
+/// valid.
 std::optional<Error> complaint(const Option& option, const OptionValue& value);
 
 namespace detail {
@@ -111,7 +113,7 @@ template <class Rows>
 inline constexpr std::size_t rows_in = std::tuple_size_v<decltype(row_count(std::declval<const Rows&>()))>;
 }  // namespace detail
 
-/// Rows one after another, for calls that share some.
+/// Concatenates rows, for calls that share some.
 template <class... Rows>
 constexpr std::array<Option, (detail::rows_in<Rows> + ...)> joined(const Rows&... parts) {
     std::array<Option, (detail::rows_in<Rows> + ...)> all{};
@@ -120,21 +122,21 @@ constexpr std::array<Option, (detail::rows_in<Rows> + ...)> joined(const Rows&..
     return all;
 }
 
-/// The Lua text of the default: "1", "\"listing\"", "Rd"; empty when there is none to tell: of an option that
-/// is needed, or stands instead of another.
+/// Returns the Lua text of the default: "1", "\"listing\"", "Rd"; empty for options that are required or have
+/// alternatives.
 std::string default_text(const Option& option);
 
-/// A number as Lua reads it back exactly; "1" and not "1.0", since all options are numbers of the one kind.
+/// Returns a number as Lua text that reads back exactly; "1" rather than "1.0", since all options are floats.
 std::string number_literal(double x);
 
 /// "{ 1, 2.5 }"
 std::string list_literal(std::span<const double> numbers);
 
-/// Options that have their default, in the text of a value.
+/// The treatment of options at their default in the text of a value.
 enum class Defaults {
     left_out,
     written,
-    told,  ///< also what is without limit, in the words of its row, which need not be Lua: "max_panel = 0.6 T0"
+    described,  ///< infinite ones, too, in the words of their row, which need not be Lua: "max_panel = 0.6 T0"
 };
 
 namespace detail {
@@ -187,10 +189,10 @@ Value taken(OptionValue value) {
 }
 
 template <class Value>
-OptionValue told(const Value& value) {
+OptionValue as_option_value(const Value& value) {
     constexpr auto place = static_cast<std::size_t>(kind_of<Value>());
     if constexpr (!std::is_same_v<Value, typename Inner<Value>::Type>) {
-        return value ? told(*value) : OptionValue();
+        return value ? as_option_value(*value) : OptionValue();
     } else if constexpr (std::is_enum_v<Value>) {
         return OptionValue(std::in_place_index<place>, static_cast<std::size_t>(value));
     } else {
@@ -207,8 +209,8 @@ constexpr OptionTarget member_target() {
     return {
         kind_of<Value>(), &owner_tag<Owner>,
         [](void* object, OptionValue value) { static_cast<Owner*>(object)->*member = taken<Value>(std::move(value)); },
-        [](const void* object) { return told(static_cast<const Owner*>(object)->*member); },
-        [] { return told(Owner{}.*member); }};
+        [](const void* object) { return as_option_value(static_cast<const Owner*>(object)->*member); },
+        [] { return as_option_value(Owner{}.*member); }};
 }
 
 template <auto function>
@@ -227,22 +229,22 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
 
 }  // namespace detail
 
-/// The option is this member: a number, bool, enumeration, string, vector of numbers, or one of them that is optional.
+/// Target: this member, a number, bool, enumeration, string, vector of numbers, or an optional one of these.
 template <auto member>
 inline constexpr OptionTarget fills = detail::member_target<member>();
 
-/// The option is told to this function, void(T&, double), which fills what another option fills, too.
+/// Target: a function void(T&, double) that converts the value and sets a member shared with another option.
 template <auto function>
 inline constexpr OptionTarget sets = detail::function_target<function>();
 
-/// The first option of the object that is out of its range: "width = -1 must be positive".
+/// Returns the error of the object's first invalid option: "width = -1 must be positive".
 template <class T>
 std::optional<Error> complaint(std::span<const Option> options, const T& object) {
     return detail::complaint(options, &detail::owner_tag<T>, &object);
 }
 
-/// The Lua text that makes the object again: "excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". What is
-/// without limit, or absent, is left out.
+/// Returns the Lua text that makes the object again: "excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }".
+/// Infinite and absent values are omitted.
 template <class T>
 std::string lua_text(std::string_view call, std::span<const Option> options, const T& object, Defaults defaults) {
     return detail::lua_text(call, options, &object, defaults);

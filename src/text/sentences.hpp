@@ -1,4 +1,4 @@
-// Numbers and counts for people: as many digits as say something.
+// Numbers and counts in sentences, with a sensible number of digits.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace dinal::text {
 
-/// A time to a ten-thousandth of `scale` at least: 999.4502 where T0 = 1.
+/// A time with a resolution of `scale` / 10^4 or better: 999.4502 for T0 = 1.
 std::string time_text(double t, double scale);
 
-/// Five digits; what is rounding beside `scale` is 0.
+/// Five digits; values within rounding of `scale` are shown as 0.
 std::string number_text(double x, double scale);
 
-/// "0.15515 <= Re = 0.167", with as many digits as it takes to see it; "Re = 0.5" when they are equal.
+/// "0.15515 <= Re = 0.167", with enough digits to show the difference; "Re = 0.5" if both are equal.
 std::string against_limit(double torque, double limit);
 
 /// "1 stop", "7 stops", "2 switches".

@@ -10,12 +10,12 @@
 namespace dinal::text {
 namespace {
 
-constexpr std::size_t longest_word = 64;  // nobody mistypes more than that; it bounds the work for odd input
+constexpr std::size_t longest_word = 64;  // letters; bounds the work for odd input
 constexpr std::size_t shortest_beginning = 3;
 constexpr int most_slips = 2;
 constexpr int far = 1000;
 
-// What other books and programs call the things here. A word may stand for several: only those that are known count.
+// Names that other books and programs use. A synonym counts only if its target is among the known names.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 69> synonyms = {{
     {"sin", "harmonic"},
     {"sine", "harmonic"},
@@ -119,7 +119,7 @@ bool same_letters(std::string_view a, std::string_view b) {
     return std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// How many slips from the word a name may be. A word of two letters must at least begin as the name does: w0 is no T0.
+/// Returns the allowed number of slips. A word of two letters must at least begin as the name does: w0 is not T0.
 int allowed_slips(std::string_view small_word, std::string_view small_name) {
     if (small_word.size() <= 2) {
         return small_word.front() == small_name.front() ? 1 : 0;
@@ -127,7 +127,7 @@ int allowed_slips(std::string_view small_word, std::string_view small_name) {
     return small_word.size() > 5 || (small_word.size() == 5 && same_letters(small_word, small_name)) ? 2 : 1;
 }
 
-/// How many slips the word is from the name (0: another case only); `far` when it is no misspelling of it.
+/// Returns the number of slips between word and name (0: only case differs); `far` if it is no misspelling.
 int slips(std::string_view word, std::string_view name) {
     if (word.empty() || name.empty() || word == name || std::max(word.size(), name.size()) > longest_word) {
         return far;
@@ -139,7 +139,7 @@ int slips(std::string_view word, std::string_view name) {
     }
     const int count = std::min(edits(word, name), edits(small_word, small_name) + 1);
     const int allowed = allowed_slips(small_word, small_name);
-    // A word of which no letter is left is another word: x is not a misspelt t.
+    // At least one letter must remain: x is not a misspelt t.
     if (count <= allowed && count < static_cast<int>(std::max(word.size(), name.size()))) {
         return count;
     }
@@ -147,11 +147,11 @@ int slips(std::string_view word, std::string_view name) {
     return beginning ? most_slips + 1 : far;
 }
 
-/// How far the name is from what the word may stand for; `far` when it is something else.
+/// Returns the distance from the word, or its synonym, to the name; `far` if unrelated.
 int distance(std::string_view word, std::string_view name, Likeness likeness) {
     const int count = slips(word, name);
     const bool other_word = count > 0 && likeness == Likeness::of_meaning && is_synonym(lower(word), name);
-    return other_word ? 1 : 2 * count;  // between another case and a slip
+    return other_word ? 1 : 2 * count;  // ranks between different case and one slip
 }
 
 }  // namespace

@@ -7,19 +7,18 @@
 
 namespace dinal::text {
 
-/// The names that a word may mean: of any list of texts, which must outlive it.
+/// A view of known names: any list of texts, which must outlive it.
 struct KnownNames {
     template <class List>
-    KnownNames(const List& list)  // NOLINT(google-explicit-constructor): any list will do
+    KnownNames(const List& list)  // NOLINT(google-explicit-constructor): accepts any list
         : names(std::begin(list), std::end(list)) {}
     std::vector<std::string_view> names;
 };
 
-/// The best matches for a word that is not among the known ones: two at most, none when nothing is close or too much
-/// is. Close is one slip (a letter wrong, missing, too many, two swapped) in words of up to five letters, two in longer
-/// ones and between words of the same letters; different case counts as one slip, and as none when nothing else
-/// differs. The beginning of a longer name (three letters or more) is close, too. What others call the same thing
-/// (mass, w0, sine) is better than any slip.
+/// Returns at most two matches for an unknown word, none if no name or too many names are close. Close means one slip
+/// (a letter wrong, missing, extra, or two swapped) in words of up to five letters, and two in longer words or among
+/// the same letters. A different case counts as one slip, or none if nothing else differs. A beginning (three letters
+/// or more) of a longer name is close, too. Common synonyms (mass, w0, sine) rank before slips.
 enum class Likeness { of_letters, of_meaning };
 std::vector<std::string> suggestions(std::string_view word, const KnownNames& known,
                                      Likeness likeness = Likeness::of_meaning);

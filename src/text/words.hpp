@@ -1,4 +1,4 @@
-// Letters and words: what every reader of text asks of them.
+// Letters and words, shared by all readers of text.
 #pragma once
 
 #include <algorithm>
@@ -7,14 +7,14 @@
 
 namespace dinal::text {
 
-// Of ASCII, in every locale.
+// ASCII only, in every locale.
 constexpr bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 constexpr char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
-/// A letter, a digit or an underscore: what a name is made of.
+/// Returns whether c may be part of a name: a letter, a digit or an underscore.
 constexpr bool is_name_char(char c) {
     return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'z') || c == '_';
 }
@@ -25,12 +25,12 @@ inline std::string lower(std::string_view text) {
     return result;
 }
 
-/// ".csv" of "Run.CSV"; empty when the name has none.
+/// Returns ".csv" for "Run.CSV"; empty if the name has no extension.
 inline std::string ending_of(std::string_view file) {
     return lower(file.substr(std::min(file.rfind('.'), file.size())));
 }
 
-/// Without any of these at its ends.
+/// Returns the text without these characters at its ends.
 inline std::string_view trimmed(std::string_view text, std::string_view begin, std::string_view end) {
     const std::size_t first = text.find_first_not_of(begin);
     const std::size_t last = text.find_last_not_of(end);

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// What the square wave needs of the mode over half a period P, each in a form that keeps its digits.
+/// Quantities of a mode over half a period P for the square wave, each in a form that keeps its digits.
 struct HalfPeriod {
     double apart;        // q - r, underdamped
     double pushed;       // g = e^(-zeta P) (sin qP)/q
@@ -27,7 +27,7 @@ HalfPeriod underdamped(const Modes& modes, double r) {
     const double zeta = modes.zeta();
     const double q = modes.rate();
     const double n = std::nearbyint(q / r);
-    // q is rounded; for little damping q - n r comes from 1 - q = zeta^2/(1 + q), which is better.
+    // For little damping q - n r is computed from 1 - q = zeta^2/(1 + q), as q itself is rounded.
     const auto away = [&](double m) {
         return zeta < 0.3 ? std::fma(-m, r, 1) - zeta * zeta / (1 + q) : std::fma(-m, r, q);
     };
@@ -84,8 +84,8 @@ bool DenHartog::grows() const {
     return r_ == 1 && modes_.zeta() == 0;
 }
 
-/// The velocity of the steady motion must not change sign within the half period after a turn at x = 0. Divided by
-/// r sin rx, its part that is proportional to gamma must stay below the rest, which is a constant: the swing.
+/// The velocity of the steady motion must keep its sign for half a period after a turn at x = 0. Divided by r sin rx,
+/// its part proportional to gamma must stay below the rest, which is the constant `swing`.
 double DenHartog::velocity_excess(double x) const {
     const double zeta = modes_.zeta();
     const double q = modes_.rate();
@@ -100,7 +100,7 @@ double DenHartog::velocity_excess(double x) const {
     return (sine_ * modes_.pushed(x) - velocity_ * difference) / (r_ * std::sin(r_ * x));
 }
 
-/// At the turn itself: the mass must leave it towards the other side, against `breakaway`.
+/// The same at the turn itself: the mass must leave it towards the other side, against `breakaway`.
 double DenHartog::excess_at_turn(double friction, double breakaway) const {
     return (breakaway - friction * (angle_ + 2 * modes_.zeta() * velocity_)) / (r_ * r_);
 }
@@ -109,7 +109,7 @@ double DenHartog::refined_peak(double from, double to) const {
     constexpr double golden = 0.6180339887498949;
     double left = to - golden * (to - from), right = from + golden * (to - from);
     double at_left = velocity_excess(left), at_right = velocity_excess(right);
-    for (int i = 0; i < 45; ++i) {  // to 4e-10 of the width; the peak is flat, so its height is good to rounding
+    for (int i = 0; i < 45; ++i) {  // to 4e-10 of the width; the peak is flat, so its height is accurate to rounding
         if (at_left > at_right) {
             to = right, right = left, at_right = at_left;
             left = to - golden * (to - from), at_left = velocity_excess(left);
@@ -121,11 +121,11 @@ double DenHartog::refined_peak(double from, double to) const {
     return std::max(at_left, at_right);
 }
 
-/// The maximum over the half period, its beginning included. The points are as close as the mode and the load need, and
-/// closer where a fast mode dies just after the turn.
+/// The maximum over the half period, including its beginning. Samples are as dense as mode and load require, and denser
+/// if a fast mode decays just after the turn.
 double DenHartog::greatest_excess() const {
     const double widest = std::min(half_ / 64, 2 * pi / 32);
-    constexpr double nearly = 0.03;  // a peak may be that much above the best of its points
+    constexpr double nearly = 0.03;  // by how much a peak may exceed the best sample
     double best = excess_at_turn(1, 1);
     constexpr double least = 1e-300;  // the fast root may be infinite, and x must grow
     double before = 0, x = std::max(1e-3 * std::min(widest, 1 / modes_.fast_root()), least);
@@ -147,7 +147,8 @@ SlidingMotion DenHartog::sliding(double friction_ratio, double swing) const {
     y.amplitude = friction_ratio * angle_ + swing;
     const double viscous = phase_lag(r_, modes_.zeta());
     y.lag = viscous + std::atan2(friction_ratio * velocity_ / r_, swing);
-    // The fundamental answers load and fundamental of the square wave, 4 gamma/pi and a quarter of a period off.
+    // The fundamental is the response to load and the square wave's fundamental, 4 gamma/pi with a phase of a quarter
+    // period.
     const double g = 4 * friction_ratio / pi;
     const double across = g * std::cos(y.lag), along = 1 - g * std::sin(y.lag);
     y.fundamental_amplitude = magnification(r_, modes_.zeta()) * std::hypot(across, along);
@@ -155,7 +156,7 @@ SlidingMotion DenHartog::sliding(double friction_ratio, double swing) const {
     return y;
 }
 
-// swing = sqrt(Phi^2 - (gamma Y'/r)^2) is amplitude - gamma Y: what the harmonic part has at the turn.
+// swing = sqrt(Phi^2 - (gamma Y'/r)^2) is amplitude - gamma Y: the harmonic part at the turn.
 std::optional<SlidingMotion> DenHartog::motion(double friction_ratio, double breakaway_ratio) const {
     if (r_ == 0) {
         if (breakaway_ratio > 0) return {};

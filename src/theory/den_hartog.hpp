@@ -1,9 +1,9 @@
-// Den Hartog's exact steady motion with dry friction under M0 sin wt, and the boundary beyond which it has stops.
+// Den Hartog's exact steady motion with dry friction under M0 sin wt, and its boundary to motions with stops.
 //
 // J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
-// stops friction is a square wave whose jumps are the turns. The steady motion repeats with the other sign after half a
-// period; so its response to that square wave at a turn depends on r and zeta only, and the turn where the velocity is
-// zero gives the amplitude. docs/theory.md, section 12, has the derivation.
+// stops, friction is a square wave that jumps at the turns. The steady motion is antisymmetric after half a
+// period, so its response to that square wave at a turn depends on r and zeta only; zero velocity at the turn yields
+// the amplitude. docs/theory.md, section 12, has the derivation.
 #pragma once
 
 #include <optional>
@@ -15,28 +15,28 @@ namespace dinal::theory {
 /// Amplitudes in units of M0/k, lags behind the load in rad.
 struct SlidingMotion {
     double amplitude = 0;  ///< the greatest angle
-    double lag = 0;        ///< of the greatest angle
+    double lag = 0;        ///< lag of the greatest angle
     double fundamental_amplitude = 0;
     double fundamental_lag = 0;
 };
 
 class DenHartog {
 public:
-    static constexpr double slowest = 1e-4;  ///< half a period of the load has 5000 natural periods there
+    static constexpr double slowest = 1e-4;  ///< half a period of the load then has 5000 natural periods
     static constexpr double fastest = 1e6;
 
-    /// r = w/w0, 0 or from `slowest` to `fastest`; zeta >= 0.
+    /// r = w/w0 is 0 or between `slowest` and `fastest`; zeta >= 0.
     DenHartog(double r, double zeta);
 
-    /// The steady motion without stops for gamma = Rd/M0 and Re/M0 >= gamma; none when there is none. At r = 1 without
-    /// viscous damping it grows without bound: the amplitude is infinity, the lag what a growing motion has, pi/2.
-    // NOTE: at r = 1/2, 1/4, ... with zeta = 0 it is one of a family of steady motions, the symmetric one.
+    /// The steady motion without stops for gamma = Rd/M0 and Re/M0 >= gamma; none if it has stops. At r = 1 without
+    /// viscous damping it grows without bound: infinite amplitude, with the lag pi/2 of a growing motion.
+    // NOTE: at r = 1/2, 1/4, ... with zeta = 0 it is the symmetric one of a family of steady motions.
     [[nodiscard]] std::optional<SlidingMotion> motion(double friction_ratio, double breakaway_ratio) const;
 
-    /// What the motion would be if it had no stops, which is not asked; none where no such motion could be.
+    /// The motion under the unverified assumption that it has no stops; none if no such motion is possible.
     [[nodiscard]] std::optional<SlidingMotion> without_stops(double friction_ratio) const;
 
-    /// The gamma from which on the motion has stops, for Re = `breakaway_factor` Rd.
+    /// The greatest gamma without stops, for Re = `breakaway_factor` Rd.
     [[nodiscard]] double stop_boundary(double breakaway_factor) const;
 
 private:
@@ -49,11 +49,11 @@ private:
 
     double r_;
     Modes modes_;
-    double half_;      // x = w0 t of half a period, pi/r
+    double half_;      // half a period as x = w0 t, pi/r
     double apart_;     // q - r (underdamped)
     double angle_;     // Y: response to the square wave +1 after the turn, at the turn
-    double velocity_;  // Y', by x
-    double sine_;      // (1 + e^(-zeta P) cos qP)/Delta: how much of pushed(x) is in Y(x)
+    double velocity_;  // derivative Y' by x
+    double sine_;      // (1 + e^(-zeta P) cos qP)/Delta, the coefficient of pushed(x) in Y(x)
 };
 
 }  // namespace dinal::theory

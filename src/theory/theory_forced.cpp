@@ -34,8 +34,8 @@ double friction_work(double kinetic_friction, double amplitude) {
     return 4 * kinetic_friction * amplitude;
 }
 
-// With zeta + zeta_eq in the place of zeta, (1 - r^2)^2 Phi^2 + (2 zeta r Phi + g)^2 = 1, g = 4 gamma/pi: the positive
-// root, in the form that subtracts nothing.
+// With zeta + zeta_eq instead of zeta, (1 - r^2)^2 Phi^2 + (2 zeta r Phi + g)^2 = 1, g = 4 gamma/pi: the positive root,
+// in a form without subtraction.
 std::optional<Harmonic_motion> linearised_friction(double r, double zeta, double friction_ratio) {
     const double g = 4 * friction_ratio / pi;
     if (!(g < 1)) return {};

@@ -19,7 +19,7 @@ double side_of(double x) {
     return x < 0 ? -1 : 1;
 }
 
-/// zeta, and 1 whenever the system is critical: the root in damping_ratio() may have rounded.
+/// zeta, but exactly 1 if the system is critical: the root in damping_ratio() may be rounded.
 double regime_zeta(const model::Oscillator& system) {
     return system.regime() == model::Regime::critical ? 1 : system.damping_ratio();
 }
@@ -52,15 +52,15 @@ double HalfCycles::until_within(double dead_zone, double X) const {
     const double excess = size - dead_zone;
     if (excess <= 0) return 0;
     if (dead_zone == 0 || (logarithm_ == 0 && shift_ == 0)) return never;
-    // The extremes lie on e^n (a + c) - c with c = x_f (1 + e)/(1 - e) = x_f/slope: where does that meet the dead zone?
+    // The extremes are e^n (a + c) - c with c = x_f (1 + e)/(1 - e) = x_f/slope; solve for the edge of the dead zone.
     const double slope = std::tanh(logarithm_ / 2);
     const double guess = logarithm_ == 0 ? excess / (2 * shift_)
                                          : std::log1p(excess * slope / (dead_zone * slope + shift_)) / logarithm_;
     constexpr double countable = 0x1p50;
     if (!(guess < countable)) return std::ceil(guess);
     double n = std::max(1.0, std::ceil(guess) - 1);
-    const double edge = dead_zone + 8 * std::numeric_limits<double>::epsilon() * size;  // where sums of sizes are there
-    for (int i = 0; i < 4 && shrunk(n, size) > edge; ++i) ++n;  // the guess is off by a rounding at most
+    const double edge = dead_zone + 8 * std::numeric_limits<double>::epsilon() * size;  // rounding of the extremes
+    for (int i = 0; i < 4 && shrunk(n, size) > edge; ++i) ++n;  // the guess is off by at most a rounding
     return n;
 }
 
@@ -84,20 +84,20 @@ double FreeMotion::half_cycles_to_rest() const {
     if (stays(first_.theta)) return 0;
     if (!modes_.swings()) return never;
     const double n = HalfCycles(modes_.zeta(), shift_).until_within(system_.dead_zone(), first_.theta);
-    return std::max(1.0, n);  // the friction law has the last word at the edge of the dead zone
+    return std::max(1.0, n);  // the friction law decides at the edge of the dead zone
 }
 
 bool FreeMotion::stays(double theta) const {
     return model::motion_from_standstill(system_, 0, theta) == model::Motion::stuck;
 }
 
-/// While friction pushes towards `side`: the mass swings about side x_f.
+/// The motion while friction pushes towards `side`: about side x_f.
 model::State FreeMotion::arc(double side, const model::State& start, double t) const {
     const model::State y = free_response(w0_, modes_.zeta(), {start.theta - side * shift_, start.velocity}, t);
     return {y.theta + side * shift_, y.velocity};
 }
 
-/// x = w0 t of the first zero of the velocity, which begins towards `side`; infinity when there is none.
+/// x = w0 t of the first zero of the velocity, which begins towards `side`; infinity without one.
 /// v(x) = 0 where (tan qx)/q (tanh, or x) is |v0|/(zeta |v0| + y0).
 double FreeMotion::first_zero(double side) const {
     const double v = std::fabs(initial_.velocity) / w0_;
@@ -169,7 +169,7 @@ double greatest_velocity(const model::Oscillator& system, const model::State& in
     return std::hypot(system.natural_frequency() * initial.theta, initial.velocity);
 }
 
-/// Without friction what divides by the velocity is 0, also when nothing moves.
+/// friction/velocity, but 0 without friction, also if nothing moves.
 double friction_term(double friction, double velocity) {
     return friction == 0 ? 0 : friction / velocity;
 }

@@ -1,4 +1,4 @@
-// Closed forms of free motion: the three regimes, dry friction by half cycles, decrements and what they tell.
+// Closed forms of free motion: the three regimes, dry friction by half cycles, and damping from decrements.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@ namespace dinal::theory {
 /// Free motion without dry friction at the time t (any sign), from `initial` at t = 0.
 model::State free_response(double natural_frequency, double zeta, const model::State& initial, double t);
 
-/// The half-cycle map. From an extreme X (velocity zero) the mass swings to the next one, X' = s x_f - (X - s x_f) e,
-/// e = e^(-pi zeta / sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k; n half cycles at once by the geometric sum.
+/// The half-cycle map. From an extreme X (velocity zero) the mass swings to the next one, X' = s x_f - (X - s x_f) e, e
+/// = e^(-pi zeta / sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k; a geometric sum gives n half cycles at once.
 class HalfCycles {
 public:
-    /// 0 <= zeta < 1, x_f >= 0.
+    /// Requires 0 <= zeta < 1 and x_f >= 0.
     HalfCycles(double zeta, double friction_shift);
-    /// The extreme that is n half cycles after X, as long as nothing comes to rest before.
+    /// The extreme n half cycles after X, provided that the mass does not come to rest before.
     [[nodiscard]] double after(double n, double X) const;
-    /// How many half cycles after X the mass is the first time within |angle| <= dead_zone, which is at least x_f;
-    /// infinity when it never is. A little off when near 2^53.
+    /// The number of half cycles after X until first |angle| <= dead_zone, which is at least x_f; infinity if never.
+    /// Slightly off near 2^53.
     [[nodiscard]] double until_within(double dead_zone, double X) const;
 
 private:
@@ -30,27 +30,27 @@ private:
     double shift_;
 };
 
-/// An extreme of a free motion: the velocity is zero there.
+/// An extreme of a free motion, with velocity zero.
 struct Extreme {
     double t = 0;
     double theta = 0;
 };
 
-/// The exact free motion of a system with dry friction from t = 0 on, by the half-cycle map; any number of half cycles
-/// costs the same.
+/// The exact free motion of a system with dry friction from t = 0 on, by the half-cycle map; the cost does not depend
+/// on the number of half cycles.
 class FreeMotion {
 public:
     FreeMotion(const model::Oscillator& system, const model::State& initial);
 
-    /// t >= 0.
+    /// Requires t >= 0.
     [[nodiscard]] model::State at(double t) const;
-    /// When it stops for good: infinity when it only tends to a place, or never settles.
+    /// The time at which it stops for good; infinity if it only approaches a place, or never settles.
     [[nodiscard]] double time_to_rest() const;
-    /// Where it stops, or what it tends to; none when it swings for ever.
+    /// The place where it stops or which it approaches; none if it swings for ever.
     [[nodiscard]] std::optional<double> rest_position() const;
-    /// How many times the velocity is zero, counted from the start on if it is at rest there, until it rests.
+    /// The number of zeros of the velocity until it rests, including the start if at rest.
     [[nodiscard]] double extremes() const;
-    /// 0 <= n < extremes().
+    /// Requires 0 <= n < extremes().
     [[nodiscard]] Extreme extreme(double n) const;
 
 private:
@@ -65,34 +65,34 @@ private:
     Modes modes_;
     double w0_;
     double shift_;       // x_f = Rd/k
-    Extreme first_{};    // t = infinity when there is none
+    Extreme first_{};    // its t is infinite if there is none
     double until_rest_;  // half cycles from the first extreme to rest
 };
 
-/// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2), by viscous damping alone; zeta < 1.
+/// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2) from viscous damping alone; zeta < 1.
 double logarithmic_decrement(double zeta);
 /// The zeta that has this logarithmic decrement.
 double zeta_of_decrement(double decrement);
-/// What a cycle takes from the amplitude by dry friction alone: 4 Rd/k.
+/// The decrease of the amplitude in a cycle by dry friction alone: 4 Rd/k.
 double friction_decrement(double kinetic_friction, double stiffness);
 
 struct Dampings {
     double zeta = 0;
     double friction_shift = 0;  ///< x_f = Rd/k
 };
-/// Both dampings from three successive extremes (signs do not count): q = (X1 - X2)/(X0 - X1),
-/// zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = (q X0 - X1)/(1 + q). None unless they fall, X0 > X1 > X2. A negative value
-/// means that the extremes are not accurate enough to tell that damping from none.
+/// Both dampings from three successive extremes (signs are ignored): q = (X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) =
+/// -(ln q)/pi, x_f = (q X0 - X1)/(1 + q). None unless X0 > X1 > X2. A negative value means that the extremes are too
+/// inaccurate to distinguish that damping from zero.
 std::optional<Dampings> identify(double X0, double X1, double X2);
 
-// Limits of the step for numerical methods: what the report printed, what its argument really gives, what is true.
+// Step limits of numerical methods: as printed in the report, as its argument implies, and correct.
 
-/// deltatmax as the program of 1989 printed it: T0 (zeta + gamma/VMAX), VMAX = sqrt((w0 theta0)^2 + velocity0^2) and
-/// gamma = Rd/|Mc|. Its second term depends on the units. Infinity with friction and nothing that moves.
+/// deltatmax as printed by the program of 1989: T0 (zeta + gamma/VMAX), VMAX = sqrt((w0 theta0)^2 + velocity0^2) and
+/// gamma = Rd/|Mc|. Its second term depends on the units. Infinity with friction and no motion.
 double printed_step_limit(const model::Oscillator& system, const model::State& initial, double characteristic_torque);
 
-/// The argument of the report without its slips: Euler's amplification matrix asks for h < (a + K b)/c, that is
-/// T0 zeta/pi + Rd/(k VMAX), whatever Mc is. It is no limit of Runge-Kutta: see rk4::stability_limit in motion/rk4.
+/// The report's argument without its errors: Euler's amplification matrix requires h < (a + K b)/c, that is T0 zeta/pi
+/// + Rd/(k VMAX), for any Mc. It is not a limit of Runge-Kutta: see rk4::stability_limit in motion/rk4.
 double euler_step_limit(const model::Oscillator& system, const model::State& initial);
 
 }  // namespace dinal::theory

@@ -6,8 +6,7 @@ namespace dinal::theory {
 
 namespace {
 
-// Above this k the two exponentials are far enough apart to be written one by one; below it, by their sum and
-// difference, which have a limit.
+// Above this k the two exponentials are computed separately; below it, as sum and difference, which have a limit.
 constexpr double apart = 0.5;
 
 }  // namespace

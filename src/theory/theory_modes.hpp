@@ -1,5 +1,4 @@
-// The free motions of y'' + 2 zeta y' + y = 0 for any zeta >= 0, without loss of digits on the way from one regime to
-// the next.
+// The free motions of y'' + 2 zeta y' + y = 0 for any zeta >= 0, without loss of digits between the regimes.
 #pragma once
 
 namespace dinal::theory {
@@ -14,7 +13,7 @@ public:
     [[nodiscard]] bool swings() const { return zeta_ < 1; }
     /// q, or k when overdamped.
     [[nodiscard]] double rate() const { return rate_; }
-    /// 1/(zeta + k) and zeta + k: the rates at which an overdamped motion dies.
+    /// The decay rates of an overdamped motion: 1/(zeta + k), and zeta + k.
     [[nodiscard]] double slow_root() const { return 1 / fast_root(); }
     [[nodiscard]] double fast_root() const { return swings() ? 1 : zeta_ + rate_; }
 
@@ -33,7 +32,7 @@ private:
     double rate_;
 };
 
-/// An angle (or y) and its velocity at x = w0 t, from those at x = 0.
+/// An angle (or y) and its derivative at x = w0 t, from the values at x = 0.
 struct Motion2 {
     double y = 0;
     double dy = 0;  ///< by x

@@ -1,4 +1,4 @@
-// Catch2 in the words of version 2 (Debian 12), also where there is version 3 (Debian 13).
+// The names of Catch2 version 2 (Debian 12), also for version 3 (Debian 13).
 #pragma once
 
 #if __has_include(<catch2/catch.hpp>)
@@ -9,7 +9,7 @@
 
 using Catch::Approx;
 
-// Version 3 means an element of a range by this name; texts come before templates.
+// In version 3 this name matches an element of a range; overloads for text take precedence over templates.
 namespace Catch::Matchers {
 inline StringContainsMatcher Contains(const char* part) {
     return ContainsSubstring(part);

@@ -25,21 +25,21 @@ real derivative(const Drive& d, real t) {
     return d.slope + d.amplitude * d.omega * std::cos(d.omega * t + d.phase);
 }
 
-/// The first t in (a, b] at which f, positive just after a, has come down to zero, given its derivative and a length
-/// within which the derivative changes sign at most once.
+/// The first t in (a, b] at which f, positive just after a, reaches zero, given its derivative and a length within
+/// which the derivative changes sign at most once.
 template <class F, class G>
 std::optional<real> first_descent(F&& f, G&& df, real a, real b, real step) {
     real left = a;
     for (long i = 1; left < b; ++i) {
         const real right = std::min(a + static_cast<real>(i) * step, b);
         if (f(right) <= 0) {
-            // Where does it start? f(a) itself may be 0 or a rounding below.
+            // The first clearly nonzero point: f(a) itself may be 0 or a rounding below.
             real begin = left;
             for (real x = right; left == a && x - a > 1e-18L * step; x = a + (x - a) / 2) {
                 begin = x;
                 if (f(x) > 0) break;
             }
-            if (left == a && f(begin) <= 0) return a;  // nothing but rounding above zero
+            if (left == a && f(begin) <= 0) return a;  // above zero by rounding only
             return crossing(f, begin, right);
         }
         if ((left > a || f(a) > 0) && df(left) < 0 && df(right) > 0) {
@@ -95,7 +95,7 @@ Motion Arc::particular(real tau) const {
     const real w = drive_.omega;
     const real phase = drive_.phase + w * t0_;
     if (A == 0) return y;
-    if (C_ == 0) {  // Duhamel from zero, in products that stay exact through resonance
+    if (C_ == 0) {  // Duhamel's integral from zero, in products that stay exact through resonance
         const real sum = w + w0_;
         const real difference = w - w0_;
         const real f = A * tau / (2 * I_);
@@ -184,7 +184,7 @@ void ExactMotion::wait(Cursor& now, const Drive& drive, real until) {
         return first_descent([&](real t) { return Re - s * (value(drive, t) - torque); },
                              [&](real t) { return -s * derivative(drive, t); }, now.t, until, scan_);
     };
-    // A load that does not change cannot release what it holds; the limit itself may be met within rounding.
+    // A constant load cannot release what it holds; the limit itself may be met within rounding.
     const bool constant = drive.slope == 0 && (drive.amplitude == 0 || drive.omega == 0);
     const auto up = constant ? std::nullopt : release(1);
     const auto down = constant ? std::nullopt : release(-1);
@@ -201,9 +201,9 @@ void ExactMotion::wait(Cursor& now, const Drive& drive, real until) {
 int ExactMotion::from_standstill(const Drive& drive, real t, real theta) const {
     const real k = system_.stiffness();
     const real load = value(drive, t) - k * theta;
-    // Without friction nothing ever sticks; an unloaded mass goes where the load is about to push it.
+    // Without friction nothing ever sticks; an unloaded mass moves in the direction of the coming load.
     if (system_.breakaway() == 0) return load > 0 || (load == 0 && derivative(drive, t) >= 0) ? 1 : -1;
-    // An initial theta is a double: k theta is known to half a unit in its last place.
+    // The initial theta is a double, so k theta is known to half a unit in its last place.
     const real slack = t == t_start_ ? 0x1p-53L * std::fabs(k * theta) : 0;
     if (std::fabs(load) - static_cast<real>(system_.breakaway()) <= slack) return 0;
     return load > 0 ? 1 : -1;

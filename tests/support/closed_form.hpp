@@ -1,6 +1,6 @@
-// The truth the tests compare with: exact solutions between events, joined by the stick/slip law, in long double.
+// Reference solutions for tests: exact solutions between events, joined by the stick/slip law, in long double.
 //
-// Nothing of src/core is used but the names of its types: no Runge-Kutta, no friction.hpp, no excitation.cpp.
+// Uses only type names of src: no Runge-Kutta, no friction.hpp, no excitation.cpp.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ struct TrueEvent {
     real theta = 0;
 };
 
-/// I theta'' + C theta' + k theta = drive - s Rd, solved exactly from one moment on: any damping, any resonance.
+/// I theta'' + C theta' + k theta = drive - s Rd, solved exactly from a given moment: any damping, any resonance.
 class Arc {
 public:
     Arc(const model::Oscillator& system, const Drive& drive, int sign, real t0, const Motion& start);
@@ -46,20 +46,20 @@ private:
 
     real I_, C_, k_, w0_, b_, disc_;  // b = C / 2I, disc = b^2 - w0^2
     Drive drive_;
-    real t0_, p_, q_;  // p + q tau answers level and slope
+    real t0_, p_, q_;  // p + q tau is the response to level and slope
     real load_;        // level - s Rd at t0
-    Motion offset_;    // what the free part starts from
+    Motion offset_;    // initial value of the free part
 };
 
 /// The whole motion, arc by arc, with its events.
 class ExactMotion {
 public:
-    /// `drives` begins at or before t_start; its later pieces are the breaks of M.
+    /// The first of `drives` begins at or before t_start; the beginnings of later ones are the breaks of M.
     ExactMotion(const model::Oscillator& system, std::vector<Piece> drives, const model::State& initial, double t_start,
                 double t_end);
 
     [[nodiscard]] Motion at(double t) const;
-    /// As dinal tells them: nothing at t_start, and a stick that is never broken is a rest.
+    /// In dinal's convention: none at t_start, and a stick that is never broken is a rest.
     [[nodiscard]] const std::vector<TrueEvent>& events() const& { return events_; }
     [[nodiscard]] std::size_t count(model::EventKind kind) const;
     [[nodiscard]] bool ends_stuck() const { return ends_stuck_; }
@@ -85,7 +85,7 @@ private:
     model::Oscillator system_;
     std::vector<Piece> drives_;
     real t_start_;
-    real scan_;  // no two zeros of the velocity or its derivative closer than this go unnoticed
+    real scan_;  // resolution of the search for zeros of the velocity or its derivative
     std::vector<Span> spans_;
     std::vector<TrueEvent> events_;
     bool ends_stuck_ = false;

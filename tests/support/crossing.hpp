@@ -1,4 +1,4 @@
-// Where a function passes zero or is least, in long double: Boost.Math's searches as the oracles use them.
+// Zeros and minima of functions in long double, by Boost.Math, for the oracles.
 #pragma once
 
 #include <boost/math/tools/minima.hpp>
@@ -8,9 +8,9 @@
 
 namespace dinal::truth {
 
-constexpr std::uintmax_t most_tries = 200;  // halving needs one for each bit
+constexpr std::uintmax_t most_tries = 200;  // bisection needs one for each bit
 
-/// f has one sign at a and the other, or none, at b; the result is the first number that has come to the side of b.
+/// Requires opposite signs of f at a and b (or zero at b); returns the first number on the side of b.
 template <class F>
 long double crossing(const F& f, long double a, long double b) {
     std::uintmax_t tries = most_tries;
@@ -19,7 +19,7 @@ long double crossing(const F& f, long double a, long double b) {
         .second;
 }
 
-/// The same to 1e-18, for an f that is smooth and costs something; fa and fb are its values at the ends.
+/// The same to 1e-18 for a smooth f that is expensive; fa and fb are its values at the ends.
 template <class F>
 long double smooth_crossing(const F& f, long double a, long double fa, long double b, long double fb) {
     std::uintmax_t tries = most_tries;
@@ -27,10 +27,10 @@ long double smooth_crossing(const F& f, long double a, long double fa, long doub
     return fb == 0 ? b : boost::math::tools::toms748_solve(f, a, b, fa, fb, close, tries).second;
 }
 
-/// Where f is least between a and b.
+/// The minimum of f between a and b.
 template <class F>
 long double least(const F& f, long double a, long double b) {
-    constexpr int bits = 64;  // half of them can be had: f is flat there
+    constexpr int bits = 64;  // half of them are attainable, as f is flat there
     return boost::math::tools::brent_find_minima(f, a, b, bits).first;
 }
 

@@ -1,4 +1,4 @@
-// Short words for tests of excitations.
+// Abbreviations for tests of excitations.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace dinal::excitations {
 
 inline constexpr double pi = std::numbers::pi;
 
-// The formulas are evaluated as written, so only a few roundings of numbers of order one are forgiven.
+// The formulas are evaluated as written, so the tolerance allows a few roundings of numbers of order one.
 inline const auto near = [](double x) { return Approx(x).margin(1e-14).epsilon(1e-14); };
 
 inline model::Excitation made(model::Term term) {
@@ -38,7 +38,7 @@ inline std::shared_ptr<const model::Samples> table(std::vector<double> t, std::v
     return std::make_shared<const model::Samples>(model::Samples{std::move(t), std::move(M)});
 }
 
-/// A user's function for tests; counts its calls and remembers the last time.
+/// A user's function for tests, which counts its calls and records the last time.
 class Probe : public model::UserFunction {
 public:
     explicit Probe(std::function<double(double, const model::State&)> f) : f_(std::move(f)) {}

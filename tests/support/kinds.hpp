@@ -1,12 +1,11 @@
-// Kinds of events as the independent truths tell them: these know where a mass stops, and not whether it stays for
-// good.
+// Event kinds of the independent references, which detect stops but not whether they last for ever.
 #pragma once
 
 #include "model/event.hpp"
 
 namespace dinal::truth {
 
-/// A rest is the stick that it also is.
+/// Maps a rest to the stick that it is as well.
 constexpr model::EventKind as_stop(model::EventKind kind) {
     return kind == model::EventKind::rest ? model::EventKind::stick : kind;
 }

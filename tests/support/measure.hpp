@@ -1,4 +1,4 @@
-// Runs for tests: simulate() that must succeed, and how far a run is from the truth.
+// Runs for tests: simulate() that must succeed, and the error of a run.
 #pragma once
 
 #include <algorithm>

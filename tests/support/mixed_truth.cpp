@@ -26,7 +26,7 @@ std::vector<Sliding> lines_through(const std::vector<double>& speed, const std::
     return ranges;
 }
 
-/// The fastest thing beside a steep law takes some 0.1 of time: (0.01/0.1)^9 in a step, of what little it does in one.
+/// Except for a steep law the fastest time scale is about 0.1: the error of a step is (0.01/0.1)^9 of its small change.
 real MixedTruth::longest_step() const {
     return way_ == 0 ? 0.01L : std::min(0.01L, 0.05L * s_.I / s_.sliding[range_].steep);
 }
@@ -101,7 +101,7 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
     while (motions.size() < times.size()) motions.push_back(y_);
 }
 
-/// Quintics between the ends of steps. What has jumped there is seen from within the step that asks.
+/// The state at an earlier time, by quintics between the ends of steps; at jumps on the side of the present step.
 MixedPoint MixedTruth::then(real t) const {
     const real inside = t + 1e-9L * (middle_ - s_.by - t);
     if (inside <= 0 || past_.empty()) return start_;
@@ -117,7 +117,7 @@ MixedPoint MixedTruth::then(real t) const {
             (v0 + s * (a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h, 0};
 }
 
-/// All but friction, damping and what the frame does.
+/// All torques except friction, damping and those of the moving frame.
 real MixedTruth::torque(real t, const MixedPoint& y) const {
     real M = s_.M(t, y);
     if (s_.broken) M += s_.broken(t, middle_);
@@ -157,7 +157,7 @@ MixedPoint MixedTruth::stepped(real h) const {
     return {p[0], p[1], p[2]};
 }
 
-/// Whether the step of this length has something in it, and what.
+/// Returns whether a step of this length contains an event, and which.
 bool MixedTruth::happens(real h, int& what) const {
     const MixedPoint y = stepped(h);
     const real t = t_ + h;
@@ -201,7 +201,7 @@ void MixedTruth::happen(int what) {
             y_.velocity *= -s_.restitution;
             if (s_.restitution == 0) {
                 way_ = 0, wall_ = side;
-                if (s_.belt) doubtful = true;  // what slides along a mass at a wall is another story
+                if (s_.belt) doubtful = true;  // sliding along a mass at a wall is not covered
                 const real p = pull(t_, y_);
                 if (sign(p) == -side && std::fabs(p) > s_.holding[p > 0 ? 1 : 0]) {
                     doubtful = true;  // pulled off at once
@@ -229,7 +229,7 @@ void MixedTruth::happen(int what) {
             half_ = 1;
             tell("user");
             if (s_.kept_velocity != 1) {
-                // Small bounces, and what hardly passes, are a matter of rounding.
+                // Small bounces and grazing contacts depend on rounding.
                 if (std::fabs(y_.velocity) < 0.1L) doubtful = true;
                 y_.velocity *= s_.kept_velocity;
                 wall_ = 0;

@@ -1,7 +1,7 @@
-// A second opinion on runs with more in them: states, controllers with a memory, belts, bases, laws of friction, walls
-// and events of a user. Fehlberg 7(8) of Boost.odeint in long double with short steps, event by event.
+// A second opinion on runs with states, controllers with a memory, belts, bases, friction laws, walls and user events:
+// Fehlberg 7(8) of Boost.odeint in long double with short steps, event by event.
 //
-// Nothing of src is used. All is in units in which times, angles, velocities and torques are about 1.
+// Uses nothing of src. Times, angles, velocities and torques are of order 1.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct MixedPoint {
     real theta = 0, velocity = 0, z = 0;
 };
 
-/// Friction while it slides, of a way (-1 or 1) and a speed up to the next corner of the law. It is also evaluated a
-/// little outside of its range, where it must go on smoothly.
+/// Sliding friction in a direction (-1 or 1) at speeds up to the next corner of the law. Must continue smoothly a
+/// little outside of its range.
 struct Sliding {
     std::function<real(int way, real speed)> torque;
     real steep = 1;  ///< bounds its slope
@@ -38,7 +38,7 @@ struct MixedSystem {
     std::vector<Sliding> sliding;
     std::array<real, 2> holding{};  ///< backward, forward
     F<real> M;                      ///< without controllers
-    /// What of M jumps or bends at `breaks`: at t, for a step about `inside`. Empty: nothing.
+    /// The part of M that jumps or bends at `breaks`: at t, for a step around `inside`. Empty: none.
     std::function<real(real t, real inside)> broken;
     std::vector<real> breaks;
     F<real> rate = [](real, const MixedPoint&) -> real { return 0; };
@@ -50,8 +50,8 @@ struct MixedSystem {
     std::array<real, 2> levels{};
     F<real> delayed;  ///< empty: none
     real by = 1;
-    F<real> when;            ///< empty: none; told on its way up
-    real kept_velocity = 1;  ///< at that event: the velocity is multiplied by this
+    F<real> when;            ///< empty: none; fires on upward zeros
+    real kept_velocity = 1;  ///< factor applied to the velocity at that event
     bool walls = false;
     real lower = 0, upper = 0, restitution = 0;
 };
@@ -67,8 +67,8 @@ public:
     MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, std::vector<double> times);
     std::vector<MixedEvent> events;
     std::vector<MixedPoint> motions;
-    int corners_passed = 0;  ///< of the law
-    bool doubtful = false;   ///< more happens in a step than it can tell, or it grows beyond all bounds
+    int corners_passed = 0;  ///< corners of the law
+    bool doubtful = false;   ///< whether a step contains more than it can resolve, or the motion diverges
 
 private:
     struct Past {
@@ -95,11 +95,11 @@ private:
 
     MixedSystem s_;
     real t_ = 0;
-    mutable real middle_ = 0;  // of the step that is tried
+    mutable real middle_ = 0;  // middle of the trial step
     MixedPoint y_, start_;
-    int way_ = 0;            // of the sliding; 0: stuck
-    std::size_t range_ = 0;  // of the law
-    int wall_ = 0;           // that it leans against
+    int way_ = 0;            // direction of sliding; 0: stuck
+    std::size_t range_ = 0;  // range of the law
+    int wall_ = 0;           // the wall it leans on
     bool on_ = true, fresh_ = false;
     int half_ = 0;
     real output_ = 0;

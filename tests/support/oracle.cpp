@@ -14,9 +14,9 @@ namespace odeint = boost::numeric::odeint;
 using Point = std::array<real, 2>;
 using Fehlberg = odeint::runge_kutta_fehlberg78<Point, real>;
 
-/// Steps to a radian of the fastest thing there is: between two of them a velocity has one extreme at most.
+/// Steps for each radian of the fastest oscillation: between two of them a velocity has at most one extreme.
 constexpr real steps_per_radian = 4;
-constexpr real least_steps = 12;  // to a stretch
+constexpr real least_steps = 12;  // for each stretch
 constexpr long most_steps = 30000;
 constexpr real most_growth = 1e6;
 constexpr std::size_t most_events = 5000;
@@ -52,7 +52,7 @@ Oracle::Oracle(const model::Oscillator& system, Load load, const model::State& i
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] * size_, y_[1] * size_ * w0_});
 }
 
-/// From one break of M to the next.
+/// Integrates from one break of M to the next.
 void Oracle::pass(const Stretch& stretch) {
     if (sign_ == 0 && dry()) {
         sign_ = from_standstill(stretch);
@@ -97,7 +97,7 @@ void Oracle::move(const Stretch& stretch) {
         const real half = step.length / 2;
         const Point once = part_of(stretch, step, step.length);
         step.end = part_of(stretch, {part_of(stretch, step, half), tau + half, half, {}}, half);
-        // Fehlberg's own estimate looks at both ends of a step only: corners between them would escape it.
+        // Fehlberg's own estimate only uses both ends of a step, and would miss corners between them.
         const real error = std::max(std::fabs(step.end[0] - once[0]), std::fabs(step.end[1] - once[1]));
         const real excess = error / (tolerance_ * (1 + std::fabs(step.end[0]) + std::fabs(step.end[1])));
         h = std::min(longest, step.length * std::clamp<real>(0.8L * std::pow(excess, -1 / 8.0L), 0.1L, 4));
@@ -129,7 +129,7 @@ bool Oracle::look_for_standstill(const Stretch& stretch, const Step& step) {
     };
     real a = 0, fa = s * step.begin[1];
     real b = step.length, fb = s * step.end[1];
-    if (fa <= 0) {  // it has just left zero: where does it show?
+    if (fa <= 0) {  // it has just left zero: find where it is visible
         a = b, fa = fb;
         while (fa <= 0 && a > 1e-15L) a /= 2, fa = velocity(a);
         if (fa <= 0) {
@@ -175,7 +175,7 @@ int Oracle::from_standstill(const Stretch& stretch) {
     return std::fabs(net) <= of(Re_, towards) ? 0 : towards;
 }
 
-/// Stuck up to a release or the end of the stretch.
+/// Waits for a release or the end of the stretch.
 void Oracle::wait(const Stretch& stretch) {
     const real theta = y_[0] * size_;
     real begin = t_, released = stretch.to;

@@ -1,7 +1,7 @@
-// A second opinion on any motion: Boost.odeint's Fehlberg 7(8) in long double, with events and stick and slip of its
-// own.
+// A second opinion on any motion: Boost.odeint's Fehlberg 7(8) in long double, with its own events and stick/slip
+// logic.
 //
-// Nothing of src/core is used but the names of its types; what M is and where it jumps it is told anew.
+// Uses only type names of src; M and its breaks are defined independently.
 #pragma once
 
 #include <array>
@@ -13,40 +13,40 @@
 
 namespace dinal::truth {
 
-/// M as the oracle sees it: stretches of time between breaks, smooth in each.
+/// M for the oracle: smooth on each stretch between breaks.
 struct Load {
-    /// M at t by the formulas that hold at the time `inside`, so that both ends of a stretch can be asked; less what
-    /// friction has beside its constant, 0 at velocity 0.
+    /// M at t by the formulas valid at the time `inside`, so that both ends of a stretch can be evaluated; minus
+    /// friction beyond its constant, which is 0 at velocity 0.
     std::function<real(real t, real inside, const Motion&)> torque;
     std::vector<double> breaks = {};  ///< increasing
-    double quickest = 0;              ///< rad per time unit of the fastest oscillation in it
+    double quickest = 0;              ///< fastest oscillation, rad per time unit
 };
 
 struct OracleEvent {
     real t = 0;
     model::EventKind kind = model::EventKind::turn;
     real theta = 0;
-    /// How fast what decides about t passes zero, in natural units: theta''/(w0^2 size), or M'/(w0 k size) of a slip.
+    /// Rate at which the quantity that determines t passes zero, in natural units: theta''/(w0^2 size), or M'/(w0 k
+    /// size) for a slip.
     real sharpness = 0;
 };
 
 class Oracle {
 public:
-    /// `size` is about the greatest angle to expect; `times`, increasing, are those at which the motion is wanted.
-    /// `tolerance` is what a step may be wrong by, over size. A run has some hundred steps: at 1e-16, which long double
-    /// still tells from rounding, 1e-13 of the size is certain.
+    /// `size`: about the greatest expected angle; `times`: increasing output times; `tolerance`: error of a step over
+    /// size. A run has some hundred steps: with 1e-16, which long double still resolves, 1e-13 of the size is certain.
     Oracle(const model::Oscillator& system, Load load, const model::State& initial, const motion::Window& window,
            double size, std::vector<double> times, real tolerance = 1e-16L);
 
     [[nodiscard]] const std::vector<OracleEvent>& events() const { return events_; }
     /// The motion at `times`.
     [[nodiscard]] const std::vector<Motion>& motions() const { return motions_; }
-    /// By how little any decision was taken, in natural units: a velocity that did not quite come down to zero, a load
-    /// near Re at a standstill, a release that just did or did not come about, a standstill near a break.
+    /// The smallest margin of any decision, in natural units: a velocity that nearly reached zero, a load near Re at a
+    /// standstill, a release that barely did or did not occur, a standstill near a break.
     [[nodiscard]] real narrowest() const { return narrowest_; }
     /// max(|theta|, |velocity|/w0) over the run.
     [[nodiscard]] real largest() const { return largest_; }
-    /// The motion went beyond all bounds, or would have taken too long: an unstable feedback.
+    /// Returns whether the motion diverged or would have taken too long, as under an unstable feedback.
     [[nodiscard]] bool gave_up() const { return gave_up_; }
 
 private:
@@ -75,14 +75,14 @@ private:
 
     const model::Oscillator& system_;
     Load load_;
-    using Sides = std::array<real, 2>;  // of a friction that is constant each way: backward, forward
+    using Sides = std::array<real, 2>;  // constant friction for each direction: backward, forward
     [[nodiscard]] static real of(const Sides& sides, int sign) { return sides[sign > 0 ? 1 : 0]; }
     [[nodiscard]] bool dry() const { return Re_[0] > 0 || Re_[1] > 0; }
 
     real size_, k_, w0_;
     Sides Re_, Rd_;
     real t_start_, t_end_;
-    real longest_;  // step, radians
+    real longest_;  // longest step, radians
     real tolerance_;
     std::vector<double> times_;
 

@@ -14,7 +14,7 @@ namespace dinal::truth {
 
 namespace {
 
-/// Gain, delay and window, each now and then.
+/// Sometimes changes gain, delay or window.
 Ingredient altered(Lot& lot, const Units& u, Ingredient x) {
     if (lot.once_in(4)) {
         const double gain = lot.between(-1.5, 1.5);
@@ -86,7 +86,7 @@ std::uint64_t Lot::next() {
 
 namespace {
 
-/// A system, a start and a window; nothing drives it yet.
+/// A system, a start and a window, without a drive.
 RandomCase undriven_case(Lot& lot, double (*damping)(Lot& lot) = damping_ratio) {
     const double I = lot.power_of_ten(-6, 5), k = lot.power_of_ten(-3, 3), angle = lot.power_of_ten(-9, 6);
     const double zeta = damping(lot);
@@ -180,7 +180,7 @@ RandomCase random_case_of_bumps(std::uint64_t number) {
         const double latest = std::max(std::fabs(c.window.start), std::fabs(c.window.end));
         c.lost_in_time = std::max(c.lost_in_time, 4 * std::numeric_limits<double>::epsilon() * latest / width);
     }
-    c.late = 2e-11 * std::numbers::pi;  // spectral finds a release to 1e-11 T0
+    c.late = 2e-11 * std::numbers::pi;  // spectral locates a release to 1e-11 T0
     if (lot.once_in(3)) add(c, altered(lot, units, random_native_term(lot, units)));
     std::sort(c.load.breaks.begin(), c.load.breaks.end());
     choose_times(lot, c);

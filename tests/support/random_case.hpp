@@ -1,4 +1,4 @@
-// Systems and excitations by lot: the same number gives the same case, told twice, to dinal and to the oracle.
+// Random systems and excitations: the same number gives the same case, defined independently for dinal and the oracle.
 #pragma once
 
 #include <cstdint>
@@ -10,31 +10,31 @@
 namespace dinal::truth {
 
 struct RandomCase {
-    std::string story;  ///< enough to write the case down elsewhere
+    std::string story;  ///< a description sufficient to reproduce the case
     model::Oscillator system;
     model::Excitation excitation;
-    Load load;  ///< the same excitation
+    Load load;  ///< the same excitation for the oracle
     model::State initial;
     motion::Window window;
     double size;  ///< about the greatest angle
 
-    /// Where it is told: generic times in the window, increasing.
+    /// Output times: generic times in the window, increasing.
     std::vector<double> times;
 
-    /// Times are rounded: by this part of the narrowest bump.
+    /// The rounding of times as a part of the narrowest bump.
     double lost_in_time = 0;
-    /// What an event may be late by, radians. A bump may be so steep that no error of M explains it.
+    /// The allowed delay of events, radians: a bump may be too steep for an error of M to explain it.
     double late = 0;
 };
 
 RandomCase random_case(std::uint64_t number);
-/// Driven by smooth bumps, of 1e-6 T0 up to ten; half of them begin at rest.
+/// Driven by smooth bumps with widths from 1e-6 to 10 T0; half of the cases begin at rest.
 RandomCase random_case_of_bumps(std::uint64_t number);
-/// Driven by terms that have closed forms only, some of them at resonance or within 1e-15 ... 0.1 of it; at any
-/// damping, also within 1e-12 of the critical one.
+/// Driven by terms with closed forms, some at resonance or within 1e-15 ... 0.1 of it, with any damping, including
+/// within 1e-12 of critical.
 RandomCase random_case_of_closed_forms(std::uint64_t number);
 
-/// Evenly distributed numbers that are the same with every library.
+/// Uniform random numbers that are the same with every library.
 class Lot {
 public:
     explicit Lot(std::uint64_t seed) : state_(seed) {}
@@ -49,13 +49,13 @@ private:
     std::uint64_t state_;
 };
 
-/// A term of M, told twice.
+/// A term of M for dinal and for the oracle.
 struct Ingredient {
     std::string story;
     model::Excitation excitation;
     Load load;
 };
-/// What a case is measured in.
+/// The scales of a case.
 struct Units {
     motion::Window window;
     double period;  ///< T0
@@ -63,14 +63,14 @@ struct Units {
     double torque;  ///< k angle
 };
 Ingredient random_native_term(Lot& lot, const Units& units);
-/// A sine or an exponential that answers to the free motion.
+/// A sine or an exponential in resonance with the free motion.
 Ingredient random_resonant_term(Lot& lot, const Units& units, double damping_ratio);
 Ingredient random_bump(Lot& lot, const Units& units, double width);
 Ingredient random_function_of_time(Lot& lot, const Units& units);
 Ingredient random_feedback(Lot& lot, const Units& units);
 
-/// The whole number that the environment has under this name: DINAL_ORACLE_CASES asks for more systems by lot than are
-/// usual, or for fewer; DINAL_ORACLE_FIRST begins with another one.
+/// The whole number in an environment variable: DINAL_ORACLE_CASES sets the number of random systems,
+/// DINAL_ORACLE_FIRST the first one.
 long number_from(const char* variable, long otherwise);
 
 }  // namespace dinal::truth

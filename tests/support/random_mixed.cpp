@@ -21,7 +21,7 @@ namespace dinal::truth {
 
 namespace {
 
-/// The load of the second truth is off by this, to see what an error does in a case.
+/// A perturbation of the second truth's load, to measure a case's sensitivity to errors.
 constexpr double mixed_nudge = 1e-8;
 
 struct MixedCase {
@@ -30,7 +30,8 @@ struct MixedCase {
     model::Drive drive;
     MixedSystem truth;
     double z0 = 0, t_end = 0;
-    bool untold = false, remembers = false, corners = false;  ///< jumps of M; a controller; of the law
+    bool untold = false, remembers = false, corners = false;  ///< unannounced jumps of M; a controller; corners of the
+                                                              ///< law
     std::vector<double> times;
 
     template <class... T>
@@ -39,7 +40,7 @@ struct MixedCase {
     }
 };
 
-/// A formula of t, theta, velocity and z, for both.
+/// A formula of t, theta, velocity and z for both sides.
 template <class Formula>
 std::shared_ptr<model::UserFunction> ours(Formula f) {
     return written([f](double t, const model::State& y, std::span<const double> z) {
@@ -102,7 +103,7 @@ void draw_system(Lot& lot, MixedCase& c) {
             const int shape = 1 + lot.of(3);
             p.friction = model::laws::Stribeck{
                 .kinetic = Rd, .breakaway = Re, .speed = speed, .shape = static_cast<double>(shape)};
-            // Below speed 0 it goes on smoothly: by the same formula.
+            // Below speed 0 the same formula continues smoothly.
             const auto torque = [=](int, real v) -> real {
                 return Rd + (static_cast<real>(Re) - Rd) * std::exp(-std::pow(v / static_cast<real>(speed), shape));
             };
@@ -116,7 +117,7 @@ void draw_system(Lot& lot, MixedCase& c) {
                 .function = written([=](double v, const model::State&, auto) { return Rd + rise * v / (1 + v); }),
                 .at_zero = Rd,
                 .breakaway = Re};
-            // Below speed 0 the law goes on with the slope that it has at 0, turned about its value there.
+            // Below speed 0 the law is the point reflection at its value at 0.
             c.truth.sliding = {{[=](int, real v) -> real { return Rd + rise * v / (1 + std::fabs(v)); }}};
             c.say("law Rd {:.17g} rise {:.17g} Re {:.17g}", Rd, rise, Re);
             break;
@@ -149,7 +150,7 @@ void draw_system(Lot& lot, MixedCase& c) {
     }
 }
 
-/// What M does over time: a sine, or a sine beside a record, a window of it, or jumps, told or not.
+/// Draws M as a function of time: a sine, alone or with a record, a window of it, or announced or unannounced jumps.
 void draw_course(Lot& lot, MixedCase& c) {
     const double a = lot.between(0.2, 1.2), w = lot.between(0.4, 2.5), phase = lot.between(0, 6);
     const double level = lot.between(-0.3, 0.3), from = lot.between(0.5, 3), length = lot.between(0.3, 4);
@@ -206,7 +207,7 @@ void draw_course(Lot& lot, MixedCase& c) {
           w, phase, level, kind, c.untold ? ", not told" : "", from, length);
 }
 
-/// M without a memory, which may ask for the motion and for a state.
+/// Draws M without a memory, which may depend on the motion and on a state.
 void draw_load(Lot& lot, MixedCase& c) {
     draw_course(lot, c);
     const bool loop = lot.once_in(3), has_state = lot.once_in(2);
@@ -372,7 +373,7 @@ std::string kinds_of_all(const Events& events) {
 std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
                      const MixedTruth& truth, const MixedTruth& beside, double accuracy);
 
-/// Empty when it is right; "?" when that is not to be decided.
+/// The fault found; empty if correct, "?" if undecidable.
 std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
     MixedSystem pushed = c.truth;
     pushed.M = [f = c.truth.M](real t, const MixedPoint& y) { return f(t, y) + static_cast<real>(mixed_nudge); };
@@ -386,12 +387,12 @@ std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
     };
     const std::string fault = fault_in(c, run_by(motion::Spectral{}), expected, truth, beside, accuracy);
     if (!fault.empty()) return fault;
-    if (const auto closed = run_by(motion::Exact{})) {  // which takes few of them
+    if (const auto closed = run_by(motion::Exact{})) {  // supports few of them
         const std::string wrong = fault_in(c, closed, expected, truth, beside, accuracy);
         if (!wrong.empty()) return "by exact: " + wrong;
     }
     if (!rk4_too || c.untold || c.remembers || c.corners) return "";
-    // (w h)^4/120 of some ten radians at w = 4, and the cubics between its steps.
+    // (w h)^4/120 over some ten radians at w = 4, plus the cubics between its steps.
     const std::string late = fault_in(c, run_by(motion::Rk4{0.002}), expected, truth, beside, 100 * accuracy);
     return late.empty() ? "" : "by rk4: " + late;
 }
@@ -418,7 +419,7 @@ std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory
                            f.theta - static_cast<double>(e.theta), static_cast<double>(s.t - e.t));
     }
     for (std::size_t i = 0; i < c.times.size(); ++i) {
-        // A row beside a jump of the velocity may be on its other side.
+        // A row next to a jump of the velocity may be on its other side.
         const bool beside_event = std::any_of(truth.events.begin(), truth.events.end(), [&](const MixedEvent& e) {
             return std::fabs(static_cast<double>(e.t) - c.times[i]) < 1e-6;
         });

@@ -1,9 +1,9 @@
-// Systems with all kinds of more in them by lot, compared with the integrator of mixed_truth.hpp.
+// Random systems with combined features, compared with the integrator of mixed_truth.hpp.
 #pragma once
 
 namespace dinal::truth {
 
-/// Each case by spectral; fails with the case written down. Cases whose decisions are too close to call are counted.
+/// Runs each case with spectral; a failure prints the case. Counts cases with decisions too close to call.
 void check_random_mixed(int cases);
 
 }  // namespace dinal::truth

@@ -1,4 +1,4 @@
-// Native terms and users' functions by lot, each beside the formulas that the oracle goes by.
+// Random native terms and user functions, each with independent formulas for the oracle.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,7 +23,7 @@ Load load_of(Shape shape, std::vector<double> breaks = {}, double quickest = 0) 
             quickest};
 }
 
-/// A native term, told as the Lua text that makes it.
+/// A native term, with the Lua text that makes it as its description.
 template <class Term>
 Ingredient term_of(const Term& term, Load load) {
     return {text::lua_text(Term::about.call.name, Term::about.call.options, term, text::Defaults::written),
@@ -41,7 +41,7 @@ Ingredient exponential_of(double a, double tau, double at) {
                    load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at}));
 }
 
-/// From, from + step, ... all over the window, also when they are delayed later on.
+/// from, from + step, ... throughout the window, also after a later delay.
 std::vector<double> every(double from, double step, const Units& u, std::vector<double> parts = {0}) {
     std::vector<double> times;
     const double margin = 3 * u.period + step;
@@ -70,7 +70,7 @@ std::vector<double> scattered(Lot& lot, const Units& u, int n, double apart) {
     return times;
 }
 
-/// Which of the stretches between `edges` holds t.
+/// The index of the stretch between `edges` that contains t.
 template <class T>
 std::size_t stretch_of(const std::vector<double>& edges, T t) {
     return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), t) - edges.begin());
@@ -226,8 +226,8 @@ Ingredient random_resonant_term(Lot& lot, const Units& u, double damping_ratio) 
     return exponential_of(a, tau, at);
 }
 
-/// A narrow one is as great as it must be to be felt. The oracle, which takes some steps between breaks, is told of
-/// breaks on it.
+/// A bump; narrow ones are large enough to have an effect. For the oracle, which takes few steps between breaks, it has
+/// additional breaks.
 Ingredient random_bump(Lot& lot, const Units& u, double width) {
     const double felt = u.torque * std::max(1.0, u.period / (15 * width));
     const double a = felt * lot.between(-1.5, 1.5), at = lot.between(u.window.start, u.window.end);
@@ -240,7 +240,7 @@ Ingredient random_bump(Lot& lot, const Units& u, double width) {
     return term_of(model::Gaussian{a, at, width}, load_of(shape, steps));
 }
 
-/// Smooth, with jumps, with kinks; with its jumps announced or not.
+/// Smooth, with jumps or with kinks; jumps may be announced or not.
 Ingredient random_function_of_time(Lot& lot, const Units& u) {
     const double a = u.torque * lot.between(0.2, 1.5), w = lot.between(0.2, 8) / u.period, phase = lot.between(0, 6);
     const double first = u.window.start;

@@ -57,7 +57,7 @@ model::Oscillator block() {
 }
 
 void add_field_cases(std::vector<ReferenceSystem>& list) {
-    // Distance is the angle here: a block of 10 kg, drawn through a spring of 4000 N/m at 0.01 m/s.
+    // The angle is a distance here: a block of 10 kg, pulled through a spring of 4000 N/m at 0.01 m/s.
     list.push_back(
         {"spring-pulled block", block(), native(model::Ramp{.slope = 40}), {{0, {.slope = 40}}}, {0, 0}, {0, 4}, 0.04});
     list.push_back({"newsgroup oscillator",
@@ -116,7 +116,7 @@ private:
     double share_, amplitude_, omega_;
 };
 
-/// `system`, but M brakes by `share` of its sliding friction.
+/// `system` with a share of its sliding friction moved into M.
 ReferenceSystem braked_by_hand(std::string name, const ReferenceSystem& s, double share) {
     const Drive& drive = s.drives.front().drive;
     const auto function =
@@ -206,7 +206,7 @@ const std::vector<ReferenceSystem>& reference_systems() {
 const std::vector<ReferenceSystem>& jumping_feedback_systems() {
     static const std::vector<ReferenceSystem> systems = [] {
         std::vector<ReferenceSystem> list;
-        // Rests at t = 3 pi, where k theta = 0.1.
+        // Comes to rest at t = 3 pi, where k theta = 0.1.
         const ReferenceSystem free{
             "", system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.2}), {}, no_drive, {1.1, 0}, {0, 20},
             1.1};

@@ -1,4 +1,4 @@
-// A folder of its own for a test that needs files; gone with everything in it at the end of the test.
+// A temporary folder for a test, deleted with its contents at the end.
 #pragma once
 
 #include <cstdlib>
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-    /// How many entries there are, hidden ones too.
+    /// The number of entries, including hidden ones.
     [[nodiscard]] std::ptrdiff_t count() const {
         return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
     }
@@ -38,7 +38,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// Reading and writing without the code under test.
+/// Reads and writes files without the code under test.
 inline void put_text(const std::string& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }

@@ -1,4 +1,4 @@
-// A number to within a margin. Catch's Approx(x).margin(m) would forgive 1.2e-5 of x as well, whatever m is.
+// Comparison within an absolute margin. Catch's Approx(x).margin(m) would also allow 1.2e-5 of x, whatever m is.
 #pragma once
 
 #include "support/catch.hpp"

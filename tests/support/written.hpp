@@ -1,4 +1,4 @@
-// Functions of a user as C++ lambdas, and runs with more in them.
+// User functions as C++ lambdas, and runs with additional features.
 #pragma once
 
 #include <functional>

@@ -6,7 +6,7 @@
 namespace dinal::analysis::sine {
 namespace {
 
-constexpr double longest = 3;  // of a slide, in the shortest time of all parts: e^3 of the digits go
+constexpr double longest = 3;  // longest slide, in the shortest time scale: costs e^3 of the accuracy
 
 }  // namespace
 
@@ -20,10 +20,11 @@ std::optional<ShortSlides> ShortSlides::of(const SteadyQuestion& question) {
     return slides.solve() ? std::optional(slides) : std::nullopt;
 }
 
-/// Released from -y, it must get 2 y far. What a little more y changes is what a shifted start is back by then.
+/// Released from -y, the mass must advance by 2 y. The residual's derivative is 2 minus the part of a shift that is
+/// forgotten.
 bool ShortSlides::solve() {
     constexpr int most_steps = 30;
-    constexpr double nearly = 1e-7;  // the next step of Newton leaves about rounding
+    constexpr double nearly = 1e-7;  // the next Newton step leaves only rounding
     for (int i = 0; i < most_steps; ++i) {
         if (!start(sine_.spare + rest_) || !find_end()) return false;
         const double left = way(end_) - 2 * rest_;
@@ -38,12 +39,13 @@ bool ShortSlides::solve() {
     return false;
 }
 
-/// The slide from a place where the crest of the load exceeds what holds the mass by `spare`: at the release the load
-/// is cos d, d of phase before its crest, and x later cos d cos rx + sin d sin rx. False when it is no short one.
+/// Begins a slide from a place where the crest of the load exceeds the holding torque by `spare`. The release is d of
+/// phase before the crest, where the load is cos d; x later it is cos d cos rx + sin d sin rx. Returns false if the
+/// slide is not short.
 bool ShortSlides::start(double spare) {
     const double d = 2 * std::asin(std::sqrt(spare / 2)), r = sine_.r;
     release_ = half_load / 2 - d;
-    end_ = 3 * std::tan(d) / r;  // where the first two terms of the speed cancel
+    end_ = 3 * std::tan(d) / r;  // zero of the first two terms of the speed
     if (!is_short()) return false;
     const std::array<double, 4> turn{std::cos(d), std::sin(d), -std::cos(d), -std::sin(d)};
     double power = 1;
@@ -63,7 +65,7 @@ bool ShortSlides::is_short() const {
     return end_ > 0 && end_ * std::max({1.0, sine_.r, 2 * sine_.zeta}) <= longest;
 }
 
-/// The first time after the release at which it stands still. The speed begins with x squared, by which it is divided.
+/// Finds the end of the slide. The speed begins with x squared, so it is divided by that.
 bool ShortSlides::find_end() {
     constexpr int most_steps = 40;
     double before = 0.9 * end_, value_before = speed_by_square(before);
@@ -91,7 +93,7 @@ double ShortSlides::speed_by_square(double x) const {
     return sum;
 }
 
-/// What of a shift of the place is gone after x of free motion: the answer to a constant load of 1.
+/// The part of a shifted start that decays within x of free motion: the response to a constant load of 1.
 double ShortSlides::forgets(double x) const {
     double before = 0, now = 0, sum = 0, power = 1;  // terms n and n + 1 of the series, and x^n
     for (std::size_t n = 0; n + 2 < terms; ++n) {
@@ -124,11 +126,11 @@ SteadyMotion ShortSlides::motion(const SteadyQuestion& question) const {
     const double kept = 1 - forgets(end_);
     motion.multipliers = {kept * kept, 0};
     motion.differentiable = motion.stable = motion.symmetric = true;
-    motion.unique = true;  // a period brings any two motions nearer to each other, or lets them be
+    motion.unique = true;  // over a period any two motions never move apart
     return motion;
 }
 
-/// By parts: of the speed, which is zero but in the two slides, and these are opposites half a period apart.
+/// Integrates by parts: the speed is nonzero only in two opposite slides half a period apart.
 std::complex<double> ShortSlides::fundamental() const {
     std::array<std::complex<double>, terms> wave{1.0};  // e^(-i r x)
     for (std::size_t n = 1; n < terms; ++n) {

@@ -1,6 +1,6 @@
-// The steady motion of a load that hardly exceeds friction: once in each half period it frees the mass for a moment
-// about its crest. Such a slide is its power series about the release, and all of it is counted from there, so that it
-// keeps its digits however small it is; sums of a load, friction and springs of about the same size would lose them.
+// The steady motion of a load that barely exceeds friction: it releases the mass briefly about its crest in each half
+// period. Such a slide is a power series about the release, which keeps its digits however small the slide is; sums of
+// load, friction and spring torques would lose them.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@ namespace dinal::analysis::sine {
 
 class ShortSlides {
 public:
-    /// None where the slides are no short ones, or it is not sure that there is no other motion (Re > Rd).
+    /// None if the slides are not short, or the motion may not be unique (Re > Rd).
     static std::optional<ShortSlides> of(const SteadyQuestion& question);
 
     [[nodiscard]] SteadyMotion motion(const SteadyQuestion& question) const;
-    /// The amplitude and phase of theta's fundamental, counted from the beginning of the drive.
+    /// The amplitude and phase of theta's fundamental, counted from the start of the drive.
     [[nodiscard]] std::complex<double> fundamental() const;
 
 private:
     static constexpr std::size_t terms = 44;
-    using Series = std::array<double, terms>;  // of powers of x
+    using Series = std::array<double, terms>;  // coefficients of powers of x
 
     explicit ShortSlides(const SingleSine& sine) : sine_(sine) {}
     bool solve();
@@ -35,11 +35,11 @@ private:
     [[nodiscard]] double forgets(double x) const;
 
     SingleSine sine_;
-    double rest_ = 0;     ///< the mass is released from -rest_ forward
-    double release_ = 0;  ///< the phase of that
-    double end_ = 0;      ///< of the slide, in x since then
-    Series series_{};     ///< of the way since then,
-    Series speed_{};      ///< and of its speed, times x
+    double rest_ = 0;     ///< the mass is released forward from -rest_
+    double release_ = 0;  ///< phase of the release
+    double end_ = 0;      ///< end of the slide, x since the release
+    Series series_{};     ///< way since the release,
+    Series speed_{};      ///< and its speed times x
 };
 
 }  // namespace dinal::analysis::sine

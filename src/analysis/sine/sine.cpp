@@ -37,7 +37,7 @@ std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
 
 namespace {
 
-/// The product as it is for finite numbers.
+/// The product of finite numbers, without checks for infinities.
 std::complex<double> product(std::complex<double> a, std::complex<double> b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
@@ -45,10 +45,10 @@ std::complex<double> phasor(double angle) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-/// The slides of a SingleSine from standstill to standstill.
+/// Slides of a SingleSine between standstills.
 class SineArcs {
 public:
-    /// Only where applies_to() says so.
+    /// Requires that applies_to() is true.
     explicit SineArcs(const SingleSine& sine)
         : sine_(sine),
           root_(-sine.zeta, theory::Modes(sine.zeta).rate()),
@@ -57,11 +57,11 @@ public:
           free_turn_(std::exp(-sine.zeta * step_) * phasor(root_.imag() * step_)),
           answer_(theory::magnification(sine.r, sine.zeta) * phasor(-theory::phase_lag(sine.r, sine.zeta))) {}
     static bool applies_to(const SingleSine& sine) {
-        constexpr double heavy = 0.99, resonant = 1e-6;  // where forms of other kinds would be needed
+        constexpr double heavy = 0.99, resonant = 1e-6;  // beyond these, other closed forms would be needed
         return sine.zeta < heavy && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
     }
 
-    /// Takes leave from velocity 0 at this place and phase of the load; way is +1 or -1.
+    /// Starts from velocity 0 at this place and phase of the load; way is +1 or -1.
     void leave(double phase, double y, double way) {
         way_ = way;
         forced_ = product(answer_, phasor(phase));
@@ -71,7 +71,7 @@ public:
 
     struct Sliding {
         theory::Motion2 motion;
-        double slope;  ///< of the velocity
+        double slope;  ///< slope of the velocity
     };
     [[nodiscard]] Sliding at(double x) const {
         const Complex load = product(forced_, phasor(sine_.r * x));
@@ -81,8 +81,8 @@ public:
                 -sine_.r * sine_.r * load.imag() + product(root_, rate).real()};
     }
 
-    /// For how long it slides before its velocity is zero again; none when it does not get under way, or goes on beyond
-    /// `most` of x.
+    /// The duration of the slide until the velocity is zero; none if it does not start, or takes longer than `most` (in
+    /// x).
     [[nodiscard]] std::optional<double> first_zero(double most) const {
         Complex load = forced_, own = free_;
         double before = 0, v_before = 0;
@@ -110,10 +110,10 @@ public:
 private:
     using Complex = std::complex<double>;
 
-    /// Newton's method from a place where it still slides to one where it would slide back, kept between them.
+    /// Newton's method between a point of the slide and one behind its end.
     [[nodiscard]] double zero_between(double from, double to, double x) const {
         constexpr int most_steps = 60;
-        constexpr double nearly = 1e-6;  // from there the next step leaves about rounding
+        constexpr double nearly = 1e-6;  // the next step leaves only rounding
         const auto newton = [](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
         for (int i = 0; i < most_steps; ++i) {
             const Sliding now = at(x);
@@ -128,32 +128,31 @@ private:
     }
 
     SingleSine sine_;
-    Complex root_;                     // of the free motion, -zeta + iq
-    double step_;                      // of the search
-    Complex forced_turn_, free_turn_;  // by a step
-    Complex answer_;                   // to the load
+    Complex root_;                     // root of the free motion, -zeta + iq
+    double step_;                      // step of the search
+    Complex forced_turn_, free_turn_;  // factors for one step
+    Complex answer_;                   // response to the load
     double way_ = 1;
-    Complex forced_ = 0, free_ = 0;  // at the leave: y = Im forced + Re free - way Rd/M0
+    Complex forced_ = 0, free_ = 0;  // at the start: y = Im forced + Re free - way Rd/M0
 };
 
-/// By Den Hartog's closed form of a motion without stops; none where such a motion would stop, as far as one look at
-/// its slide tells.
+/// The start from Den Hartog's closed form of a motion without stops; none if a quick check shows that it would stop.
 std::optional<model::State> sliding_start(const SingleSine& sine) {
     const double r = sine.r, half = half_load / r;
     const auto motion = theory::DenHartog(r, sine.zeta).without_stops(sine.sliding);
     if (!motion || !(motion->amplitude > 0)) return {};
-    // The load is greatest at a phase of pi/2, theta by its lag later; half a period after that all is the opposite.
+    // The load is greatest at a phase of pi/2, theta later by its lag; half a period later the motion is opposite.
     const double crest = half_load / 2 + motion->lag;
     if (sine.sliding > 0 && SineArcs::applies_to(sine)) {
         SineArcs slide(sine);
         slide.leave(crest, motion->amplitude, -1);
-        constexpr double nearly = 1e-6;  // a stop just before the turn is one for the search
+        constexpr double nearly = 1e-6;  // a stop just before the turn is left to the search
         const auto end = slide.first_zero(half * (1 + nearly));
         if (!end || *end < half * (1 - nearly)) return {};
     }
     const double phase = sine.phase - crest;
     const double halves = std::floor(phase / half_load);
-    const double since = (phase / half_load - halves) * half;  // the last turn
+    const double since = (phase / half_load - halves) * half;  // since the last turn
     const double sign = std::fmod(halves, 2) == 0 ? 1 : -1;
     const double phi = theory::magnification(r, sine.zeta), lag = theory::phase_lag(r, sine.zeta);
     const auto forced = [&](double x) {
@@ -168,13 +167,13 @@ std::optional<model::State> sliding_start(const SingleSine& sine) {
     return start;
 }
 
-/// The first of the phases base, base + 2 pi, ... and base - 2 pi, ... that is not before `now`.
+/// The first of the phases base + 2 pi n at or after `now`.
 double next_of(double base, double now) {
     return base + 2 * half_load * std::ceil((now - base) / (2 * half_load));
 }
 
-/// From release to release the motion depends on the place of rest alone: half a period later it is the opposite where
-/// a function of one number is zero.
+/// Finds a motion with stops. It depends on the place of rest alone; a zero of one function makes it opposite half a
+/// period later.
 class StoppingSearch {
 public:
     explicit StoppingSearch(const SingleSine& sine) : sine_(sine), arcs_(sine) {}
@@ -191,7 +190,7 @@ public:
             sticks[i] = *next;
             for (std::size_t n = 1; n <= i; ++n) {
                 const Stick &a = sticks[i - n], &b = sticks[i];
-                constexpr double about = 0.3;  // the secants lead on from there
+                constexpr double about = 0.3;  // close enough for the secant method
                 if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < about)) continue;
                 if (const auto y = place_of_rest(a, b, n)) return at_start(*y, n);
                 break;
@@ -201,20 +200,20 @@ public:
     }
 
 private:
-    /// At rest, and released when the load has reached this phase.
+    /// A mass at rest that is released when the load reaches the phase `release`.
     struct Stick {
         double y = 0, release = 0;
-        double way = 1;  ///< of the release
+        double way = 1;  ///< direction of the release
     };
 
-    /// Released forward from here; none where the load cannot do that.
+    /// The release forward from y; none if the load is too small.
     [[nodiscard]] std::optional<Stick> released_from(double y) const {
         const double needed = y + sine_.holding;
         if (!(std::fabs(needed) < 1)) return {};
         return Stick{y, std::asin(needed), 1};
     }
 
-    /// The next place of rest; none when it has slid for three periods.
+    /// The next place of rest; none after a slide of three periods.
     std::optional<Stick> next(const Stick& from) {
         double phase = from.release, y = from.y, way = from.way;
         const double latest = phase + 6 * half_load;
@@ -243,7 +242,7 @@ private:
         return stick.release < never ? std::optional(stick) : std::nullopt;
     }
 
-    /// By how much it is off half a period later, n stops on, less the sign.
+    /// The deviation from the opposite place half a period later, n stops on.
     std::optional<double> off(double y, std::size_t n) {
         auto stick = released_from(y);
         const double begin = stick ? stick->release : 0;
@@ -252,8 +251,8 @@ private:
         return -stick->y - y;
     }
 
-    /// The root of off(), by secants, the last of which need not be looked at: what it leaves is a product of what the
-    /// last two were off. All is proven by others, so that a slow search is left to them.
+    /// The root of off() by secants. The last step is not checked, as its error is a product of the last two residuals.
+    /// Callers prove the result, so a slow search is left to them.
     std::optional<double> place_of_rest(const Stick& a, const Stick& b, std::size_t n) {
         constexpr double rounding = 1e-17;
         constexpr int most = 12;
@@ -269,7 +268,7 @@ private:
         return {};
     }
 
-    /// The motion from rest to rest at the phase that the drive starts with.
+    /// The state at the phase with which the drive starts.
     std::optional<model::State> at_start(double y, std::size_t n) {
         auto stick = released_from(y);
         if (!stick) return {};
@@ -284,7 +283,7 @@ private:
     SingleSine sine_;
     SineArcs arcs_;
     double wanted_ = -1e300;                // a phase,
-    std::optional<theory::Motion2> found_;  // and where it is there, once next() has passed it
+    std::optional<theory::Motion2> found_;  // and the state there, set when next() passes it
 };
 
 }  // namespace
@@ -292,8 +291,6 @@ private:
 std::optional<model::State> sine_start(const SingleSine& sine) {
     if (const auto start = sliding_start(sine)) return start;
     if (!SineArcs::applies_to(sine) || !(sine.holding > 0)) return {};
-    // From release to release the motion depends on the place of rest alone: it is the root of a function of one
-    // number.
     return StoppingSearch(sine).found();
 }
 

@@ -1,8 +1,8 @@
-// A linear spring and even friction of Coulomb under one sine, which has closed forms from event to event: starts for
-// the search of a steady motion are made of them, and the motion itself where it is a small one (short_slides.hpp).
+// A linear spring and symmetric Coulomb friction under one sine, with closed forms between events: they provide starts
+// for a search of the steady motion, and small motions completely (short_slides.hpp).
 //
-// Everything is in units of its own: y = theta k/M0, x = w0 t, so that y'' + 2 zeta y' + y = sin p - friction, and the
-// phase p of the load goes on by r for each x.
+// Dimensionless: y = theta k/M0, x = w0 t, so that y'' + 2 zeta y' + y = sin p - friction; the phase p of the load
+// advances by r for each x.
 #pragma once
 
 #include <numbers>
@@ -18,19 +18,19 @@ inline constexpr double half_load = std::numbers::pi;  ///< half a period of the
 struct SingleSine {
     double r = 0, zeta = 0;
     double sliding = 0, holding = 0;  ///< Rd/M0 and Re/M0
-    double spare = 0;                 ///< 1 - Re/M0, with all digits
-    double phase = 0;                 ///< of the load when the drive starts
+    double spare = 0;                 ///< 1 - Re/M0 without loss of digits
+    double phase = 0;                 ///< phase of the load when the drive starts
     double unit = 1, omega0 = 1;      ///< M0/k and w0
 
     [[nodiscard]] model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }
 };
 
-/// None where the system or M is another one, or r is beyond what closed forms take.
+/// None for another kind of system or M, or if r is out of the range of the closed forms.
 std::optional<SingleSine> single_sine(const SteadyQuestion& question);
 
-/// Where the steady motion is when the drive starts, good to rounding as a rule. Ends of slides are looked for in
-/// steps, which may step over a short reversal: it is a start for those who prove. None where the closed forms do not
-/// lead to one, where the mass never moves, and where its half periods are not opposites of each other.
+/// The state of the steady motion when the drive starts, usually accurate to rounding. Its search may step over a short
+/// reversal, so callers must verify it. None if the closed forms lead nowhere, the mass never moves, or half periods
+/// are not opposite.
 std::optional<model::State> sine_start(const SingleSine& sine);
 
 }  // namespace dinal::analysis::sine

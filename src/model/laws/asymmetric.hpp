@@ -1,4 +1,4 @@
-// Coulomb's law with other numbers each way: a brake with a wedge, a ratchet worn smooth.
+// Coulomb's law with different numbers each way: a brake with a wedge, a worn ratchet.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Friction with a state of its own: bristles that bend before they slip. The model of Canudas de Wit, Olsson, Astrom
-// and Lischinsky (1995), called LuGre, and Dahl's (1968), which is its case without damping and with Re = Rd.
+// Friction with an internal state: bristles that bend before they slip. The LuGre model of Canudas de Wit, Olsson,
+// Astrom and Lischinsky (1995), and Dahl's (1968), its case without damping and with Re = Rd.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Bristle {
 
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double greatest() const { return breakaway.value_or(kinetic); }
-    /// What a steady slip takes, but for the viscous part.
+    /// The torque of a steady slip without its viscous part.
     [[nodiscard]] double steady(double v) const {
         const double x = v / speed;
         return kinetic + (greatest() - kinetic) * std::exp(-x * x);

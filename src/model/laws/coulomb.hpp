@@ -1,4 +1,4 @@
-// Coulomb's law: Rd while sliding, at whatever speed, and up to Re while standing.
+// Coulomb's law: Rd while sliding, at any speed, and up to Re while sticking.
 #pragma once
 
 #include "model/friction.hpp"
@@ -16,7 +16,7 @@ struct Coulomb {
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, breakaway); }
 };
 
-/// What a user says about it.
+/// The options of a user.
 struct CoulombTorques {
     double Rd = 0;
     std::optional<double> Re = {};

@@ -1,4 +1,4 @@
-// A one-way clutch: it turns forward against Rd, and holds any torque backward.
+// A one-way clutch: it turns forward against Rd and holds any torque backward.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 namespace dinal::model::laws {
 
 struct Freewheel {
-    double kinetic = 0;  ///< Rd, which is also what a pull forward must exceed
+    double kinetic = 0;  ///< Rd, also the breakaway torque forward
 
     static constexpr bool depends_on_speed = false;
     [[nodiscard]] double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }

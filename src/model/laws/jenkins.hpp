@@ -1,4 +1,4 @@
-// The element of Jenkins: a spring in series with a dry slider. Several side by side make the hysteresis of Iwan.
+// The Jenkins element: a spring in series with a dry slider. Several in parallel form Iwan's hysteresis.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Stribeck's law: friction falls from Re at standstill towards Rd with the speed, as a lubricant is drawn in.
+// Stribeck's law: friction falls with speed from Re at standstill towards Rd, as a lubricant is drawn in.
 #pragma once
 
 #include <cmath>
@@ -11,21 +11,21 @@ namespace dinal::model::laws {
 /// Rd + (Re - Rd) exp(-(|v|/speed)^shape); shape 2 is Stribeck's curve after Bo and Pavelescu (1982), 1 Tustin's
 /// (1947).
 struct Stribeck {
-    double kinetic = 0;    ///< Rd, at great speeds
+    double kinetic = 0;    ///< Rd, at high speed
     double breakaway = 0;  ///< Re >= Rd
-    double speed = 0;      ///< at which the difference has fallen to 1/e
+    double speed = 0;      ///< the speed at which the difference has fallen to 1/e
     double shape = 2;
 
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v == 0) return breakaway;
-        constexpr double farthest = 20;  // below speed 0, where an odd power grows beyond all numbers
-        const double exponent = power(v);
+        constexpr double farthest = 20;  // limits the exponent below speed 0, where odd powers grow
+        const double exponent = speed_ratio_power(v);
         const bool grows = v < 0 && std::fmod(shape, 2) == 1;
         return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(exponent, farthest) : -exponent);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
-    /// Beyond some speed there is nothing left of the difference, to rounding, and the law is Coulomb's.
+    /// Beyond flat_from() the law is Coulomb's to rounding.
     [[nodiscard]] std::size_t ranges() const { return std::isfinite(flat_from()) ? 2 : 1; }
     [[nodiscard]] SpeedRange range(std::size_t i) const {
         if (i == 1) return {.from = flat_from(), .straight = true, .torque = kinetic};
@@ -38,7 +38,7 @@ struct Stribeck {
 
 private:
     /// (|v|/speed)^shape
-    [[nodiscard]] double power(double v) const {
+    [[nodiscard]] double speed_ratio_power(double v) const {
         const double x = std::fabs(v / speed);
         return shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
     }
@@ -62,13 +62,13 @@ inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribec
 
 inline double Stribeck::slope(double v) const {
     if (v == 0) return 0;
-    const double exponent = power(v);
+    const double exponent = speed_ratio_power(v);
     return -(breakaway - kinetic) * shape * exponent / v * std::exp(-exponent);
 }
-/// Measured: 4.5 speeds of shape 1, 1.26 of shape 2, 0.7 of shape 3; wider where there is less left to follow.
+/// Measured: 4.5 speeds for shape 1, 1.26 for shape 2, 0.7 for shape 3; wider where less of the difference is left.
 inline double Stribeck::scale(double v) const {
     constexpr double at_zero = 4.5, narrower = 1.83, less = 20;
-    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(power(v), 4 * less) / less);
+    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(speed_ratio_power(v), 4 * less) / less);
 }
 inline std::optional<text::Error> Stribeck::complaint() const {
     if (auto wrong = wrong_torques("", kinetic, breakaway)) return wrong;

@@ -1,4 +1,4 @@
-// Laws side by side on one contact: one of any kind, and constant torques beside it.
+// Laws in parallel on one contact: one of any kind, and constant torques.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Friction as it was measured: straight lines between torques at some speeds, the same both ways.
+// Measured friction: straight lines between torques at given speeds, alike in both directions.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@ namespace dinal::model::laws {
 
 struct Tabulated {
     std::vector<double> speed;          ///< increasing from 0
-    std::vector<double> torque;         ///< one for each; the last one holds for all greater speeds
-    std::optional<double> breakaway{};  ///< Re; the first torque when not given
+    std::vector<double> torque;         ///< one for each speed; the last holds at all greater speeds
+    std::optional<double> breakaway{};  ///< Re; by default the first torque
 
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v >= speed.back()) return torque.back();
-        const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // below speed 0 the first line goes on
+        const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // the first line goes on below 0
         return range(static_cast<std::size_t>(above - speed.begin()) - 1).at(v);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
-    /// None when a line is too steep for a number.
+    /// 0 if the slope of a line overflows.
     [[nodiscard]] std::size_t ranges() const;
     [[nodiscard]] SpeedRange range(std::size_t i) const {
         SpeedRange line{.from = speed[i], .straight = true, .torque = torque[i]};

@@ -1,4 +1,4 @@
-// A law of friction that a user has written: a function of the speed, the same both ways.
+// A user's law of friction: a function of the speed, alike in both directions.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,20 +14,20 @@
 namespace dinal::model::laws {
 
 struct UserLaw {
-    std::shared_ptr<terms::UserFunction> function;  ///< of the speed, never asked below 0
-    double at_zero = 0;                             ///< its value at speed 0, which many ask and few may call for
-    std::optional<double> breakaway = {};           ///< Re; at_zero when not given
+    std::shared_ptr<terms::UserFunction> function;  ///< function of the speed, never called below 0
+    double at_zero = 0;                             ///< its value at speed 0, cached for callers without Lua
+    std::optional<double> breakaway = {};           ///< Re; by default at_zero
 
     static constexpr bool depends_on_speed = true;
-    /// NaN where the function fails, or is negative.
+    /// NaN if the function fails or is negative.
     [[nodiscard]] double sliding(Motion /*way*/, double speed) const {
         if (speed == 0) return at_zero;
         if (speed > 0) return function->value(speed, {});
-        return 2 * at_zero - function->value(-speed, {});  // with the slope that it has at 0
+        return 2 * at_zero - function->value(-speed, {});  // continues with its slope at 0
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return std::max(breakaway.value_or(at_zero), at_zero); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
-        // A sum that gives Re at speed 0 is off by its roundings.
+        // Tolerance for the rounding of a sum that should give Re at speed 0.
         constexpr double rounded = 16 * std::numeric_limits<double>::epsilon();
         if (breakaway && *breakaway < at_zero * (1 - rounded)) {
             return text::Error{

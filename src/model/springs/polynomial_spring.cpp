@@ -22,7 +22,7 @@ double power(double x, int n) {
 
 }  // namespace
 
-/// Horner's scheme from the highest power down, over the powers that are there.
+/// Horner's scheme from the highest power down, over the nonzero terms.
 double PolynomialSpring::torque(double theta) const {
     double sum = 0;
     for (std::size_t i = terms.size(); i-- > 0;) {

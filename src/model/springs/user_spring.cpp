@@ -8,13 +8,13 @@ namespace dinal::model::springs {
 
 namespace {
 
-/// Lobatto's nodes and weights for seven points, both ends among them: a corner just before an end must show. Exact for
-/// a polynomial of the degree 11.
+/// Lobatto's rule with seven points, exact to degree 11. It includes both ends, so that a corner just before an end
+/// shows.
 constexpr std::array<double, 4> inner_nodes = {0, 0.468848793470714213803771881907, 0.830223896278566929872032213968,
                                                1};
 constexpr std::array<double, 4> inner_weights = {0.487619047619047619047619047619, 0.43174538120986262341787102228,
                                                  0.27682604736156594801070040629, 0.047619047619047619047619047619};
-/// Halvings of a kinked spring down to where the rest does not matter.
+/// Enough halvings for a kink: the remaining error is negligible.
 constexpr int most_halvings = 48;
 
 double over(terms::UserFunction& torque, double a, double b) {
@@ -27,7 +27,7 @@ double over(terms::UserFunction& torque, double a, double b) {
     return half * sum;
 }
 
-/// Whole against both halves; what differs by more than `allowed` is halved again.
+/// Compares the whole with both halves, and halves again if they differ by more than `allowed`.
 double refined_over(terms::UserFunction& torque, double a, double b, double whole, double allowed, int halvings) {
     const double middle = a + (b - a) / 2;
     const double left = over(torque, a, middle), right = over(torque, middle, b);

@@ -1,4 +1,4 @@
-// A spring that a user has written: a function of theta.
+// A user's spring: a function of theta.
 #pragma once
 
 #include <memory>
@@ -10,17 +10,17 @@
 namespace dinal::model::springs {
 
 struct UserSpring {
-    std::shared_ptr<terms::UserFunction> function;  ///< of theta
+    std::shared_ptr<terms::UserFunction> function;  ///< function of theta
 
-    /// NaN where the function fails.
+    /// NaN if the function fails.
     [[nodiscard]] double torque(double theta) const { return function->value(theta, {}); }
-    /// By quadrature, to rounding; NaN where the function is too rough for that, or fails.
+    /// By quadrature to rounding; NaN if the function is too rough or fails.
     [[nodiscard]] double energy(double theta) const;
     [[nodiscard]] static std::optional<text::Error> complaint() { return std::nullopt; }
-    /// Nobody knows.
+    /// Unknown, so false.
     [[nodiscard]] static bool is_odd() { return false; }
     [[nodiscard]] bool may_go_on() const { return function->may_go_on(); }
-    /// Its text is for those who know its language.
+    /// The function's source is known to Lua only.
     [[nodiscard]] static std::string lua_text() { return ""; }
 };
 

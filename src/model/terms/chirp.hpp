@@ -1,4 +1,4 @@
-// excitation.chirp: a sine whose frequency goes evenly from one to another.
+// excitation.chirp: a sine whose frequency changes linearly.
 #pragma once
 
 #include "model/terms/term.hpp"
@@ -12,7 +12,7 @@ struct Chirp {
 
     double amplitude = 1, from = 0, to = 0, duration = 0, at = 0, phase = 0;
 
-    /// The phase is the integral of the frequency: continuous, and so is its slope.
+    /// The phase is the integral of the frequency; it and its slope are continuous.
     [[nodiscard]] double value(double t) const {
         const double tau = t - at;
         double cycles = 0;

@@ -1,4 +1,4 @@
-// excitation.exponential: a decay, or a growth, from one time on.
+// excitation.exponential: a decay or growth from a given time on.
 #pragma once
 
 #include "model/terms/term.hpp"
@@ -14,7 +14,7 @@ struct Exponential {
     [[nodiscard]] double value(double t, double rest = 0) const {
         return t < at ? 0 : grown(amplitude, -((t - at) + rest) / tau);
     }
-    /// amplitude exp(x), which may be a number where exp(x) is none.
+    /// Returns amplitude exp(x), also if exp(x) alone overflows.
     static double grown(double amplitude, double x) {
         constexpr double most = 700;
         if (std::fabs(x) < most || amplitude == 0) return amplitude == 0 ? 0 : amplitude * std::exp(x);

@@ -17,13 +17,13 @@ struct Gaussian {
     }
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const {
-        constexpr double vanished = 39;  // exp(-39^2 / 2) is less than the least double
+        constexpr double vanished = 39;  // exp(-39^2 / 2) is below the smallest double
         return std::nextafter(at + vanished * sigma, never);
     }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const {
-        constexpr double visible = 10;  // exp(-10^2 / 2) is 2e-22: lost in the rounding of what the bump does later
+        constexpr double visible = 10;  // exp(-10^2 / 2) = 2e-22 is lost in rounding
         return {at - visible * sigma, at + visible * sigma, sigma / 2};
     }
     void delay_by(double d) { at += d; }

@@ -5,7 +5,7 @@
 
 namespace dinal::model::terms {
 
-/// one half wave of a sine over [at, at + width], else 0
+/// one half wave of a sine over [at, at + width], otherwise 0
 struct HalfSine {
     static const TermText about;
 

@@ -5,7 +5,7 @@
 
 namespace dinal::model::terms {
 
-/// omega (t - at) + phase at `t` + `rest`, and what it lacks: far from `at` that is all a sine loses.
+/// The angle omega (t - at) + phase at `t` + `rest`, in two doubles: one would lose digits far from `at`.
 struct Angle {
     double rounded, lack;
 };

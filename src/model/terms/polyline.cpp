@@ -7,11 +7,11 @@
 namespace dinal::model::terms {
 namespace {
 
-/// The last point is as good as one period after the first: by so much of the period it may be off.
-constexpr double comes_again = 1e-9;
+/// The tolerance, as a part of the period, for a last point that repeats the first one.
+constexpr double closing_tolerance = 1e-9;
 
 bool closes_period(const Samples& s) {
-    return s.t.size() > 1 && std::fabs(s.t.back() - s.t.front() - *s.period) <= comes_again * *s.period;
+    return s.t.size() > 1 && std::fabs(s.t.back() - s.t.front() - *s.period) <= closing_tolerance * *s.period;
 }
 
 double range_of(const std::vector<double>& values) {
@@ -19,7 +19,7 @@ double range_of(const std::vector<double>& values) {
     return *high - *low;
 }
 
-/// So that slopes can be computed; what is wrong is told by complaint().
+/// Returns whether slopes can be computed; complaint() reports the reason if not.
 bool is_well_formed(const Samples& s) {
     return !s.t.empty() && s.t.size() == s.M.size() && !text::complaint(samples_options, s) &&
            !not_increasing("t", s.t);
@@ -32,7 +32,7 @@ std::shared_ptr<const Samples> Polyline::prepared(std::shared_ptr<const Samples>
     if (!points || (!cubic && !points->period) || !points->slopes.empty() || !is_well_formed(*points)) return points;
     Samples made = *points;
     if (made.period && closes_period(made) &&
-        std::fabs(made.M.back() - made.M.front()) <= comes_again * range_of(made.M)) {
+        std::fabs(made.M.back() - made.M.front()) <= closing_tolerance * range_of(made.M)) {
         made.t.pop_back();
         made.M.pop_back();
     }

@@ -1,4 +1,4 @@
-// excitation.samples: straight lines, a cubic spline or held values between points, once or again and again.
+// excitation.samples: straight lines, a cubic spline or held values between points, once or periodically.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ inline constexpr const char* interpolation_names[] = {"linear", "cubic", "hold"}
 struct Samples {
     std::vector<double> t, M;
     Interpolation interpolation = Interpolation::linear;
-    std::optional<double> period = {};  ///< after which the points come again
-    std::string origin = {};          ///< where they were read, in the words of whoever read them; not used by the core
-    double delay = 0;                 ///< by how much `t` is later than there
-    std::vector<double> slopes = {};  ///< of a cubic spline at the points; made from the others
+    std::optional<double> period = {};  ///< after which the points repeat
+    std::string origin = {};            ///< source in words for the user; not used by the core
+    double delay = 0;                   ///< how much later `t` is than the original times
+    std::vector<double> slopes = {};    ///< slopes of a cubic spline at the points, computed
 };
 inline constexpr text::Option between_options[] = {
     {.name = "interpolation",
@@ -42,8 +42,8 @@ inline constexpr text::Option points_options[] = {
 };
 inline constexpr auto samples_options = text::joined(points_options, between_options);
 
-/// A line through the samples; the first and last value hold outside, unless they come again.
-// Behind a shared pointer to const, so that copies of an excitation are cheap and safe.
+/// A line through the samples. Outside, the first and last values hold unless the samples are periodic.
+// A shared pointer to const: copies of an excitation are cheap and safe.
 struct Polyline {
     static const TermText about;
 
@@ -102,15 +102,15 @@ struct Polyline {
 
 private:
     [[nodiscard]] bool holds() const { return samples->interpolation == Interpolation::hold; }
-    /// From one point to the next one.
+    /// The interval between two neighbouring points.
     struct Piece {
         double from, to;
         std::size_t first, second;
     };
     [[nodiscard]] Piece piece_of(std::size_t i) const { return {samples->t[i], samples->t[i + 1], i, i + 1}; }
-    /// Of points that come again: the piece that `at` lies in. Its ends are the doubles that are breaks.
+    /// The piece of periodic samples that contains `at`; its ends are exactly the doubles returned as breaks.
     [[nodiscard]] Piece piece(double at) const;
-    /// The coefficients of the powers of the time since a piece began.
+    /// The coefficients in powers of the time since the piece began.
     [[nodiscard]] std::array<double, 4> powers(const Piece& now) const {
         const Samples& s = *samples;
         const double h = now.to - now.from, rise = (s.M[now.second] - s.M[now.first]) / h;
@@ -126,13 +126,13 @@ private:
         const std::array<double, 4> c = powers(now);
         return c[0] + d * (c[1] + d * (c[2] + d * c[3]));
     }
-    /// With the slopes of a spline, and without a last point that is the first one again.
+    /// Computes a spline's slopes and drops a last point that repeats the first.
     static std::shared_ptr<const Samples> prepared(std::shared_ptr<const Samples> points);
-    /// Of |M|: a spline lies within the hull of its control points.
+    /// A bound of |M|: a spline lies within the hull of its control points.
     [[nodiscard]] double greatest() const;
 
-    /// The index i with t[i] <= at < t[i + 1], for times inside the table. Records are mostly sampled evenly, so the
-    /// guess is mostly right.
+    /// The index i with t[i] <= at < t[i + 1], for times inside the table. The first guess assumes evenly spaced
+    /// samples.
     [[nodiscard]] std::size_t segment(double at) const {
         const std::vector<double>& t = samples->t;
         const double steps = static_cast<double>(t.size() - 1);
@@ -144,7 +144,7 @@ private:
         return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), at) - t.begin()) - 1;
     }
 
-    double most_;  // every run asks for it, and a record may be long
+    double most_;  // cached: every run needs it, and a record may be long
 };
 
 inline constexpr TermText Polyline::about{

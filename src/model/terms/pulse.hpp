@@ -5,7 +5,7 @@
 
 namespace dinal::model::terms {
 
-/// `amplitude` for at <= t < at + width, else 0
+/// `amplitude` for at <= t < at + width, otherwise 0
 struct Pulse {
     static const TermText about;
 

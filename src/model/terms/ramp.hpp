@@ -1,4 +1,4 @@
-// excitation.ramp: a rise, for ever or up to a level.
+// excitation.ramp: a linear rise, unlimited or up to a level.
 #pragma once
 
 #include "model/terms/term.hpp"

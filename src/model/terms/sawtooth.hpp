@@ -1,4 +1,4 @@
-// excitation.sawtooth: a ramp that drops back and begins again.
+// excitation.sawtooth: a ramp that drops back periodically.
 #pragma once
 
 #include "model/terms/term.hpp"

@@ -1,4 +1,4 @@
-// excitation.scripted, and every function that stands for M: what a user has written.
+// excitation.scripted, and every user function used as M.
 #pragma once
 
 #include <cstdint>
@@ -15,48 +15,47 @@ class Formula;
 
 namespace dinal::model::terms {
 
-/// What a function remembers from one call to the next in one run.
+/// A function's memory between its calls in one run.
 class Memory {
 public:
     Memory() = default;
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
     virtual ~Memory() = default;
-    /// Another one with the same content, for a run that goes on from here. None when that fails (and its owner knows
-    /// why).
+    /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
     [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
 };
 
-/// The decisions of a function that was read, by its conditions of the motion: while they stay it is smooth. Bits stand
+/// The decisions that a formula's conditions on the motion have taken; while they hold it is smooth. Bit masks stand
 /// for theta, velocity and the states.
 struct Piece {
     struct Condition {
-        std::size_t step;  ///< of its formula
+        std::size_t step;  ///< index in its formula
         double beyond;     ///< the decision on the other side
-        std::uint64_t of;  ///< what it depends on
+        std::uint64_t of;  ///< bit mask of the variables it depends on
     };
-    std::vector<double> decisions{};  ///< of each step; NaN where it has none
+    std::vector<double> decisions{};  ///< one for each step; NaN for steps without a decision
     std::vector<Condition> conditions{};
-    std::shared_ptr<const void> owner{};  ///< what they were decided for
+    std::shared_ptr<const void> owner{};  ///< identifies the formula
 
     void cross(std::size_t condition) { decisions[conditions[condition].step] = conditions[condition].beyond; }
 };
 
-/// A user's function of t or of t, theta, velocity. Virtual because the core must not know who wrote it.
+/// A user's function of t or of t, theta, velocity. Virtual because the core must not depend on its language.
 class UserFunction {
 public:
     UserFunction() = default;
     UserFunction(const UserFunction&) = delete;
     UserFunction& operator=(const UserFunction&) = delete;
     virtual ~UserFunction() = default;
-    /// NaN says that the function failed (and that its owner knows why): the run ends there.
+    /// Returns NaN if the function failed (its owner knows why): the run ends there.
     virtual double value(double t, const State& state) = 0;
-    /// The same for a run that has states of its own, in the order of their names.
+    /// The same for a run with own states, in the order of their names.
     virtual double value_with(double t, const State& state, std::span<const double> /*states*/) {
         return value(t, state);
     }
     /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns how many are.
-    // Virtual, too: the way into the user's language is paid once for a block.
+    // Virtual: a block enters the user's language only once.
     virtual std::size_t fill(std::span<const double> times, std::span<double> out) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             out[i] = value(times[i], State{});
@@ -66,53 +65,53 @@ public:
         }
         return times.size();
     }
-    /// What it computes, where that is known to the letter: null, or valid until something else of the user's runs.
+    /// The function as a formula, or null; valid until other user code runs.
     virtual Formula* read() { return nullptr; }
-    /// The first time after t at which it is known to jump or kink; `never` when nothing is known.
+    /// The first known jump or kink after t; `never` if unknown.
     virtual double next_break(double /*t*/) { return never; }
-    /// Where a stretch from t on must end at the latest, lest it step over what the function does in it; `never` when
-    /// nothing is known.
+    /// The latest end of a stretch from t on within which the function hides nothing between samples; `never` if
+    /// unknown.
     virtual double told_until(double /*t*/) { return never; }
-    /// Its conditions of theta, velocity and states are known.
+    /// Returns whether its conditions on theta, velocity and states are known.
     virtual bool has_pieces() { return false; }
-    /// The piece at this moment. Decisions that the piece holds already stay, except those that depend on `again`.
+    /// Decides the piece at this moment. Existing decisions stay, except those that depend on a variable in `again`.
     virtual void decide(Piece& piece, double /*t*/, const State& /*state*/, std::span<const double> /*states*/,
                         std::uint64_t /*again*/) {
         piece = {};
     }
-    /// The value with the decisions of the piece, also beyond it; `margins`, where given, are positive within, one for
-    /// each condition.
+    /// The value with the decisions of the piece, also beyond it. `margins`, if given, receives one number for each
+    /// condition, positive inside the piece.
     virtual double value_on(const Piece& /*piece*/, double t, const State& state, std::span<const double> states,
                             std::vector<double>* /*margins*/) {
         return value_with(t, state, states);
     }
-    /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
+    /// After a failure: returns whether it may be evaluated at other times. The owner keeps the failure.
     virtual bool may_go_on() { return true; }
-    /// The run got past where it failed: what failed was asked for a motion that was tried, and was none.
+    /// Drops a failure that occurred only in a rejected trial step.
     virtual void forget_failure() {}
-    /// A new memory for a run; none when it wants none, or when that fails.
+    /// A new memory for a run; none if it needs none, or on failure.
     virtual std::shared_ptr<Memory> new_memory() { return nullptr; }
-    /// The memory of the calls that follow.
+    /// Sets the memory for the following calls.
     virtual void use(const std::shared_ptr<Memory>& /*memory*/) {}
 };
 
-/// The same content, shared with nobody; none for none.
+/// A copy that is not shared; null for null.
 inline std::shared_ptr<Memory> copied(const std::shared_ptr<Memory>& memory) {
     return memory == nullptr ? nullptr : memory->copy();
 }
 
-/// A user's function, delayed by `delay`, with what he says about it. The excitation itself asks for its value: it may
-/// need the state, and may fail.
-// Shared ownership: every excitation and every trajectory that contains the function keeps it alive.
+/// A user's function, delayed by `delay`, with its declared properties. The excitation itself evaluates it, as it may
+/// need the state and may fail.
+// Shared: every excitation and trajectory with the function keeps it alive.
 struct Scripted {
     static const TermText about;
 
     std::shared_ptr<UserFunction> function;
-    bool feedback = false;            ///< called with theta and velocity, too
-    std::vector<double> breaks = {};  ///< where it jumps or kinks (in its own time), increasing
-    double period = 0;                ///< > 0: the breaks repeat with this period
+    bool feedback = false;            ///< whether it is called with theta and velocity
+    std::vector<double> breaks = {};  ///< its jumps and kinks (in its own time), increasing
+    double period = 0;                ///< if > 0, the breaks repeat with this period
     double delay = 0;
-    std::shared_ptr<UserFunction> original = {};  ///< knows its breaks, where another function stands for it
+    std::shared_ptr<UserFunction> original = {};  ///< knows the breaks if `function` is a replacement
 
     [[nodiscard]] double next_break(double t) const {
         const double own = (original != nullptr ? original : function)->next_break(t - delay);
@@ -145,7 +144,7 @@ struct Scripted {
     [[nodiscard]] Detail detail() const { return no_detail; }
     void delay_by(double d) { delay += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    /// breaks = {0, 1.5, 3} with period = 3 names the same corner twice; to rounding, it must not count twice.
+    /// Removes a corner named twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.
     void drop_repeated_corner();
 };
 

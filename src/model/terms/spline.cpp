@@ -5,8 +5,8 @@
 namespace dinal::model::terms {
 namespace {
 
-/// below[i] x[i - 1] + here[i] x[i] + above[i] x[i + 1] = right[i], which is overwritten by x. No pivots are looked
-/// for: the equations of a spline need none.
+/// Solves below[i] x[i - 1] + here[i] x[i] + above[i] x[i + 1] = right[i] in place of `right`. A spline's equations
+/// need no pivoting.
 void solve_tridiagonal(const std::vector<double>& below, std::vector<double> here, const std::vector<double>& above,
                        std::vector<double>& right) {
     const std::size_t n = here.size();
@@ -64,13 +64,13 @@ std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<
         right[i] = 3 * (h[i] * rise[before] + h[before] * rise[i]);
     }
     if (n == 2) {
-        // Both neighbours of a point are the other one.
+        // With two points, both neighbours of a point are the same.
         const double side = below[0] + above[0], other = below[1] + above[1];
         const double determinant = here[0] * here[1] - side * other;
         return {(right[0] * here[1] - side * right[1]) / determinant,
                 (here[0] * right[1] - other * right[0]) / determinant};
     }
-    // The corners of the matrix are a correction of rank one (Sherman and Morrison).
+    // The corners of the matrix are a rank-one correction (Sherman and Morrison).
     const double corner = -here[0], ratio = below[0] / corner;
     std::vector<double> border(n, 0.0), diagonal = here;
     border[0] = corner, border[n - 1] = above[n - 1];

@@ -1,5 +1,4 @@
-// The cubic spline through points, by its slopes there: between two points it is the cubic of both values and slopes,
-// and its first two derivatives go on through the points.
+// The cubic spline through points, given by its slopes there; its first two derivatives are continuous.
 #pragma once
 
 #include <span>
@@ -7,11 +6,11 @@
 
 namespace dinal::model::terms {
 
-/// Its slopes at increasing times. At the second point and the last but one the third derivative goes on, too (not a
-/// knot), as C. de Boor proposed; three points give a parabola, two a straight line.
+/// The slopes at increasing times. The third derivative is continuous at the second point and the last but one, too
+/// (not-a-knot, C. de Boor); three points give a parabola, two a straight line.
 std::vector<double> spline_slopes(std::span<const double> t, std::span<const double> values);
 
-/// The same for a curve that repeats itself `period` after the first time, which is later than the last one.
+/// The same for a curve of this period, which is longer than the span of the times.
 std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<const double> values, double period);
 
 }  // namespace dinal::model::terms

@@ -1,4 +1,4 @@
-// excitation.square: two levels in turn.
+// excitation.square: two alternating levels.
 #pragma once
 
 #include "model/terms/term.hpp"

@@ -1,4 +1,4 @@
-// excitation.step: a level from one time on.
+// excitation.step: a level from a given time on.
 #pragma once
 
 #include "model/terms/term.hpp"

@@ -1,8 +1,8 @@
-// What an excitation asks of each of its terms, and what terms share. A term is one file here and one row in
+// The interface of an excitation's terms, and code that they share. A term is one file here and one row in
 // model/terms.hpp.
 //
 // The invariant of this room: `next_break` returns exactly the double that `value` compares with. So value(b) is the
-// new level and value(nextafter(b, -inf)) the old one, whatever a delay or the ten thousandth period was rounded to.
+// new level and value(nextafter(b, -inf)) the old one, however a delay or the ten thousandth period is rounded.
 #pragma once
 
 #include <algorithm>
@@ -28,45 +28,43 @@ namespace dinal::model::terms {
 
 inline constexpr double two_pi = 2 * std::numbers::pi;
 
-/// Where a smooth term must be looked at closely, lest it be stepped over: for from <= t <= to at times at most
-/// `apart`.
+/// A detail of a smooth term that a large step could miss: for from <= t <= to, sample at most `apart` apart.
 struct Detail {
     double from = never, to = never, apart = never;
 };
 inline constexpr Detail no_detail{};
 
-/// What people read about a term, and the options that make one.
+/// The documentation of a term, and its options.
 struct TermText {
-    text::Call call;      ///< of Lua: "excitation.pulse"
+    text::Call call;      ///< its constructor in Lua: "excitation.pulse"
     const char* summary;  ///< sentences, units included
-    const char* example;  ///< Lua that runs; `-->` is followed by what the line prints
+    const char* example;  ///< Lua that runs; `-->` precedes the output
 };
 
-/// The answers of a term that is a function of time alone. The ranges of its options are in `about`; it may also have
-///     std::optional<text::Error> complaint() const;   what is wrong with it besides
-///     void closed_form(double inside, Sum& sum) const;   for any Sum: says what it is, as a formula (closed_form.hpp)
-///     double value(double t, double rest = 0) const;   at t + rest, where t is that rounded: what it does may be so
-///     quick that rounded times are too far apart for it
+/// The interface of a term that is a function of time alone. `about` has the ranges of its options. Optional:
+///     std::optional<text::Error> complaint() const;   an error that ranges cannot express
+///     void closed_form(double inside, Sum& sum) const;   adds its formula to any Sum (closed_form.hpp)
+///     double value(double t, double rest = 0) const;   at t + rest, for terms so quick that the rounding of t matters
 template <class T>
 concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.value(x) } -> std::same_as<double>;
     /// The first time after x at which it or a derivative of it jumps; `never` if there is none.
     { term.next_break(x) } -> std::same_as<double>;
-    /// From when on it is constant, if it is not always 0: -never when it always is, `never` when it never is.
+    /// The time from which it is constant: -never if always, `never` if never. Ignores that its amplitude may be 0.
     { term.constant_from() } -> std::same_as<double>;
-    /// What |value| never exceeds; `never` when nothing is known.
+    /// An upper bound of |value|; `never` if unknown.
     { term.most() } -> std::same_as<double>;
-    /// Its period; 0 when it has none.
+    /// Its period; 0 if it has none.
     { term.repeats_after() } -> std::same_as<double>;
     { term.detail() } -> std::same_as<Detail>;
-    /// Makes it the same term, later by x.
+    /// Delays the term by x.
     own.delay_by(x);
-    /// x times the term for the eye, x > 0: "2 sin(3 t)".
+    /// The term times x > 0 as text: "2 sin(3 t)".
     { term.formula(x) } -> std::same_as<std::string>;
     { T::about } -> std::same_as<const TermText&>;
 };
 
-/// At t + rest, if the term can tell that from t.
+/// The value at t + rest, as far as the term resolves rest.
 template <NativeTerm T>
 double value_near(const T& term, double t, double rest) {
     if constexpr (requires { term.value(t, rest); }) {
@@ -76,7 +74,7 @@ double value_near(const T& term, double t, double rest) {
     }
 }
 
-/// x, or at least the next double after t: a break must always lead on.
+/// x, or at least the next double after t: breaks must advance.
 inline double later(double t, double x) {
     return x > t ? x : std::nextafter(t, never);
 }
@@ -91,8 +89,8 @@ inline double first_after(double t, std::initializer_list<double> sorted) {
 }
 
 /// The largest n with edge(n) <= t, for the edges of a periodic term.
-// NOTE: floor() of the quotient is a guess that rounding can put off by one; the edges themselves decide. The
-// corrections are counted, because far out (t / period > 2^53) the edges are no longer distinct.
+// NOTE: rounding can put floor() of the quotient off by one, so the edges themselves decide. The corrections are
+// limited, because far out (t / period > 2^53) the edges are no longer distinct.
 template <class Edge>
 double cycle_at(double t, double quotient, const Edge& edge) {
     constexpr int most_corrections = 4;
@@ -106,12 +104,12 @@ double cycle_at(double t, double quotient, const Edge& edge) {
     return n;
 }
 
-/// How far t is from `from` to `to`, as a fraction.
+/// The fraction of the way from `from` to `to` at t.
 inline double fraction(double t, double from, double to) {
     return to > from ? (t - from) / (to - from) : 0;
 }
 
-// ---- pieces of descriptions
+// ---- parts of descriptions
 
 /// "t[3] = 1 is not after t[2] = 2; times must increase", or none.
 std::optional<text::Error> not_increasing(const char* option, std::span<const double> times);
@@ -129,7 +127,7 @@ std::string between(double first, double last);
 /// "2 sawtooth of period 3 that begins at 1"
 std::string wave(const char* shape, double amplitude, double period, double at);
 
-// ---- options that more than one term has
+// ---- options shared by terms
 
 namespace rows {
 
@@ -158,7 +156,7 @@ template <class T>
 void set_frequency(T& term, double frequency) {
     term.period = 1 / frequency;
 }
-/// In place of the period, the row before.
+/// Instead of the period in the row before.
 template <class T>
 constexpr text::Option frequency() {
     return {.name = "frequency",

@@ -5,13 +5,13 @@
 
 namespace dinal::model::terms {
 
-/// a sine's corners joined by straight lines: 0, +amplitude, 0, -amplitude, 0
+/// a triangle wave with the zeros and peaks of a sine: 0, +amplitude, 0, -amplitude, 0
 struct Triangle {
     static const TermText about;
 
     double amplitude = 1, period = 0, at = 0;
 
-    /// A straight piece between two corners, which lie at a quarter and three quarters of each period.
+    /// A straight piece between two corners, at a quarter and three quarters of each period.
     struct Side {
         double start, end;
         bool falling;

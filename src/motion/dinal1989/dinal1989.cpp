@@ -18,7 +18,7 @@ namespace dinal::motion::dinal1989 {
 
 namespace {
 
-/// Between two steps, where 1989 knew nothing: the same interpolation as everywhere, or standing still when frozen.
+/// The motion between two steps, which the program of 1989 did not compute: interpolated, or at rest when frozen.
 model::State between(const Dinal& dinal, const Loop& a, const Loop& b, double t) {
     if (b.frozen) return dinal.state(a);
     const double t0 = dinal.time(a);
@@ -26,13 +26,14 @@ model::State between(const Dinal& dinal, const Loop& a, const Loop& b, double t)
                            dinal.acceleration(b))(t - t0);
 }
 
-/// Whether the next row is that of this very step: the listing's own numbers. (The last row, at t_end, need not be.)
+/// Returns whether the next row falls on this step, so that it shows the listing's own numbers. (The last row, at
+/// t_end, may not.)
 bool on_step(const RowWriter& rows, double t_start, double h, std::size_t step, std::size_t steps_per_row) {
     if (steps_per_row == 0 || rows.next_row() * steps_per_row != step) return false;
     return std::fabs(rows.next_time() - (t_start + static_cast<double>(step) * h)) < 0.5e-9 * h;
 }
 
-/// A step up to which no row is due; not the last such one where rows and steps do not coincide.
+/// Returns a step up to which no row is due; if rows and steps do not coincide, not necessarily the last such step.
 std::size_t step_before_row(const RowWriter& rows, double t_start, double h, std::size_t steps_per_row) {
     if (rows.next_time() == model::never) return std::numeric_limits<std::size_t>::max();
     const std::size_t row_step = rows.next_row() * steps_per_row;
@@ -40,7 +41,7 @@ std::size_t step_before_row(const RowWriter& rows, double t_start, double h, std
     return static_cast<std::size_t>(std::max((rows.next_time() - t_start) / h - 2, 0.0));
 }
 
-/// The rows before the step to b; false when M is not finite at one of them.
+/// Writes the rows before the step to b; returns false if M is not finite at one of them.
 bool rows_between(RowWriter& rows, const Dinal& dinal, const Loop& a, const Loop& b) {
     const double end = dinal.time(b);
     while (rows.next_time() < end) {
@@ -53,7 +54,7 @@ bool rows_between(RowWriter& rows, const Dinal& dinal, const Loop& a, const Loop
     return true;
 }
 
-/// What the stop rule and the sign of V tell of events, at the step where they are noticed.
+/// Derives an event from the stop rule and the sign of V, at the step that detects it.
 void record_event(std::vector<model::Event>& events, const Dinal& dinal, const Loop& a, const Loop& b) {
     std::optional<model::EventKind> kind;
     if (b.frozen != a.frozen) {
@@ -72,7 +73,7 @@ bool finite(const Loop& p) {
     return std::isfinite(p.U) && std::isfinite(p.V) && std::isfinite(p.Z);
 }
 
-/// The motion between the rows, from the same steps made again.
+/// The motion between the rows, from repeating the steps.
 class Replay final : public Course {
 public:
     Replay(const Problem& problem, const Dinal1989& options, std::size_t steps)
@@ -111,7 +112,7 @@ OwnRule Dinal1989::own_rule() const {
             "the listing released it at"};
 }
 
-/// The program of 1989 read six numbers: I, k, C, Rd, Re and Mc.
+/// Limited to what the program of 1989 read: I, k, C, Rd, Re and Mc.
 std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
                                                 const model::Excitation& /*excitation*/) const {
     if (!system.has_spring()) {
@@ -136,7 +137,7 @@ std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
 Trajectory Dinal1989::run(const Problem& problem) const {
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
-    // A step that would begin within rounding of the end is not made.
+    // A step that would begin within rounding of the end is omitted.
     const double covering = std::min((problem.window.end - problem.window.start) / h, 1e18);
     const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
     const auto replay = std::make_shared<Replay>(problem, *this, steps);

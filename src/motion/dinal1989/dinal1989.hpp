@@ -7,12 +7,12 @@ namespace dinal::motion::dinal1989 {
 
 struct Dinal1989 {
     enum class Stop {
-        listing,  ///< |v| <= |v' - v| against the step before, and the torque within Re
-        text,     ///< |v| < |v' - v| / 2, as section 6 of the report says
+        listing,  ///< stop if |v| <= |v' - v| with the velocity v of the step before, and the torque is within Re
+        text,     ///< stop if |v| < |v' - v| / 2, as in section 6 of the report
     };
-    double h = 0;  ///< no upper limit, its divergence is a result
+    double h = 0;  ///< not limited: its divergence is a result
     Stop stop = Stop::listing;
-    bool slip = false;  ///< the wrong index in stage 3 with which chapter 6 of the report was computed
+    bool slip = false;  ///< whether stage 3 uses the wrong index, as chapter 6 of the report did
 
     static constexpr bool asks_in_order = true;
     static const MethodText about;

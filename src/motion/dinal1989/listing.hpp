@@ -1,10 +1,9 @@
-// The program DINAL of 1989, statement by statement, in double precision. A museum piece: its stop rule, its stale
-// small velocities and its friction column are kept as they were; nothing else in dinal uses or changes them.
+// The program DINAL of 1989, statement by statement, in double precision. A museum piece: keep its stop rule, its stale
+// small velocities and its friction column. Nothing else in dinal may use it.
 //
 // Names are the listing's: U = k theta/Mc, V = k T0 theta'/Mc (Mc = k here, as in the report, so U = theta), T = t/T0,
-// K = h/T0, A = 4 pi zeta, B = 4 pi^2 Rd/Mc, C = 4 pi^2, Z = F = 4 pi^2 M*. What the listing computes twice (F at the
-// end of a step is F at the beginning of the next) is computed once; without dry friction the four stages, then
-// linear, are summed beforehand.
+// K = h/T0, A = 4 pi zeta, B = 4 pi^2 Rd/Mc, C = 4 pi^2, Z = F = 4 pi^2 M*. F at the end of a step is reused at the
+// beginning of the next; without dry friction the four stages, then linear, are summed in advance.
 #pragma once
 
 #include <array>
@@ -29,7 +28,7 @@ struct Loop {
     std::size_t step = 0;
     double U = 0, V = 0, T = 0;
     double Z = 0;         ///< F at T
-    bool frozen = false;  ///< the last step was undone by the stop rule
+    bool frozen = false;  ///< whether the stop rule undid the last step
 };
 
 class Dinal {
@@ -60,7 +59,7 @@ public:
         return p;
     }
 
-    /// F in the middle and at the end of the next steps, from p on; how many were found finite.
+    /// Computes F in the middle and at the end of the steps after p; returns how many are finite.
     std::size_t sample(const Loop& p, std::size_t count) {
         if (feedback_) return 0;
         double T = p.T;
@@ -74,7 +73,7 @@ public:
         return count;
     }
 
-    /// One pass of the loop DO 80; sample number i of the block belongs to it.
+    /// One pass of the loop DO 80, with sample i of the block.
     [[nodiscard]] Loop step(const Loop& p, std::size_t i) const {
         if (feedback_) return judged(p, feedback_increment(p), 0);
         return judged(p,
@@ -82,7 +81,7 @@ public:
                               : increment(p.U, p.V, p.Z, Z_[2 * i], Z_[2 * i + 1]),
                       Z_[2 * i + 1]);
     }
-    /// The same, without samples at hand.
+    /// The same without prepared samples.
     [[nodiscard]] Loop step(const Loop& p) {
         if (!feedback_) {
             for (const int end : {0, 1}) {
@@ -92,7 +91,7 @@ public:
         return step(p, 0);
     }
 
-    /// Steps in which the stop rule does not change its mind and the velocity keeps its sign: many passes in one.
+    /// Makes several passes at once while the stop rule keeps its verdict and the velocity its sign.
     std::size_t plain_steps(Loop& p, std::size_t i, std::size_t stop) const {
         const auto plain = [&](auto&& change) {
             double U = p.U, V = p.V, T = p.T, Z = p.Z;
@@ -124,7 +123,7 @@ public:
     /// theta and velocity, in the user's units.
     [[nodiscard]] model::State state(const Loop& p) const { return {p.U, p.V / T0}; }
     [[nodiscard]] double M(const Loop& p) const { return system_.stiffness() * (p.Z / C); }
-    /// As printed: -Rd sgn(V), also while frozen.
+    /// -Rd sgn(V), as printed, also while frozen.
     [[nodiscard]] double friction(const Loop& p) const { return 0.0 - system_.kinetic_friction() * SG(p.V); }
     [[nodiscard]] double time(const Loop& p) const { return t_start_ + p.T * T0; }
     [[nodiscard]] double acceleration(const Loop& p) const {
@@ -136,7 +135,7 @@ private:
     struct Change {
         double U, V;
     };
-    /// The change in one step for U, V, Z and Zm of one each; Z1 only adds K/6 to that of V.
+    /// The change in one step for unit U, V, Z and Zm; Z1 adds K/6 to the change of V.
     struct Linear {
         Change U, V, Z, Zm;
     };
@@ -146,11 +145,13 @@ private:
     }
 
     /// B SG(Y)
-    [[nodiscard]] double dry(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
-    // NOTE: the sum is grouped so that the stages, each waiting for the one before, wait as little as possible.
-    [[nodiscard]] double Q2(double X, double Y, double Z) const { return K * ((Z - C * X) - (dry(Y) + A * Y)); }
+    [[nodiscard]] double dry_friction_term(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
+    // NOTE: the sum is grouped so as to shorten the chain of dependent operations.
+    [[nodiscard]] double Q2(double X, double Y, double Z) const {
+        return K * ((Z - C * X) - (dry_friction_term(Y) + A * Y));
+    }
 
-    /// The four stages; `f(stage, X, Y)` is F there.
+    /// The four stages; `f(stage, X, Y)` returns F.
     template <class Force>
     [[nodiscard]] Change stages(double U, double V, Force&& f) const {
         const double Q11 = K * V, Q21 = Q2(U, V, f(1, U, V));

@@ -1,4 +1,4 @@
-// The first place on a piece where a value that somebody watches passes zero.
+// Finds the first zero of a watched value on a piece of the motion.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace dinal::motion::engine {
 
-/// Which side of zero a watched value was on: 1 above, -1 below, 0 not known, because it stood at zero.
+/// The side of zero of a watched value: 1 above, -1 below, 0 unknown, because it started at zero.
 using Half = int;
 
-/// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
+/// Zeno guard: intervals between firings of one event shrink towards zero.
 struct Fading {
     double last = -model::never, gap = model::never, first = 0;
     bool after(double t) {
@@ -28,15 +28,15 @@ struct Fading {
     }
 };
 
-/// An event of the user's, from one act to the next.
+/// The state of a user's event between its actions.
 struct Watch {
     Half half = 0;
     Fading fading = {};
-    double rounded = 0;      ///< what is zero of its values, since an act
-    bool sent_back = false;  ///< by an act, and not clearly there yet
+    double rounded = 0;      ///< values up to this size count as zero after an action
+    bool sent_back = false;  ///< whether an action put it back on its old side, which it has not clearly reached
 };
 
-/// Where between -1 and x a condition that holds at x begins to hold, if it holds from there on: by halving.
+/// The point in [-1, x] from which a condition that holds at x holds without interruption, by bisection.
 template <class Condition>
 double first_true(const Condition& holds, double x) {
     constexpr double finest = 1e-15;
@@ -55,19 +55,19 @@ double first_true(const Condition& holds, double x) {
     return from;
 }
 
-/// Whether a series times this sign is clearly positive all over a piece, as most are: its other terms are less than
-/// the constant one. It may be a difference of values of this size.
+/// Returns whether sign * series is certainly positive on the whole piece: its constant term exceeds the sum of the
+/// others. `of_size`: size of the values it is a difference of.
 inline bool stays_above_zero(double sign, const Series& series, double of_size = 0) {
     constexpr double few = 64;
     const double all = cheb::size(series), others = all - std::fabs(series[0]);
     return sign * series[0] - others > few * rounding * std::max(all, of_size);
 }
 
-/// A watched value on a piece: at its nodes, and anywhere.
+/// A watched value on a piece: its values at the nodes, and a function for any point.
 template <class F>
 class Watched {
 public:
-    /// What is not beyond `rounded` may be zero.
+    /// Values up to `rounded` count as zero.
     Watched(const Nodes& values, const F& exact, double rounded = 0)
         : values_(values), exact_(exact), rounded_(rounded), series_(cheb::fit(values)) {
         constexpr double few = 64;
@@ -75,7 +75,7 @@ public:
         floor_ = std::max(few * rounding * size_, rounded);
         smooth_ = cheb::tail(series_) <= 1e-9 * size_;
     }
-    /// The first x after `from` at which it leaves the half that it is in; that is looked up when it is not known.
+    /// The first x after `from` at which it leaves its half; an unknown half is set from the nodes.
     [[nodiscard]] std::optional<double> leaves(Half& half, double from) const {
         const bool at_zero = half == 0 || std::fabs(from == -1 ? values_[0] : exact_(from)) <= floor_;
         if (half == 0) {
@@ -84,20 +84,20 @@ public:
             }
             if (half == 0) return {};
         }
-        // What an impact has put on the other side, farther than roundings of time do, has passed zero on the way.
+        // An impact put it on the other side, by more than the rounding of times: its zero has passed.
         constexpr double clearly = 1e-9;
         if (from == -1 && half * values_[0] < -std::max(floor_, clearly * size_)) return from;
         if (!at_zero) return smooth_ ? of_series(half, from) : of_values(half, from);
-        // Outwards from within the rounding, until it is clear which way it goes.
+        // Steps outwards until the value is clear of rounding.
         double d = 0x1p-46;
         while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
         const double start = std::min(1.0, from + d);
         const auto is_beyond = [&](double x) { return half_of(exact_(x), half) != half; };
         if (!is_beyond(start)) return smooth_ ? of_series(half, start) : of_values(half, start);
-        return smooth_ ? from : first_true(is_beyond, start);  // it may have stood at zero for long
+        return smooth_ ? from : first_true(is_beyond, start);  // the value may have been zero for long
     }
 
-    /// Whether it is beyond rounding in this half somewhere before x: at a node, or half way to x.
+    /// Returns whether it is clearly in this half somewhere before x: at a node, or halfway to x.
     [[nodiscard]] bool is_clearly(Half half, double x) const {
         if (!(x > -1)) return false;
         for (std::size_t j = 0; j < node_count; ++j) {
@@ -110,7 +110,7 @@ private:
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
-    /// The series says where to look, and is right to some digits less than the value itself, which says what is there.
+    /// The series tells the places to search; the exact value, which has some digits more, decides.
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         Bounded<points> curve(half, series_, derivative(series_));
@@ -122,7 +122,7 @@ private:
             if (!x) break;
             double a = std::max(start, *x - near);
             while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
-            if (half * exact_(a) < -rounded_) return a;  // it has been there before
+            if (half * exact_(a) < -rounded_) return a;  // it has been below earlier
             const double b = std::min(1.0, *x + near);
             if (const auto zero = refined(half, a, b)) return zero;
             start = b;
@@ -145,7 +145,7 @@ private:
         }
         return {};
     }
-    /// The zero between a and b when they are on both sides of it.
+    /// The zero between a and b if they are on opposite sides.
     [[nodiscard]] std::optional<double> refined(Half half, double a, double b) const {
         const auto beyond = [&](double x) { return -half * exact_(x); };
         const double fa = beyond(a), fb = beyond(b);

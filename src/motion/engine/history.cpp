@@ -7,13 +7,13 @@ namespace dinal::motion::engine {
 
 namespace {
 
-/// Integrals of products of series are exact.
+/// The energy of a stretch, from exact integrals of products of series.
 class StretchLeg final : public JointLeg {
 public:
     StretchLeg(const std::vector<model::Joint>& joints, std::size_t bodies, const Kept& kept)
         : joints_(joints), bodies_(bodies), kept_(kept), works_(joints.size()) {}
     [[nodiscard]] double length() const override { return kept_.length; }
-    /// A row at the time at which the stretch ends comes after it, as it did in the run.
+    /// A row at the end time of the stretch is later than the stretch, as in the run.
     [[nodiscard]] double since_start(double t) const override {
         const double since = kept_.start.until(t);
         return t >= kept_.start.later(kept_.length).hi ? std::max(since, kept_.length) : since;
@@ -81,7 +81,7 @@ private:
     mutable std::vector<std::optional<Integrals>> works_;
 };
 
-/// No time, but energy.
+/// An energy change that takes no time.
 class JumpLeg final : public JointLeg {
 public:
     JumpLeg(double t, std::size_t joint, const Work& done) : t_(t), joint_(joint), work_(done) {}
@@ -123,7 +123,7 @@ void History::close(const Clock& end, std::vector<double> y) {
 }
 
 std::vector<double> History::at(double t, Side side) const {
-    // The last stretch that begins at or before t, as far as a double can say it; before it, for a limit from the left.
+    // The last stretch that begins at or before t, compared as doubles; before t for a limit from the left.
     const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Kept& kept) {
         return side == Side::before ? kept.start.hi < t : kept.start.hi <= t;
     });
@@ -141,16 +141,16 @@ std::vector<double> History::ends() const {
     return times;
 }
 
-void History::legs_since(double start, const std::function<void(const JointLeg&)>& told) const {
-    if (before_ != nullptr && start < t_start_) before_->legs_since(start, told);
-    legs(told);
+void History::legs_since(double start, const std::function<void(const JointLeg&)>& visit) const {
+    if (before_ != nullptr && start < t_start_) before_->legs_since(start, visit);
+    legs(visit);
 }
 
-void History::legs(const std::function<void(const JointLeg&)>& told) const {
+void History::legs(const std::function<void(const JointLeg&)>& visit) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= for_good_; ++i) {
-        for (; jump != jumps_.end() && jump->stretch == i; ++jump) told(JumpLeg(jump->t, jump->joint, jump->work));
-        if (i < for_good_) told(StretchLeg(joints_, bodies_, list_[i]));
+        for (; jump != jumps_.end() && jump->stretch == i; ++jump) visit(JumpLeg(jump->t, jump->joint, jump->work));
+        if (i < for_good_) visit(StretchLeg(joints_, bodies_, list_[i]));
     }
 }
 

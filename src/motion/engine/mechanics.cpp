@@ -33,7 +33,7 @@ void add_shape(Frame::Shape& to, const Frame::Shape& what, double by) {
     }
 }
 
-/// Drops what is no more than the rounding of terms so great.
+/// Drops shares that are below the rounding of terms of this size.
 void drop_rounding(Frame::Shape& shape, double terms) {
     constexpr double nothing = 1e-13;
     const auto is_nothing = [terms](const Frame::Share& share) { return !(std::fabs(share.by) > nothing * terms); };
@@ -46,7 +46,7 @@ double greatest_share(const Frame::Shape& shape) {
     return most;
 }
 
-/// Returns how the bodies of a joint, but for one, turn it.
+/// Returns how the bodies of a joint, without `without`, turn it.
 Frame::Shape turned_by(const Joint& joint, const std::vector<Frame::Shape>& bodies,
                        std::size_t without = ~std::size_t{0}) {
     Frame::Shape shape;
@@ -69,8 +69,8 @@ Frame::Frame(const model::System& system, const Mode& mode)
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         if (mode.holds(j)) held.push_back(j);
     }
-    // From the ground, and then from the first body that is free, outwards: a joint with one body more ties that to the
-    // others.
+    // Proceeds outwards from the ground, then from the first free body: a holding joint ties one more body to those
+    // reached.
     std::vector<char> reached(n, 0), used(system.joints.size(), 0);
     const auto grow = [&] {
         for (bool grown = true; grown;) {
@@ -111,8 +111,8 @@ Frame::Frame(const model::System& system, const Mode& mode)
     separate(system);
     for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = turned_by(system.joints[j], bodies);
     if (closing.empty()) return;
-    // In loops torques are shared as Engine::share_loops shares them: the least sum of squares, of each by how much it
-    // accelerates its bodies.
+    // In loops torques are shared as by Engine::share_loops: the least sum of squares, each torque weighted by the
+    // acceleration it causes.
     for (const Edge& edge : edges) sharing_of.push_back(edge.joint);
     std::sort(sharing_of.begin(), sharing_of.end());
     sharing_of.insert(sharing_of.end(), closing.begin(), closing.end());
@@ -127,11 +127,11 @@ Frame::Frame(const model::System& system, const Mode& mode)
     sharing = weakness.asDiagonal() * algebra::pseudo_inverse(on_bodies);
 }
 
-/// A joint whose angle the others do not keep stops one way to move. Each row has what such a joint says of the leads,
-/// and behind it of which of these joints that was made.
+/// A holding joint whose angle the others leave free removes one way to move. Each row has such a joint's coefficients
+/// of the leads, followed by the combination of joints it was made of.
 void Frame::close_loops(Eigen::MatrixXd rows) {
     const auto leads = static_cast<Eigen::Index>(leads_.size());
-    std::map<Eigen::Index, Eigen::Index> stopped;  // leads, and the row that tells their motion
+    std::map<Eigen::Index, Eigen::Index> stopped;  // each dependent lead, and the row that determines it
     constexpr double nothing = 1e-12;
     for (Eigen::Index r = 0; r < rows.rows(); ++r) {
         const double size = std::max(1.0, rows.row(r).tail(rows.rows()).cwiseAbs().maxCoeff());
@@ -173,7 +173,7 @@ void Frame::close_loops(Eigen::MatrixXd rows) {
     }
 }
 
-/// Makes groups that share bodies orthogonal, and finds the inertia of each.
+/// Makes groups that share bodies orthogonal, and computes the inertia of each.
 void Frame::separate(const model::System& system) {
     std::size_t count = 0;
     bool coupled = false;
@@ -215,7 +215,7 @@ void Frame::separate(const model::System& system) {
     }
 }
 
-/// From the ground and the leads outwards, in the order of the edges.
+/// Proceeds outwards from the ground and the leads, in the order of the edges.
 void Frame::go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
     for (const Edge& edge : edges) {
         double left = mode.leans[edge.joint] != 0 ? 0 : of_joints[edge.joint];
@@ -268,7 +268,7 @@ std::vector<std::size_t> redundant_rigid(const model::System& system) {
     return Frame(system, mode).redundant;
 }
 
-/// By exchanging at once all that are on the wrong side of their condition, and, where that goes round, one at a time.
+/// Exchanges all variables that violate their condition at once; if that cycles, one at a time.
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high) {
     const Eigen::Index n = g.size();
@@ -383,8 +383,8 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
     add(base_);
 }
 
-/// Where it does not break it is asked at t itself: a hair beside that it may be off by less than any rounding, and a
-/// mass would slide on a belt that has its velocity.
+/// Except at breaks it is evaluated at t itself: a small step aside could change it within rounding, and a mass with
+/// the velocity of its belt would slide.
 double Mechanics::belt(std::size_t joint, double t, Side side) const {
     if (belts_[joint].none()) return 0;
     const bool breaks = side != Side::at && (belts_[joint].next_break(std::nextafter(t, -model::never)) == t ||
@@ -429,7 +429,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
     if (contact.law) {
         const Piecewise& law = *contact.law;
         const double smooth = speed >= 0 || law.is_held() ? law.value(at, speed) : model::never;
-        // Where nothing tells how it goes on below 0, with the slope that it has there.
+        // If the law is undefined below speed 0, extrapolate by point reflection at 0.
         torque = speed >= 0 || std::isfinite(smooth) ? smooth : 2 * law.value(at, 0) - law.value(at, -speed);
         torque *= friction.law.normal();
     } else if (!own.none()) {
@@ -487,7 +487,7 @@ double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& 
     if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
     if (how.way == Motion::stuck || !rubs(joint)) return 0;
     Slipping present = how;
-    // Along a wall nobody watches for the speeds at which a law changes its formula.
+    // Along a wall no guard watches for the corners of the law, so choose the range here.
     if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
@@ -575,7 +575,7 @@ void Mechanics::rates(const Moment& at, double* out, const Mode* mode) const {
     for (std::size_t s = 0; s < sliders_.size(); ++s) {
         const bool sticks = mode != nullptr && mode->sliders[s] == Motion::stuck;
         const std::size_t joint = sliders_[s].joint;
-        // Where the contact stands, what is left of the slip is rounding, which no polynomial follows.
+        // If the contact does not slip, the remaining slip is rounding, which no polynomial follows.
         const double moving = belt(joint, at.t, at.side), slips = velocity(joint, at.y) - moving;
         const bool stands = std::fabs(slips) <= 16 * rounding * (speed_scale(joint, at.y) + std::fabs(moving));
         out[sliders_[s].bend - 2 * bodies()] = sticks && !stands ? slips : 0;
@@ -606,7 +606,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
     }
-    if (own.of.size() > 1) {  // a sum of angles is known as well as these
+    if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
         double known = 0;
         for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
         constexpr double ulps = 1024 * rounding;

@@ -9,7 +9,7 @@ namespace dinal::motion::engine {
 
 std::vector<model::Oscillator> modes_of(const model::System& system) {
     const auto n = static_cast<Eigen::Index>(system.bodies.size());
-    // y' = A y for all angles and then all velocities.
+    // y' = A y for all angles followed by all velocities.
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     A.topRightCorner(n, n).setIdentity();
     for (const model::Joint& joint : system.joints) {

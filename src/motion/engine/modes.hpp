@@ -1,4 +1,4 @@
-// The modes of a system: how it swings, or leaves, when it is pushed a little.
+// The modes of a system: its small free motions.
 #pragma once
 
 #include <complex>
@@ -11,16 +11,16 @@
 
 namespace dinal::motion::engine {
 
-/// The linear motions that bodies and links have together without friction, as systems of one body.
+/// The linear modes of the system without friction, each as a system of one body.
 std::vector<model::Oscillator> modes_of(const model::System& system);
 
 struct EigenMode {
     std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
-    std::vector<std::complex<double>> shape{};  ///< of each body; the greatest is 1
+    std::vector<std::complex<double>> shape{};  ///< amplitude of each body; the greatest is 1
 };
 
-/// Returns the modes of small motions beside a rest, searched from theta0, or beside an even sliding: contacts on belts
-/// slide, all others hold. Sorted by frequency.
+/// Returns the modes of small motions about an equilibrium, searched from theta0, or about steady sliding: contacts on
+/// belts slide, all others hold. Sorted by frequency.
 text::Expected<std::vector<EigenMode>> modes_beside(const model::System& system, const model::Drive& drive);
 
 }  // namespace dinal::motion::engine

@@ -16,7 +16,7 @@ namespace {
 
 using model::Motion;
 
-/// A system beside an even motion, as a function of what its groups and states do there.
+/// A system near a steady motion, as a function of the coordinates of its groups and states.
 class Beside {
 public:
     explicit Beside(const Moving& given)
@@ -47,7 +47,7 @@ public:
         for (std::size_t i = 0; i < bodies(); ++i) y_[bodies() + i] = offsets[i];
         angles_ = y_;
         mechanics_.let_laws_act(mode_);
-        // Bristles that do not slip, and springs of sliders, bend with their angle.
+        // The deflections of bristles without slip and of slider springs follow their joints' angles.
         for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) free_.push_back(2 * bodies() + k);
         for (std::size_t b = 0; b < mechanics_.bristles().size(); ++b) {
             const std::size_t joint = mechanics_.bristles()[b], k = 2 * bodies() + mechanics_.states_of_user() + b;
@@ -65,7 +65,7 @@ public:
     [[nodiscard]] Eigen::Index groups() const { return static_cast<Eigen::Index>(frame_->groups()); }
     [[nodiscard]] Eigen::Index states() const { return static_cast<Eigen::Index>(free_.size()); }
 
-    /// Finds where all accelerations and rates are zero.
+    /// Finds the state in which all accelerations and rates are zero.
     [[nodiscard]] std::optional<text::Error> settle() {
         constexpr int most = 60;
         constexpr double nearly = 1e-11;
@@ -173,7 +173,7 @@ private:
         }
         return out;
     }
-    /// By differences of fourth order; a linear system takes wide ones, which lose no digits.
+    /// The Jacobian by differences of fourth order; a linear system uses wide ones, which lose no digits.
     [[nodiscard]] Eigen::MatrixXd slopes_at(const Eigen::VectorXd& x) {
         constexpr double part = 1e-3;
         const bool wide = !mechanics_.nonlinear();
@@ -190,7 +190,7 @@ private:
         }
         return slopes;
     }
-    /// What holds must be able to.
+    /// Checks that the holding joints can hold.
     [[nodiscard]] std::optional<text::Error> holds() {
         static_cast<void>(at(Eigen::VectorXd::Zero(2 * groups() + states())));
         std::vector<double> lacking(bodies()), held(mechanics_.joints());
@@ -214,8 +214,8 @@ private:
     Mode mode_;
     std::optional<Frame> frame_;
     std::vector<double> belts_, y_, angles_, loads_, torques_;
-    std::vector<std::size_t> free_;                           ///< places of the states that move by themselves
-    std::vector<std::pair<std::size_t, std::size_t>> bends_;  ///< places of the others, and their joints
+    std::vector<std::size_t> free_;                           ///< indices of the independent states
+    std::vector<std::pair<std::size_t, std::size_t>> bends_;  ///< indices of the other states, and their joints
     double slowest_ = model::never;
 };
 

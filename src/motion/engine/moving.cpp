@@ -14,10 +14,9 @@
 
 namespace dinal::motion::engine {
 
-/// The derivative of given angles by series on pieces, each as long as a polynomial follows them to rounding. Where the
-/// pieces are depends on the angles alone: halves of halves of even parts between breaks, since in what another order
-/// of questions left over a derivative would be rounding over a tiny length. No stretch of a run passes the end of a
-/// piece: a polynomial hides nothing from it.
+/// The derivative of a prescribed angle, by series on pieces short enough for a polynomial to reach rounding. The
+/// pieces are halvings of equal parts between breaks, so they depend on the angle only and not on the order of
+/// evaluation: leftover tiny pieces would differentiate rounding errors. No stretch of a run passes the end of a piece.
 class VelocityOfAngle final : public model::UserFunction {
 public:
     VelocityOfAngle(model::Excitation angle, double start, double longest)
@@ -42,7 +41,7 @@ private:
         cheb::Series<node_count - 1> slope{};
     };
 
-    /// The piece in which t is, and where that begins.
+    /// Returns the piece that contains t, with the time at which it begins.
     const std::pair<const double, Piece>& piece_at(double t) {
         const auto next = pieces_.upper_bound(t);
         if (next != pieces_.begin() && t < std::prev(next)->second.to) return *std::prev(next);
@@ -50,7 +49,7 @@ private:
         return *pieces_.insert_or_assign(from, made).first;
     }
 
-    /// The part around t on which nothing breaks, no longer than the longest piece, and the next break.
+    /// The part around t without breaks, no longer than the longest piece, and the next break.
     std::array<double, 3> part_around(double t) {
         while (breaks_.back() <= t) breaks_.push_back(angle_.next_break(breaks_.back()));
         const auto next = std::upper_bound(breaks_.begin(), breaks_.end(), t);
@@ -137,8 +136,8 @@ private:
     model::Excitation angle_;
     double longest_, gap_ = 0;
     Unseen unseen_;
-    std::vector<double> breaks_;      // those that are known; the first is the start
-    std::map<double, Piece> pieces_;  // by where they begin
+    std::vector<double> breaks_;      // known breaks; the first is the start
+    std::map<double, Piece> pieces_;  // by the time at which they begin
 };
 
 Moving::Moving(const model::System& given, const model::Drive& asked, double start, double longest)
@@ -161,7 +160,7 @@ Moving::Moving(const model::System& given, const model::Drive& asked, double sta
         }
         if (moved->by_angle) drive.theta0[i] = belt_from(moved->motion, start);
         drive.velocity0[i] = belt_from(drive.belts.back(), start);
-        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any will do
+        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any inertia will do
     }
 }
 

@@ -1,4 +1,4 @@
-// Bodies that are moved: the velocity of a given angle, and the rigid joints that move them.
+// Bodies with prescribed motion: the velocity of a prescribed angle, and the rigid joints that impose it.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@ namespace dinal::motion::engine {
 
 class VelocityOfAngle;
 
-/// A system in which each body that is moved is held by a rigid joint behind all others, as on a belt of its velocity.
+/// A system in which a rigid joint, behind all others, imposes each prescribed motion like a belt of that velocity.
 struct Moving {
     model::System system;
     model::Drive drive;
 
-    /// No look at a given angle is longer than `longest`, time units.
+    /// `longest` is the longest piece over which prescribed angles are sampled, time units.
     Moving(const model::System& given, const model::Drive& asked, double start, double longest);
-    /// The longest between two looks at an angle of which nobody knows what it does between them; 0 without such.
+    /// The widest distance of two samples of an angle between which its motion is not proven, time units; 0 if none.
     [[nodiscard]] double gap() const;
 
 private:

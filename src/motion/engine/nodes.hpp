@@ -1,4 +1,4 @@
-// What a stretch of a motion is sampled at, and how a user's functions are asked beside a jump.
+// The nodes of a stretch of motion, and the evaluation of user functions on one side of a jump.
 #pragma once
 
 #include <algorithm>
@@ -32,13 +32,13 @@ inline void add(Nodes& sum, const Nodes& values, double by) {
     for (std::size_t k = 0; k < node_count; ++k) sum[k] += by * values[k];
 }
 
-/// Of a break: the limits from the left and from the right differ there.
+/// The side of a break: the limits from the left and from the right differ.
 enum class Side { before, at, after };
 
 /// The nodes of a stretch.
 struct NodeTimes {
-    Nodes times{}, rests{};  ///< and what is rounded off these
-    double h = 0;            ///< half its length
+    Nodes times{}, rests{};  ///< times, and their rounding errors
+    double h = 0;            ///< half of its length
     bool from_break = false, to_break = false;
 
     [[nodiscard]] Side side(std::size_t node) const {
@@ -46,20 +46,20 @@ struct NodeTimes {
     }
 };
 
-/// A step to the side that a user's arithmetic cannot swallow (see model/excitation.cpp).
+/// A small step aside that survives rounding in a user's arithmetic (see model/excitation.cpp).
 inline double towards(double t, Side side) {
     constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
     const double hair = std::max(1e-300, few_ulps * std::fabs(t));
     return side == Side::before ? t - hair : side == Side::after ? t + hair : t;
 }
 
-/// Stretches have one of a few lengths, for which what is prepared is kept: this half length or a little less.
+/// Rounds a half length down to one of a few steps, for which matrices are cached.
 inline double rung(double h, double longest) {
     constexpr double rungs = 4;  // to a factor of two
     return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
 }
 
-/// What a series may be off by because times far from t = 0 are rounded. A jump is no slope.
+/// A bound of the error of a series from the rounding of times far from t = 0. A jump counts with its height only.
 inline double lost_in_time(const Series& series, double late, double h, double most) {
     double slope = 0;
     for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);

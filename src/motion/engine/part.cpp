@@ -22,7 +22,7 @@ private:
     std::size_t joint_;
 };
 
-/// Makes the state of a joint from that of its bodies.
+/// Computes the state of a joint from that of its bodies.
 struct Place {
     std::size_t bodies, joint;
     model::Joint weights;
@@ -46,19 +46,19 @@ public:
                 history_->whole_until())};
         }
         model::State state = place_.state(history_->at(t));
-        // Beside a wall the kept motion has an error of rounding.
+        // Near a wall the stored motion has a rounding error.
         if (const auto& walls = system().walls()) state.theta = std::clamp(state.theta, walls->lower, walls->upper);
         return state;
     }
     [[nodiscard]] std::vector<double> states_at(double t) const override {
         const std::vector<double> y = history_->at(t);
         const auto first = y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies);
-        return {first, first + static_cast<std::ptrdiff_t>(states_)};  // behind them are those of bristles
+        return {first, first + static_cast<std::ptrdiff_t>(states_)};  // the states of bristles follow
     }
     [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
-    void legs(const std::function<void(const Leg&)>& told) const override {
-        history_->legs_since(t_start_, [&](const JointLeg& leg) { told(PartLeg(leg, place_.joint)); });
+    void legs(const std::function<void(const Leg&)>& visit) const override {
+        history_->legs_since(t_start_, [&](const JointLeg& leg) { visit(PartLeg(leg, place_.joint)); });
     }
     [[nodiscard]] std::size_t bytes() const override { return history_->bytes(); }
 
@@ -78,9 +78,9 @@ bool rubs(const model::Joint& joint) {
     return !joint.friction.none() && joint.friction.bristle() == nullptr;
 }
 
-/// Whether every turn of the joint's angle is an event. None of a belt is, nor of a joint without dry friction whose
-/// bodies rub elsewhere; an impact at another joint may turn this one round.
-bool tells_turns(const model::System& system, const model::Drive& drive, std::size_t joint) {
+/// Returns whether every turn of the joint's angle is an event. Not on a belt, nor without own dry friction if its
+/// bodies rub elsewhere; an impact at another joint may also reverse this one.
+bool turns_are_events(const model::System& system, const model::Drive& drive, std::size_t joint) {
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
     return std::all_of(system.joints.begin(), system.joints.end(), [&](const model::Joint& other) {
@@ -104,7 +104,7 @@ Trajectory part_of(const model::System& system, const model::Drive& drive, const
     }
     for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
     const auto left = std::make_shared<Left>(run.carry, place.bodies);
-    left->states.resize(drive.states.size());  // behind them are those of bristles
+    left->states.resize(drive.states.size());  // drops the states of bristles
     part.carried = left;
     std::vector<model::Event> events;
     for (const model::Event& e : run.events) {
@@ -128,9 +128,9 @@ Trajectory part_of(const model::System& system, const model::Drive& drive, const
     part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
     part.began_stuck = run.begun.holds(joint);
     part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
-    part.on_belt = !tells_turns(system, drive, joint);
+    part.on_belt = !turns_are_events(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
-    if (system.joints[joint].stops) part.restitution = -1;  // where contact begins the velocity goes on
+    if (system.joints[joint].stops) part.restitution = -1;  // at an elastic wall the velocity continues
     if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
     return part;
 }

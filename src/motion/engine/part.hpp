@@ -7,7 +7,7 @@
 
 namespace dinal::motion::engine {
 
-/// What a run leaves to the run that goes on from there.
+/// The data that a continuation of the run needs.
 struct Left final : Carried {
     explicit Left(std::shared_ptr<const Carry> from, std::size_t bodies = 1) : carry(std::move(from)) {
         states.assign(carry->y.begin() + static_cast<std::ptrdiff_t>(2 * bodies), carry->y.end());
@@ -15,13 +15,12 @@ struct Left final : Carried {
     std::shared_ptr<const Carry> carry;
 };
 
-/// All of the run that concerns the joint, but no rows. `seen` is the joint as a system of one body, from which its
-/// energy is computed; without it the motion between the rows is left out. The events and states of the user belong to
-/// each joint.
+/// The trajectory of a joint without rows. `seen` is the joint as a one-body system, used for its energy; without it
+/// the motion between the rows is left out. The user's events and states belong to every joint.
 Trajectory part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
                    const std::optional<model::Oscillator>& seen);
 
-/// The same with its columns of a run that is not joined elsewhere.
+/// The same with its columns, for a run of one body.
 Trajectory part_with_rows(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
                           const std::optional<model::Oscillator>& seen);
 

@@ -1,11 +1,11 @@
-// Runs a plain system by the general engine.
+// Runs a plain system with the general engine.
 #pragma once
 
 #include "motion/engine/run.hpp"
 
 namespace dinal::motion::engine {
 
-/// Runs the problem. The columns of its states stand behind the others.
+/// Runs the problem. The columns of its states follow the others.
 Trajectory run(const Problem& problem, const Cut& cut);
 
 }  // namespace dinal::motion::engine

@@ -2957,9 +2957,9 @@ Run run_plain(const Request& problem) {
         return result;
     }
     const double run = problem.window.end - problem.window.start;
-    const Moving moving(problem.system, problem.drive, problem.window.start,
-                        std::min({problem.longest, run / 32,
-                                  longest_in_periods * problem.system.shortest_natural_period()}));
+    const Moving moving(
+        problem.system, problem.drive, problem.window.start,
+        std::min({problem.longest, run / 32, longest_in_periods * problem.system.shortest_natural_period()}));
     Request held = problem.on(moving.system, moving.drive);
     held.hidden = moving.system.joints.size() - problem.system.joints.size();
     Engine engine(held, result);

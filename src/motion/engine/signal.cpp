@@ -39,7 +39,7 @@ double Signal::value_of(std::size_t i, const Moment& at) const {
     if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
     if (part.sampled != nullptr) return memory_[i].output;
     if (part.delayed != nullptr) {
-        // A jump comes back at a time that is rounded: on its sides the past is asked beside it.
+        // A jump returns at a rounded time: on its sides evaluate the past beside it.
         const double t = towards(at.t, at.side);
         return asking_->ask_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
     }

@@ -1,5 +1,5 @@
-// What a user gives as a number, an excitation or a function: a load, the velocity of a belt, a normal load. Compiled
-// from an excitation, and asked with the whole state of a run.
+// A user's quantity compiled from an excitation and evaluated with the whole state of a run: a load, the velocity of a
+// belt, a normal load.
 #pragma once
 
 #include <algorithm>
@@ -23,25 +23,25 @@
 
 namespace dinal::motion::engine {
 
-/// One moment of a run: y is all angles, all velocities, and then the states of the user's.
+/// One moment of a run; y has all angles, all velocities, and then the user's states.
 struct Moment {
     double t;
     Side side;
     std::span<const double> y;
 };
 
-/// How a user's function is asked.
+/// The calling convention of user functions.
 struct Asking {
-    bool named = true;     ///< with all of y as states, but those of bristles
-    std::size_t told = 0;  ///< so much of y
-    /// The motion at an earlier time, for what acts with a delay.
+    bool named = true;     ///< whether they receive all of y (without bristles) as states
+    std::size_t told = 0;  ///< length of the part of y that is passed
+    /// Returns the motion at an earlier time, for delayed terms.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
     [[nodiscard]] double ask(model::UserFunction& function, const Moment& at) const {
         return ask_at(function, towards(at.t, at.side), at.y);
     }
     [[nodiscard]] double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
-        if (y.empty()) return function.value(t, {});  // of the time alone
+        if (y.empty()) return function.value(t, {});  // depends on time only
         return function.value_with(t, state(y), states(y));
     }
     [[nodiscard]] model::State state(std::span<const double> y) const {
@@ -52,23 +52,24 @@ struct Asking {
     }
 };
 
-/// A user's function of the motion. If its conditions of the motion are known, it is held to the piece between them.
+/// A user's function of the motion. If its conditions are known, it is evaluated on the current piece.
 class Piecewise {
 public:
     Piecewise(const Asking* asking, model::UserFunction* function, double delay)
         : asking_(asking), function_(function), delay_(delay), has_pieces_(function->has_pieces()) {}
 
-    /// Of a law of friction, which is called with a speed, alone or before all else. It acts one way at a time.
+    /// A friction law or spring, whose first argument is a speed or an angle, alone or before the other states. It acts
+    /// in one direction at a time.
     struct Law {
         bool alone;
         std::function<double(const Moment&)> slip;
-        double way = 0;         ///< 0: its joint does not slide
-        bool of_angle = false;  ///< it is a spring, and what it is called with may have any sign
+        double way = 0;         ///< 0 if its joint does not slide
+        bool of_angle = false;  ///< whether it is a spring, whose argument may have any sign
     };
     Piecewise(const Asking* asking, model::UserFunction* function, Law law) : Piecewise(asking, function, 0) {
         law_ = std::move(law);
     }
-    /// From now on it acts this way.
+    /// Sets the direction in which it acts.
     void act(double way) {
         if (law_->way != way) let_go();
         law_->way = way;
@@ -77,7 +78,7 @@ public:
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
-    /// The next time at which a rate or a law changes its formula.
+    /// The next time at which its formula changes.
     [[nodiscard]] double next_break(double t) const {
         return law_ && law_->alone ? model::never : function_->next_break(t);
     }
@@ -86,21 +87,22 @@ public:
         if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
-    /// Of a law, at this speed. At 0 it is what the function gives, whichever piece it is held to.
+    /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
     [[nodiscard]] double value(const Moment& at, double speed) const {
         return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             return is_held() && (speed != 0 || law_->of_angle) ? function_->value_on(piece_, t, state, states, nullptr)
                                                                : function_->value_with(t, state, states);
         });
     }
-    /// Decides the conditions at this moment; decisions stay, except those that depend on what `again` has bits for.
+    /// Decides the conditions at this moment; existing decisions stay, except those that depend on a variable in
+    /// `again`.
     void decide(const Moment& at, std::uint64_t again) {
         if (!has_pieces_ || (law_ && law_->way == 0)) return;
         const bool stays = std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
                                         [again](const auto& condition) { return (condition.of & again) != 0; });
         if (is_held() && stays && !crossed_) return;
         crossed_ = false;
-        // What sets off is on its way already.
+        // A joint about to slip counts as moving already.
         const double given = law_ ? law_->way * law_->slip(at) : 0;
         const double speed = law_ && !law_->of_angle ? std::max(given, std::numeric_limits<double>::min()) : given;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
@@ -108,7 +110,7 @@ public:
         });
     }
     [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const { return piece_.conditions; }
-    /// Positive as long as each condition stays as it was decided.
+    /// Computes margins that are positive while each condition keeps its decision.
     void margins(const Moment& at, std::vector<double>& out) const {
         const double speed = law_ ? law_->way * law_->slip(at) : 0;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
@@ -118,12 +120,12 @@ public:
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
     void let_go() { piece_ = {}; }
-    /// Null while it is not held.
+    /// The current piece, or nullptr.
     [[nodiscard]] const model::terms::Piece* piece() const { return is_held() ? &piece_ : nullptr; }
 
 private:
     [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
-    /// Calls it with the arguments of the function: t, or the speed alone; the state; the states.
+    /// Calls `call` with the function's arguments: t, or the speed alone; the state; the states.
     template <class F>
     std::invoke_result_t<F, double, const model::State&, std::span<const double>> called(const Moment& at, double speed,
                                                                                          F call) const {
@@ -140,7 +142,7 @@ private:
     double delay_;
     bool has_pieces_, crossed_ = false;
     std::optional<Law> law_ = {};
-    mutable std::vector<double> with_speed_ = {};  ///< the states that a law is given
+    mutable std::vector<double> with_speed_ = {};  ///< the states passed to a law
     model::terms::Piece piece_ = {};
 };
 
@@ -150,38 +152,38 @@ public:
     Signal(const model::Excitation& excitation, const Asking* asking);
 
     [[nodiscard]] bool none() const { return parts_.empty(); }
-    /// A function wants to know the motion.
+    /// Returns whether some function depends on the motion.
     [[nodiscard]] bool asks_the_motion() const { return asks_the_motion_; }
-    /// A function that is known where it was asked only.
+    /// Returns whether some function is known only at sampled points.
     [[nodiscard]] bool asks_functions() const { return asks_functions_; }
-    /// A function that may do anything at any time, be it where nothing of the motion changes.
+    /// Returns whether some function may change at any time, also while the motion does not.
     [[nodiscard]] bool asks_in_time() const { return asks_in_time_; }
     [[nodiscard]] bool has_script() const { return excitation_.has_script(); }
-    /// A user's function of the time, of which a series on a stretch tells as much as it does.
+    /// Returns whether it is a user's function of time alone, which its series on a stretch represents.
     [[nodiscard]] bool is_sampled() const { return asks_in_time_ && of_time_only_; }
     [[nodiscard]] double value(const Moment& at) const { return of_time(at) + of_motion(at); }
-    /// What depends on the time alone, controllers that hold a value among it.
+    /// The part that depends on time only, including controllers that hold a value.
     [[nodiscard]] double of_time(const Moment& at) const {
         if (!of_time_only_) return sum(at, false);
         if (at.t != asked_last_.t || at.side != asked_last_.side) asked_last_ = {at.t, at.side, sum(at, false)};
         return asked_last_.M;
     }
     [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
-    /// of_time() at all nodes of a stretch. What is not finite ends them: from there on they are no numbers.
+    /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
     void sample(const NodeTimes& when, Nodes& out) const;
 
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
     [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
-    /// It is known between doubles of the time, too.
+    /// Returns whether it can be evaluated between neighbouring times.
     [[nodiscard]] bool tells_rests() const { return excitation_.tells_rests(); }
-    /// It is never greater than this, either way.
+    /// An upper bound of its magnitude.
     [[nodiscard]] double most() const {
         return asks_the_motion_ || model::has_memory(excitation_) ? model::never : excitation_.most();
     }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
-    /// All its functions are read, but for controllers that hold a value, and the times of their changes are known.
+    /// Returns whether all its functions, except controllers that hold a value, are formulas with known breaks.
     [[nodiscard]] bool is_read() const {
         return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) {
             if (part.function == nullptr) return part.delayed == nullptr;
@@ -189,8 +191,7 @@ public:
             return read != nullptr && !read->gave_up();
         });
     }
-    /// Its functions that act at this time and are read: the formula, the piece that it is held to, by how much later
-    /// it acts, its gain.
+    /// Visits its formulas that act at this time, with their piece, delay and gain.
     template <class F>
     void for_each_read(double t, F f) const {
         for (const Part& part : parts_) {
@@ -201,12 +202,12 @@ public:
                 f(*read, part.piecewise ? part.piecewise->piece() : nullptr, part.function->delay, c.gain);
         }
     }
-    /// A function of the motion has no pieces that are known.
+    /// Returns whether some function of the motion has unknown pieces.
     [[nodiscard]] bool samples_the_motion() const {
         return std::any_of(parts_.begin(), parts_.end(),
                            [](const Part& part) { return part.piecewise && !part.piecewise->has_pieces(); });
     }
-    /// Its functions of the motion that act at this time; the others hold no piece.
+    /// Visits its functions of the motion that act at this time; the others drop their piece.
     template <class F>
     void for_each_piecewise(double t, F f) {
         for (const std::size_t i : held_) {
@@ -220,25 +221,25 @@ public:
     }
 
     // Controllers.
-    /// At the start of a run.
+    /// Starts a run.
     void begin(const Moment& at, const std::vector<std::string>& names);
-    /// At the time of `at`: outputs that have waited until now, and the instants of this time. False when one failed.
+    /// Applies pending outputs and sampling instants at the time of `at`. Returns false if one failed.
     bool arrive(const Moment& at);
     [[nodiscard]] std::size_t relays() const { return relays_.size(); }
-    /// Positive until the relay is to switch.
+    /// Positive until the relay must switch.
     [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
 
     struct Memory {
         double output = 0;
-        std::deque<std::pair<double, double>> pending{};  ///< the time from when on, and the output
+        std::deque<std::pair<double, double>> pending{};  ///< pairs of time and output
         std::int64_t instant = 0;
-        bool on = true;                               ///< of a relay
-        std::optional<std::size_t> place{};           ///< in y, of what a relay looks at
-        std::shared_ptr<model::terms::Memory> own{};  ///< of the function of one that samples
+        bool on = true;                               ///< level of a relay
+        std::optional<std::size_t> place{};           ///< index in y of a relay's input
+        std::shared_ptr<model::terms::Memory> own{};  ///< memory of a sampled function
     };
     [[nodiscard]] const std::vector<Memory>& memory() const { return memory_; }
-    /// As a run left it that goes on, and may go on again.
+    /// Restores the memory of an earlier run, with copies, as that run may be continued again.
     void remember(const std::vector<Memory>& memory) {
         memory_ = memory;
         for (Memory& each : memory_) each.own = model::terms::copied(each.own);
@@ -265,7 +266,7 @@ private:
     std::vector<double> delays_;
     bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
     mutable model::Spread spread_{.places = cheb::nodes};
-    /// Of the last stretch: of_time() at both ends, where the next one begins at one of these.
+    /// Caches of_time() at both ends of the last stretch, one of which is the beginning of the next.
     static constexpr double nowhen = std::numeric_limits<double>::quiet_NaN();
     struct Known {
         double t = nowhen, rest = 0, M = 0;

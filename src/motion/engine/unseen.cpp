@@ -10,20 +10,20 @@ namespace {
 using model::bounds::Disc;
 using model::bounds::Interval;
 
-// A disc about a stretch, three times as wide, holds an ellipse of Bernstein's with foci at both ends, the sum of whose
-// half axes is rho. A function that differs there from its value in the middle by r at most differs on the stretch from
-// its polynomial of degree n by 4 r rho^-n / (rho - 1) at most (Trefethen, Approximation Theory and Approximation
+// A disc with three times the radius of a stretch contains a Bernstein ellipse with foci at both ends and half axes
+// that add up to rho. If a function differs there from its value in the middle by at most r, it differs on the stretch
+// from its polynomial of degree n by at most 4 r rho^-n / (rho - 1) (Trefethen, Approximation Theory and Approximation
 // Practice, theorem 8.2).
 constexpr double rho = 5.82842712474619, greatest_power = 6.16227766016838;  // 3 + sqrt(3^2 - 1) and 3 + sqrt(3^2 + 1)
 
 constexpr double power(double x, std::size_t n) {
     return n == 0 ? 1 : x * power(x, n - 1);
 }
-constexpr double falls(std::size_t n) {
+constexpr double decay_of_error(std::size_t n) {
     return 4 / (power(rho, n) * (rho - 1));
 }
 
-/// |Tk(z) - Tk(0)| at most for all z in that disc, where z = 3 i is worst.
+/// The maximum of |Tk(z) - Tk(0)| in that disc, at z = 3 i.
 constexpr Series growth = [] {
     Series most{};
     for (std::size_t k = 1; k < node_count; ++k) {
@@ -33,9 +33,9 @@ constexpr Series growth = [] {
     return most;
 }();
 
-/// How far a polynomial strays in the disc from its value in the middle. Its last terms may be roundings, which would
-/// grow.
-double strays(const Series& series) {
+/// A bound of how far a polynomial deviates in the disc from its value in the middle. Trailing terms that may be
+/// rounding are dropped, as they would grow.
+double deviation_in_disc(const Series& series) {
     const double noise = 4 * rounding * cheb::size(series);
     std::size_t last = node_count - 1;
     while (last > 0 && std::fabs(series[last]) <= noise) --last;
@@ -49,7 +49,7 @@ Interval range(const Series& series) {
     return {series[0] - way, series[0] + way};
 }
 
-/// The same on a part of the stretch; exactly where that is all of it.
+/// The series on a part of the stretch; exactly the same for all of it.
 Series on_part(const Series& series, double middle, double half) {
     if (half == 1) return series;
     Nodes values;
@@ -64,12 +64,12 @@ bool Unseen::is_told(double allowed, double part) {
     const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // others change at breaks only
     walk_.begin(*formula_, piece_, ranges);
     for (const Input& input : inputs_) {
-        walk_.set(input.place, {cheb::value(input.series, 0), strays(input.series)},
+        walk_.set(input.place, {cheb::value(input.series, 0), deviation_in_disc(input.series)},
                   ranges ? range(input.series) : Interval{});
     }
-    const auto told = walk_.run();
-    return falls(cheb::degree) * told.disc.r <= std::max(allowed, part * std::fabs(told.disc.c)) &&
-           told.apart <= allowed && falls(cheb::degree) * walk_.loosest() <= close;
+    const auto enclosure = walk_.run();
+    return decay_of_error(cheb::degree) * enclosure.disc.r <= std::max(allowed, part * std::fabs(enclosure.disc.c)) &&
+           enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
 double Unseen::value(double x) {
@@ -84,35 +84,35 @@ void Unseen::sample() {
     series_ = cheb::fit(values);
 }
 
-/// By how much it may stray in this part, 0 where that is allowed; or where it does.
-double Unseen::look(const Part& part, double allowed, std::optional<double>& place) {
-    const auto strays_at = [&](double x, double found) {
-        const bool strays = std::fabs(found - cheb::value(series_, x)) > allowed;
-        if (strays) place = x;
-        return strays;
+/// Returns a bound of the deviation in this part, 0 if it is allowed; sets `place` if a sample deviates by more.
+double Unseen::deviation_on(const Part& part, double allowed, std::optional<double>& place) {
+    const auto deviates_at = [&](double x, double found) {
+        const bool deviates = std::fabs(found - cheb::value(series_, x)) > allowed;
+        if (deviates) place = x;
+        return deviates;
     };
     for (const Input& input : inputs_) {
         const Series own = on_part(input.series, part.middle, part.half);
-        walk_.set(input.place, {cheb::value(own, 0), strays(own)}, range(own));
+        walk_.set(input.place, {cheb::value(own, 0), deviation_in_disc(own)}, range(own));
     }
-    const auto told = walk_.run(condition_);
-    const bool decided = told.disc.c == told.disc.c;
-    if (strays_at(part.middle, decided ? told.disc.c : value(part.middle))) return model::never;
+    const auto enclosure = walk_.run(condition_);
+    const bool decided = enclosure.disc.c == enclosure.disc.c;
+    if (deviates_at(part.middle, decided ? enclosure.disc.c : value(part.middle))) return model::never;
     const Series own = on_part(series_, part.middle, part.half);
     const Interval known = range(own);
-    const double off = std::max(told.range.hi - known.lo, known.hi - told.range.lo);
+    const double off = std::max(enclosure.range.hi - known.lo, known.hi - enclosure.range.lo);
     if (off <= allowed) return 0;
     const bool whole = part.half == 1;
-    const double r = told.disc.r + (whole ? 0 : strays(own));
+    const double r = enclosure.disc.r + (whole ? 0 : deviation_in_disc(own));
     for (const std::size_t n : {std::size_t{4}, std::size_t{8}, std::size_t{16}}) {
-        if ((whole && n < cheb::degree) || !(falls(n) * r <= allowed && told.apart <= allowed)) continue;
+        if ((whole && n < cheb::degree) || !(decay_of_error(n) * r <= allowed && enclosure.apart <= allowed)) continue;
         for (std::size_t j = 0; j < node_count && !whole; j += cheb::degree / n) {
             const double x = part.middle + part.half * cheb::nodes[j];
-            if (strays_at(x, value(x))) return model::never;
+            if (deviates_at(x, value(x))) return model::never;
         }
         return 0;
     }
-    return std::min(off, told.apart + falls(cheb::degree) * r);
+    return std::min(off, enclosure.apart + decay_of_error(cheb::degree) * r);
 }
 
 Unseen::Found Unseen::search(double allowed, int budget) {
@@ -124,7 +124,7 @@ Unseen::Found Unseen::search(double allowed, int budget) {
         if (found.place) return;
         Part part{middle, half, 0};
         ++looks;
-        part.off = look(part, allowed, found.place);
+        part.off = deviation_on(part, allowed, found.place);
         if (part.off > 0) open.push(part);
     };
     add(0, 1);

@@ -1,4 +1,4 @@
-// Whether a function that is read may do, between the nodes of a stretch, what its series there does not.
+// Decides whether a formula may deviate, between the nodes of a stretch, from its series there.
 #pragma once
 
 #include <optional>
@@ -9,28 +9,28 @@
 
 namespace dinal::motion::engine {
 
-/// A search on one stretch. A formula whose discs around the stretch are finite is analytic there, and its series is as
-/// good as the radius tells; else the stretch is divided, and each part is compared with the series.
+/// A search on one stretch. If the discs around the stretch are finite, the formula is analytic there, and the radius
+/// bounds the error of its series; otherwise the stretch is divided and each part compared.
 class Unseen {
 public:
-    /// What it looks at from now on; with a piece, held to that.
+    /// Starts with a formula, evaluated on `piece` if given.
     void begin(model::Formula& formula, const model::terms::Piece* piece) {
         formula_ = &formula, piece_ = piece;
         inputs_.clear();
     }
-    /// What the function is given in a register.
+    /// Sets an argument of the function.
     void give(std::size_t place, const Series& series) { inputs_.push_back({place, series}); }
 
-    /// It surely strays from its series by less, or by less than this part of what it is, and so does what decides the
-    /// conditions of its piece from those.
+    /// Returns whether it certainly deviates from its series by at most `allowed`, or by this part of its value, and
+    /// the deciders of its piece's conditions by little as well.
     [[nodiscard]] bool is_told(double allowed, double part);
 
     struct Found {
-        std::optional<double> place = {};  ///< it strays there, by more than is allowed
-        bool proven = false;               ///< that it does not, anywhere
+        std::optional<double> place = {};  ///< a point with a larger deviation than allowed
+        bool proven = false;               ///< whether there is none
     };
-    /// The same in parts, at most so many. `allowed` tells how much, from its series. With a `condition`, of what
-    /// decides that.
+    /// The same by division into at most `budget` parts. `allowed` returns the tolerance for a series. With
+    /// `condition`, checks the quantity that decides this condition.
     template <class Allowed>
     [[nodiscard]] Found search(std::optional<std::size_t> condition, int budget, const Allowed& allowed) {
         condition_ = condition;
@@ -44,7 +44,7 @@ private:
         std::size_t place;
         Series series;
     };
-    /// A part of the stretch, of which -1 to 1 is all. What may be farther off is looked at first.
+    /// A part of the stretch -1 to 1; parts with the greatest possible deviation come first.
     struct Part {
         double middle, half, off;
         bool operator<(const Part& other) const { return off != other.off ? off < other.off : half < other.half; }
@@ -52,7 +52,7 @@ private:
     void sample();
     [[nodiscard]] Found search(double allowed, int budget);
     [[nodiscard]] double value(double x);
-    [[nodiscard]] double look(const Part& part, double allowed, std::optional<double>& place);
+    [[nodiscard]] double deviation_on(const Part& part, double allowed, std::optional<double>& place);
 
     model::Formula* formula_ = nullptr;
     const model::terms::Piece* piece_ = nullptr;

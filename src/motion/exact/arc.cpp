@@ -8,13 +8,13 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// Up to so many radians of its fastest part a motion is told by its Taylor series.
+/// Shorter arcs use the Taylor series: radians of the fastest part.
 constexpr double short_of = 0.3;
-/// What a sum may lose by cancellation before it is told otherwise: some digits of sixteen.
+/// The largest loss by cancellation, as a factor, that the closed form may have.
 constexpr double most_cancelled = 256;
-/// Nearer than this part of k to resonance a sine is told relative to the resonant motion.
+/// The distance from resonance, as a part of k, below which a sine uses the resonant form.
 constexpr double near_resonance = 1.0 / 64;
-/// The longest arc: so many natural periods, or turns of what is fastest and slower than these.
+/// The longest arc in natural periods, or in periods of the fastest part if that is slower.
 constexpr double most_turns = 16;
 
 }  // namespace
@@ -41,11 +41,11 @@ double Arc::begin(const model::ClosedForm& M, const Start& start, double length)
     return length;
 }
 
-/// Particular solutions, and the free motion that is left. False when they would cancel.
+/// Uses particular solutions and the remaining free motion. Returns false if they would cancel.
 bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double length) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
     velocity_.clear();
-    double theta = 0, velocity = start.velocity;  // of the free motion
+    double theta = 0, velocity = start.velocity;  // the free motion's
 
     double still = start.pull;
     for (const auto& sine : M.sines()) still -= sine.quadrature;
@@ -73,7 +73,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
         const Answer& to = answers_[j++];
         const Complex F{in_phase, quadrature};
         if (to.resonant) {
-            // F (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), of which only the first is near resonance.
+            // F (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), where only the first is near resonance.
             const Complex root = free_.root(), growing = times(F, to.gain), turning = times(growing, to.other_gain);
             const Complex up = times(growing, root);
             const Complex held{growing.real() - omega * turning.imag(), growing.imag() + omega * turning.real()};
@@ -90,7 +90,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
                  .fourth_growing = size * to.fourth_growing,
                  .fourth_turning = size * to.fourth_turning + length_of(held) * (square * square)});
             theta -= turning.imag();
-            velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // of turning times conj lambda
+            velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // Im(turning conj lambda)
             continue;
         }
         const Complex way = times(F, to.gain);
@@ -102,7 +102,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
     return true;
 }
 
-/// The answer to powers, of which the constant one is `still`.
+/// The particular solution of the powers; the constant one is `still`.
 bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, double& theta, double& velocity) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
     // Powers: from the highest down, k b_n = c_n - C (n + 1) b_(n+1) - I (n + 2) (n + 1) b_(n+2).
@@ -129,7 +129,7 @@ bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, 
     return true;
 }
 
-/// What the system makes of the j-th sine, of this frequency: as a rule that of the arc before.
+/// Computes the response to the j-th sine, usually unchanged since the arc before.
 void Arc::answer(std::size_t j, double omega) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness(), w1 = free_.root().imag();
     const Complex root = free_.root(), i(0, 1), held{std::fma(-I * omega, omega, k), C * omega}, mu(0, omega);
@@ -144,12 +144,12 @@ void Arc::answer(std::size_t j, double omega) {
     to.gain = 1.0 / (2.0 * i * w1 * I);
     to.other_gain = -1.0 / (mu - std::conj(root));
     to.from_root = free_.from_root(omega);
-    // (g exp)' = root g + exp, so that f'''' has root^4 of g, and the rest of exp(mu tau).
+    // (g exp)' = root g + exp: so f'''' has root^4 of g, and the rest of exp(mu tau).
     to.fourth_growing = std::norm(root * root);
     to.fourth_turning = std::abs((root + mu) * (root * root + mu * mu));
 }
 
-/// The Taylor series of the motion: what is short, or what would cancel, is told by it.
+/// Uses the Taylor series of the motion, for short arcs or closed forms that would cancel.
 void Arc::begin_series(const model::ClosedForm& M, const Start& start, double length, double rate) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness(), x = rate * length;
     std::size_t order = 2;

@@ -1,4 +1,4 @@
-// The motion on an arc, a stretch on which M has one formula and friction one sign, as a closed form.
+// The closed form of the motion on an arc, on which M has one formula and friction one sign.
 #pragma once
 
 #include "model/closed_form.hpp"
@@ -10,23 +10,23 @@ class Arc {
 public:
     explicit Arc(const model::Lowered& system) : system_(system), free_(system), velocity_(free_) {}
 
-    /// How the motion begins: `pull` is M - k theta less the braking of friction.
+    /// The initial values: `pull` is M - k theta minus the braking of friction.
     struct Start {
         double velocity, pull;
     };
-    /// The arc under M from its origin on, which is wanted for `length`. Returns for how long it holds: less where
-    /// numbers that nearly cancel must be avoided.
+    /// Begins the arc under M from its origin, requested for `length`. Returns the length for which it is valid, which
+    /// is less if cancellation must be avoided.
     double begin(const model::ClosedForm& M, const Start& start, double length);
-    /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn. What
-    /// an overdamped system forgets at once does not.
+    /// An upper estimate of the cost of a time unit: radians of the fastest part times the number of oscillating parts.
+    /// Excludes parts of an overdamped system that decay at once.
     [[nodiscard]] double cost(const model::ClosedForm& M) const {
         return lasting_rate(M) * static_cast<double>(1 + M.turning_parts());
     }
-    /// Where an arc without events ends, that what its looks round does not add up; and what the arcs round adds up.
+    /// The longest arc: limits the accumulated rounding of looks within an arc and of successive arcs.
     [[nodiscard]] double longest(const model::ClosedForm& M) const;
 
     struct Point {
-        double way;  ///< theta less that of the beginning
+        double way;  ///< theta minus its initial value
         double velocity;
     };
     [[nodiscard]] Point at(double tau) {
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] const LinearMotion& free() const { return free_; }
 
 private:
-    /// What the system makes of exp(i omega tau).
+    /// The response to exp(i omega tau).
     struct Answer {
         double omega = 0;
         bool resonant = false;
@@ -49,7 +49,7 @@ private:
     bool begin_closed(const model::ClosedForm& M, const Start& start, double length);
     void begin_series(const model::ClosedForm& M, const Start& start, double length, double rate);
     [[nodiscard]] double fastest_rate(const model::ClosedForm& M) const;
-    /// Of the parts that are not forgotten at once.
+    /// The fastest rate among the parts that do not decay at once.
     [[nodiscard]] double lasting_rate(const model::ClosedForm& M) const {
         return std::max(free_.lasting(), M.fastest());
     }
@@ -58,7 +58,7 @@ private:
     LinearMotion free_;
     WalkedCurve velocity_;
     std::vector<Answer> answers_;     // to each sine of M
-    std::vector<double> way_, load_;  // coefficients at work
+    std::vector<double> way_, load_;  // work space for coefficients
 };
 
 }  // namespace dinal::motion::exact

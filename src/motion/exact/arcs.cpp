@@ -13,7 +13,7 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// Gauss's places and weights on (-1, 1), of one side: sixteen places integrate polynomials of degree 31.
+/// Gauss's positive nodes and weights on (-1, 1): sixteen points integrate polynomials of degree 31.
 constexpr std::array<std::array<double, 2>, 8> gauss{{{0.0950125098376374402, 0.1894506104550684963},
                                                       {0.2816035507792589132, 0.1826034150449235889},
                                                       {0.4580167776572273863, 0.1691565193950025382},
@@ -22,10 +22,10 @@ constexpr std::array<std::array<double, 2>, 8> gauss{{{0.0950125098376374402, 0.
                                                       {0.8656312023878317439, 0.0951585116824927848},
                                                       {0.9445750230732325761, 0.0622535239386478929},
                                                       {0.9894009349916499326, 0.0271524594117540949}}};
-/// Radians of the fastest part of the motion to a stretch of integration.
+/// The length of an integration interval in radians of the fastest part.
 constexpr double stretch_radians = 3;
 
-/// The work on an arc. Products of closed forms are integrated by Gauss's rule, which is as exact as they are.
+/// The work on an arc. Gauss's rule integrates products of closed forms to rounding.
 class ArcLeg final : public Leg {
 public:
     ArcLeg(const model::Lowered& system, const model::Excitation& excitation, const KeptArc& kept)
@@ -74,9 +74,9 @@ private:
     const KeptArc& kept_;
     double damping_, braking_;
     model::ClosedForm M_;
-    mutable Arc arc_;  // its working memory
+    mutable Arc arc_;  // work space
     double stretch_ = 0;
-    std::vector<Work> done_;  // until the beginning of each stretch
+    std::vector<Work> done_;  // up to the beginning of each interval
 };
 
 }  // namespace
@@ -108,9 +108,9 @@ text::Expected<model::State> Arcs::at(double t) const {
     return model::State{Clock{kept.begin.theta, kept.theta_rest}.later(y.way).hi, y.velocity};
 }
 
-void Arcs::legs(const std::function<void(const Leg&)>& told) const {
+void Arcs::legs(const std::function<void(const Leg&)>& visit) const {
     const model::Lowered lowered(system());
-    for (const KeptArc& arc : arcs_) told(ArcLeg(lowered, excitation_, arc));
+    for (const KeptArc& arc : arcs_) visit(ArcLeg(lowered, excitation_, arc));
 }
 
 }  // namespace dinal::motion::exact

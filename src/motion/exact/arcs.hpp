@@ -1,4 +1,4 @@
-// The motion of an exact run as the arcs it was computed on: where each begins, from which its closed form follows.
+// The motion of an exact run as its arcs; the initial values of each determine its closed form.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace dinal::motion::exact {
 
-/// An arc of a run, or a time at rest.
+/// An arc of a run, or a rest.
 struct KeptArc {
     Clock start;
     double length = 0;
-    double asked = 0;  ///< for how long the closed form was wanted: another length may choose another form
+    double asked = 0;  ///< requested length of the closed form: another length may select another form
     model::State begin;
-    double theta_rest = 0;  ///< what theta lacks there
-    double pull = 0;        ///< M - k theta less the braking of friction, there
+    double theta_rest = 0;  ///< rounding error of theta at the start
+    double pull = 0;        ///< M - k theta minus the braking of friction, at the start
     model::Motion motion = model::Motion::stuck;
     bool rests = true;
 };
@@ -24,7 +24,7 @@ struct KeptArc {
 /// All arcs of a run, in order and without gaps.
 class Arcs final : public Course {
 public:
-    /// `most_bytes` is what they may take; what comes later is not kept.
+    /// `most_bytes` limits the memory; later arcs are dropped.
     Arcs(const model::Oscillator& system, const model::Excitation& excitation, std::size_t most_bytes)
         : Course(system), excitation_(excitation), most_(most_bytes / sizeof(KeptArc)) {
         constexpr std::size_t few = 8;
@@ -38,7 +38,7 @@ public:
 
     [[nodiscard]] text::Expected<model::State> at(double t) const override;
     [[nodiscard]] double whole_until() const override;
-    void legs(const std::function<void(const Leg&)>& told) const override;
+    void legs(const std::function<void(const Leg&)>& visit) const override;
     [[nodiscard]] std::size_t bytes() const override { return arcs_.size() * sizeof(KeptArc); }
 
 private:

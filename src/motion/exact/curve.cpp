@@ -8,7 +8,7 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// The longest look, in natural periods; each level halves it.
+/// The longest tabulated look, in natural periods; each level halves it.
 constexpr double longest_look = 8;
 
 /// 1/n and 1/n!
@@ -29,7 +29,7 @@ bool WalkedCurve::same_resonances() const {
                       [](const Resonance& a, Complex mu) { return a.mu == mu; });
 }
 
-/// Nothing is known of these frequencies and rates.
+/// Clears the tables after a change of frequencies or rates.
 void WalkedCurve::make_table() {
     changed_ = false;
     omega_.resize(sines_), rate_.resize(rates_);
@@ -127,7 +127,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
     to.bent = free_.w0_squared() * step.moved;
 }
 
-/// The parts that most curves do not have.
+/// Turns the rarer parts: powers, exponentials and resonances.
 void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const {
     const Value sum = powers(place);
     y.f += sum.f, y.slope += sum.slope;
@@ -194,7 +194,7 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
     return jet_;
 }
 
-/// The derivatives from one order to another of the parts that most curves do not have.
+/// The derivatives of the rarer parts, from one order to another.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
     const Moment& asked = *asked_;
     Jet more{};
@@ -245,7 +245,7 @@ double WalkedCurve::way() const {
     return sum + further;
 }
 
-/// Of the parts that most curves do not have.
+/// The bound for the rarer parts.
 double WalkedCurve::growing_bound(double until) const {
     double bound = 0;
     for (std::size_t j = 0; j < rates_; ++j) {
@@ -262,7 +262,7 @@ double WalkedCurve::growing_bound(double until) const {
     }
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        const double g = length_of(now_->resonances[j][0]) + (until - place_);  // |g'| <= 1 less a decay
+        const double g = length_of(now_->resonances[j][0]) + (until - place_);  // |g'| <= 1 minus a decay
         bound += r.fourth_growing * g + r.fourth_turning;
     }
     return bound;

@@ -1,7 +1,7 @@
-// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time: walked along in looks, each
-// with a bound of what it hides.
+// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time. Advances in looks: steps,
+// each with a bound of the deviation between its ends.
 //
-// It is the velocity on an arc, or the load on a mass at rest.
+// It represents the velocity on an arc, or the load on a mass at rest.
 #pragma once
 
 #include <array>
@@ -24,22 +24,22 @@ public:
     struct Value {
         double f = 0, slope = 0;
     };
-    /// At the end of a stretch.
+    /// The value and two derivatives at the end of a stretch.
     struct End {
         double f = 0, slope = 0, bend = 0;
     };
-    /// A value and its derivatives, each over the factorial of its order.
+    /// A value and its derivatives, each divided by the factorial of its order.
     static constexpr std::size_t jet_order = 6;
     using Jet = std::array<double, jet_order + 1>;
 
-    // What it is made of, told anew for each arc. As a rule these are the frequencies and rates of the arc before.
+    // Terms are added again for each arc; usually the frequencies and rates are those of the arc before.
     void clear() {
         powers_.clear(), way_powers_.clear(), resonances_.clear();
         sines_ = rates_ = 0;
         free_part_ = false;
     }
     void add_power(double c) { powers_.push_back(c); }
-    /// Of a velocity: the powers of the way, which are integrals of its own but for the constant one.
+    /// For a velocity: powers of the way, the integrals of its own powers plus a constant.
     void add_way_power(double c) { way_powers_.push_back(c); }
     /// Im(turning exp(i omega tau))
     void add_sine(double omega, Complex turning) {
@@ -55,19 +55,19 @@ public:
     void add_resonance(const Resonance& resonance) { resonances_.push_back(resonance); }
     /// The velocity of a free motion from this state.
     void add_free(double theta, double velocity) { start_.free = free_.parts(theta, velocity), free_part_ = true; }
-    /// All is there: the walk begins at 0.
+    /// Ends the definition; the walk begins at 0.
     void begin();
 
-    /// Anywhere, to rounding; the walk stays where it is.
+    /// The value at tau, to rounding; does not move the walk.
     Value at(double tau) {
         aside_ = 0;
         asked_ = &other_, asked_place_ = tau;
         return turn(start_, turn_by(tau), other_, tau);
     }
-    /// The same with three derivatives, and then with the others.
+    /// The same with three derivatives; derive() adds the others.
     const Jet& jet(double tau) { return derive(at(tau)); }
     const Jet& further_jet();
-    /// The same by a look ahead of this length: what looks round is in it.
+    /// The same by a look ahead of this length, including its rounding.
     const Jet& jet_ahead(double length) {
         next_place_ = place_ + length;
         there_ = turn(*now_, turn_by(length), *next_, next_place_);
@@ -76,15 +76,15 @@ public:
         return derive(there_);
     }
     [[nodiscard]] bool asked_ahead() const { return asked_ != &other_; }
-    /// Where jet() was asked last, and this little further on: there way() is told.
+    /// Moves the point of way() this far from the last point of jet().
     void step_aside(double further) { aside_ = further; }
-    /// Of a velocity: the way since the beginning, where at() or jet() was asked last.
+    /// For a velocity: the way from the beginning to the last point of at() or jet().
     [[nodiscard]] double way() const;
 
     // The walk.
     [[nodiscard]] double place() const { return place_; }
     [[nodiscard]] const Value& here() const { return here_; }
-    /// Looks ahead by a length of the table, or any length; and goes there.
+    /// look() looks ahead by the length of a level, look_at() to any time; accept_look() moves there.
     static constexpr int levels = 40;
     [[nodiscard]] double length(int level) const { return longest_ * halved[static_cast<std::size_t>(level)]; }
     const Value& look(int level) {
@@ -97,36 +97,37 @@ public:
         next_place_ = tau;
         return there_ = turn(start_, turn_by(tau), *next_, tau);
     }
-    void go() {
+    void accept_look() {
         now_ = next_;
         next_ = next_ == &first_ ? &second_ : &first_;
         place_ = next_place_;
         here_ = there_;
     }
-    /// h^4/384 for the length of a level: the cubic through both ends of a look is no farther off, times max|f''''|.
+    /// h^4/384 for the length of a level: times max|f''''|, it bounds the distance from the cubic through both ends of
+    /// a look.
     [[nodiscard]] double hides(int level) const {
         const double square = length(level) * length(level);
         return square * square * (1.0 / 384);
     }
-    /// What |f''''| does not exceed from here to there.
+    /// A bound of |f''''| from here to `until`.
     [[nodiscard]] double fourth_bound(double until) const {
         const double bound = free_part_ ? sines_fourth_ + free_.fourth_bound(now_->free) : sines_fourth_;
         return may_grow() ? bound + growing_bound(until) : bound;
     }
-    /// Whether that grows with `until`.
+    /// Returns whether that bound grows with `until`.
     [[nodiscard]] bool may_grow() const { return !only_swings_; }
-    /// How much faster than that its next derivatives grow, about.
+    /// An estimate of the rate at which higher derivatives grow.
     [[nodiscard]] double fastest() const {
         if (powers_.size() > jet_order + 1) return too_fast;
         return fastest_;
     }
-    /// What the sixth derivative does not exceed, where the fourth does not exceed `fourth_bound`. Near resonance it
-    /// has the sum of six products of five factors each where the fourth has four of three.
+    /// A bound of the sixth derivative, given one of the fourth. Near resonance it has six products of five factors
+    /// each, the fourth four of three.
     [[nodiscard]] double sixth_bound(double fourth_bound) const {
         if (powers_.size() > 6) return too_fast;
         return fourth_bound * fastest_ * fastest_ * (resonances_.empty() ? 1 : 2);
     }
-    /// The size of the numbers that it is the sum of, from here to there.
+    /// The size of the terms of the sum, from here to `until`.
     [[nodiscard]] double size(double until) const;
 
 private:
@@ -138,24 +139,24 @@ private:
         return parts;
     }();
 
-    /// What each part has become by some time.
+    /// The value of each part at some time.
     struct Moment {
         std::vector<Complex> sines;
         std::vector<double> amounts;
         std::vector<std::array<Complex, 2>> resonances;  // the divided difference, and exp(mu tau)
         FreeParts free{};
     };
-    /// What a time does to each part; to sines, exponentials and resonances in a row of each.
+    /// The factors by which a time step changes each part.
     struct Turn {
         double tau;
         std::size_t row;
         Complex root;
-        double along, moved, kept, bent;  // of the free motion
+        double along, moved, kept, bent;  // coefficients of the free motion
     };
     static constexpr std::uint8_t none = 255;
     static constexpr std::size_t habits = 4;
 
-    /// The next of these frequencies or rates is `rate`.
+    /// Registers the next frequency or rate.
     void place_for(double rate, std::size_t& count, std::vector<double>& rates) {
         if (count == rates.size()) {
             rates.push_back(rate);
@@ -170,7 +171,7 @@ private:
     void make_table();
     std::uint8_t new_turn(double tau);
     void make_turn(double tau, Turn& to);
-    /// A turn from the beginning; the last few are kept, as motions have habits.
+    /// The factors of a step; the last few are cached, as motions repeat their steps.
     const Turn& turn_by(double tau) {
         for (const std::uint8_t slot : kept_) {
             if (slot != none && turns_[slot].tau == tau) return turns_[slot];
@@ -184,7 +185,7 @@ private:
         }
         return turns_[slot];
     }
-    /// Turns every part, and sums up at the new place.
+    /// Advances every part and sums them.
     Value turn(const Moment& from, const Turn& by, Moment& to, double place) const {
         Value y;
         const Complex *factor = sine_rows_.data() + by.row * sines_, *part = from.sines.data();
@@ -216,16 +217,16 @@ private:
     std::vector<double> powers_, way_powers_, omega_, rate_;
     std::vector<Resonance> resonances_;
     bool free_part_ = false;
-    bool turns_free_ = false;  // the turns are made for free motions, too: since the first one
-    bool only_swings_ = true;  // it has no powers, exponentials and resonances
-    bool changed_ = true;      // since the turns were made
+    bool turns_free_ = false;  // whether the tables include free motions
+    bool only_swings_ = true;  // whether it has no powers, exponentials and resonances
+    bool changed_ = true;      // whether frequencies or rates changed since the tables were made
     std::size_t sines_ = 0, rates_ = 0;
     double sines_fourth_ = 0, sines_size_ = 0;
 
     double longest_;
     double fastest_;
     std::vector<Complex> table_mu_;
-    // By the length of each level, made when it is wanted first, and the last others.
+    // Tables by level, made on demand, and the latest other lengths.
     std::array<std::uint8_t, levels> slots_;
     std::array<std::uint8_t, habits> kept_;
     std::vector<Turn> turns_;
@@ -234,12 +235,12 @@ private:
     std::vector<std::array<Complex, 2>> resonance_rows_;
     std::size_t oldest_ = 0;
 
-    Moment start_, first_, second_, other_;  // two for the walk, which take turns, and one for at()
+    Moment start_, first_, second_, other_;  // two alternate for the walk, one for at()
     const Moment* now_ = &start_;
     Moment* next_ = &first_;
-    const Moment* asked_ = &other_;  // of which jet() and way() tell
+    const Moment* asked_ = &other_;  // the point of jet() and way()
     double place_ = 0, next_place_ = 0, asked_place_ = 0;
-    Jet jet_{};  // of asked_, as far as it was asked for
+    Jet jet_{};  // derivatives at asked_, as far as they were computed
     std::size_t jet_size_ = 0;
     double aside_ = 0;
     Value here_, there_;

@@ -7,11 +7,11 @@ namespace dinal::motion::exact {
 
 struct Exact {
     static const MethodText about;
-    /// It takes an M of native terms other than chirp and gaussian, the spring k, no walls, and dry friction that is
-    /// constant each way.
+    /// Supports native terms other than chirp and gaussian, the spring k, no walls, and dry friction that is constant
+    /// in each direction.
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
-    /// Its arcs are short where lines and powers of t meet a damping that makes the motion follow them late.
+    /// Returns whether its arcs are short: lines or powers of t with a damping by which the motion follows them late.
     [[nodiscard]] static bool goes_slowly(const model::Oscillator& system, const model::Excitation& excitation);
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Trajectory run(const Problem& problem) const;

@@ -8,12 +8,12 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// An arc that comes from afar decays to exp of that at most.
+/// The longest arc of a strongly decaying motion, as the exponent of its decay.
 constexpr double decay_of_an_arc = 4;
-/// A creep is looked for over so many natural periods.
+/// The interval over which a creep is detected, in natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
-/// An arc costs so many radians of its parts at most: a fraction of a second, also where each of them is a turn.
-/// Between two questions to the monitor there are so many arcs, or rows.
+/// The greatest cost of an arc in radians of its parts: a fraction of a second of computation. The monitor is called
+/// after so many arcs or rows.
 constexpr double greatest_cost = 1e7;
 constexpr double arcs_between_questions = 16;
 constexpr std::size_t rows_between_questions = 1U << 16U;
@@ -47,11 +47,11 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
 }
 
 model::Outcome ExactEngine::run() {
-    ask_M();
+    update_M();
     bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
         if (cost_ >= cost_between_questions && asked_to_stop(clock_.hi)) {
-            if (standstill_.phase() == Standstill::Phase::arrived) ask();
+            if (standstill_.phase() == Standstill::Phase::arrived) decide();
             break;
         }
         alive = advance();
@@ -67,21 +67,21 @@ bool ExactEngine::asked_to_stop(double t) {
     return true;
 }
 
-/// The formula of M from here on, and its value.
-void ExactEngine::ask_M() {
+/// Updates the formula of M and its value.
+void ExactEngine::update_M() {
     if (clock_.hi >= piece_end_) piece_end_ = std::min(excitation_.next_break(clock_.hi), window_.end);
     model::closed_form(excitation_, clock_.hi, clock_.lo, formula_);
     M_ = formula_.value();
 }
 
 bool ExactEngine::advance() {
-    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!standstill_.stuck()) return move();
     return standstill_.for_good(moment()) ? rest_until_end() : stay();
 }
 
-/// At rest there is nothing to compute but M at the rows, of which there may be many.
+/// Writes the remaining rows at rest, of which there may be many.
 bool ExactEngine::rest_until_end() {
     double until = window_.end;
     for (std::size_t count = 1; rows_.next_time() < window_.end; ++count) {
@@ -101,14 +101,14 @@ bool ExactEngine::rest_until_end() {
 
 void ExactEngine::finish() {
     while (rows_.next_time() < model::never) put_row();
-    if (standstill_.phase() == Standstill::Phase::arrived) ask();
+    if (standstill_.phase() == Standstill::Phase::arrived) decide();
     if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
 // ---- moving
 
-/// A way is known as well as the place where it began, or ended: far from all that acts there that is too little once
-/// the motion has decayed.
+/// Returns whether the motion is far larger than the torques acting on it. The way has the rounding of the initial
+/// angle, which is too coarse once the motion has decayed.
 bool ExactEngine::comes_from_afar() const {
     constexpr double far = 1024;
     const double k = system_.stiffness(), w0 = arc_.free().w0();
@@ -135,20 +135,20 @@ bool ExactEngine::move() {
     std::optional<double> zero;
     if (!standstill_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.never_left(moment()));
+        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.failed_to_leave(moment()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
     if (crept) tau = *zero;
-    // At a zero of the velocity the way is what it is next to it, where at() was asked last.
+    // At a zero of the velocity the way is the one near it, at the last call of at().
     const Arc::Point y = zero ? Arc::Point{arc_.velocity().way(), 0} : arc_.at(tau);
     const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
     if (!std::isfinite(theta.hi) || !std::isfinite(y.velocity)) return fail(model::Outcome::state_not_finite);
     const bool at_break = zero && clock_.after(tau) >= piece_end_;
-    const double M_before = at_break ? formula_.value(tau) : 0;  // from the left
+    const double M_before = at_break ? formula_.value(tau) : 0;  // limit from the left
     if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
     theta_rest_ = theta.lo;
-    if (crept) settle();
+    if (crept) snap_to_equilibrium();
     if (zero && standstill_.creep({clock_.hi, y_.theta, at_break ? M_before : M_})) return true;
     if (zero) {
         standstill_.arrive();
@@ -158,7 +158,7 @@ bool ExactEngine::move() {
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
-/// How the velocity begins from a standstill.
+/// The initial derivatives of the velocity at a standstill.
 WalkedCurve::End ExactEngine::start_from_rest(double start_pull) const {
     const double first = start_pull / system_.inertia();
     return {0, first, (formula_.slope() - system_.damping() * first) / system_.inertia()};
@@ -209,8 +209,8 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     return found->tau;
 }
 
-/// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
-void ExactEngine::settle() {
+/// Puts a mass that has crept within rounding of its equilibrium exactly there: the limit of sticking if Re = Rd.
+void ExactEngine::snap_to_equilibrium() {
     const double torques = std::fabs(M_) + system_.stiffness() * std::fabs(y_.theta) + system_.greatest_holding();
     const double place = (M_ - system_.braking(standstill_.motion())) / system_.stiffness();
     if (!(std::fabs(place - y_.theta) <= 64 * epsilon * torques / system_.stiffness())) return;
@@ -218,10 +218,10 @@ void ExactEngine::settle() {
     theta_rest_ = 0;
 }
 
-/// Without friction nothing happens at a turn, it is only told.
+/// Without friction a turn is only recorded.
 void ExactEngine::record_turns(double start_pull, double length) {
     WalkedCurve& velocity = arc_.velocity();
-    // At its equilibrium a system changes the sign of its velocity by rounding alone.
+    // At equilibrium the velocity changes sign by rounding alone.
     const double k = system_.stiffness();
     const double floor = 2 * epsilon * arc_.free().lasting() * (std::fabs(M_) / k + std::fabs(y_.theta));
     constexpr double nothing = 1e-290;
@@ -234,14 +234,15 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const double third = (formula_.bend() - system_.damping() * second - k * first) / I;
         const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
         if (way == model::Motion::stuck) return;
-        const bool told = standstill_.motion() == model::Motion::stuck || standstill_.last_told() == clock_.hi;
-        if (way != standstill_.motion()) told ? standstill_.head(way) : standstill_.turned(moment());
+        const bool recorded =
+            standstill_.motion() == model::Motion::stuck || standstill_.last_event_time() == clock_.hi;
+        if (way != standstill_.motion()) recorded ? standstill_.set_direction(way) : standstill_.turned(moment());
         if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
     } else if (standstill_.motion() == model::Motion::stuck) {
-        standstill_.head(model::motion_of(y_.velocity));
+        standstill_.set_direction(model::motion_of(y_.velocity));
     }
-    // From turn to turn at once where they keep their habit, else by walking.
-    bool behind = false;  // the walk is where the last turn was, or before it
+    // Tries the previous interval between turns first, otherwise walks.
+    bool behind = false;  // whether the walk is at or before the last turn
     double turn = 0;
     while (velocity.place() < length) {
         exit.set_band(inside(standstill_.motion()));
@@ -265,11 +266,11 @@ void ExactEngine::record_turns(double start_pull, double length) {
             if (!found->crosses) continue;
         }
         turn = found->tau;
-        // At a zero of the velocity the way is what it is next to it.
+        // At a zero of the velocity the way is the one near it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
         standstill_.turned({clock_.after(turn), theta, formula_.value(turn)});
         if (behind && !velocity.asked_ahead()) velocity.look_at(turn);
-        velocity.go();
+        velocity.accept_look();
     }
 }
 
@@ -283,7 +284,7 @@ bool ExactEngine::end_arc(double tau, model::State state, double start_pull) {
     const bool whole = clock_.after(tau) >= piece_end_;
     clock_ = whole ? Clock{piece_end_, 0} : clock_.later(tau);
     y_ = state;
-    ask_M();
+    update_M();
     return outcome_ != model::Outcome::interrupted;
 }
 
@@ -299,8 +300,8 @@ void ExactEngine::keep(double tau, double start_pull, bool standing) {
                 .rests = standing});
 }
 
-/// The rows before the end of the arc; the one at its end belongs to the next. False when M is no number at one of
-/// them. Who stops the run among many rows ends the arc there.
+/// Writes the rows before the end of the arc; one at its end belongs to the next arc. Returns false if M is not finite
+/// at one of them. If the monitor stops the run, the arc ends there.
 bool ExactEngine::rows_until(double& tau, model::State& end, bool standing) {
     for (std::size_t count = 1; rows_.next_time() < model::never; ++count) {
         const double t = rows_.next_time(), since = clock_.until(t);

@@ -1,5 +1,5 @@
-// The exact integrator at work: arc after arc, each in closed form (arc.hpp), up to the first event in it, which is
-// proven to be the first (first_exit.hpp) and where the friction law is asked (standstill.hpp).
+// The exact integrator: arcs in closed form (arc.hpp), each up to its first event. first_exit.hpp proves that it is the
+// first; standstill.hpp decides at velocity zero.
 #pragma once
 
 #include <cmath>
@@ -19,11 +19,11 @@ namespace dinal::motion::exact {
 
 class ExactEngine {
 public:
-    /// `arcs` may be null: then only the rows remain of the motion.
+    /// `arcs` may be null: then only the rows are kept.
     ExactEngine(const Problem& problem, RowWriter& rows, std::vector<model::Event>& events, Arcs* arcs);
 
     model::Outcome run();
-    /// Tells how far it came, and in which state.
+    /// Stores the time and state reached.
     void leave(Trajectory& trajectory) const {
         trajectory.t_stop = clock_.hi;
         trajectory.state_at_stop = y_;
@@ -32,19 +32,20 @@ public:
     }
 
 private:
-    // One arc after the other. What returns false has ended the run.
+    // The following functions return false if they ended the run.
     bool advance();
     [[nodiscard]] bool comes_from_afar() const;
     bool move();
     bool rest_until_end();
     void finish();
     [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
-    /// What the mass does that has come to velocity zero.
-    bool ask() {
-        if (const double theta = standstill_.arrived_at(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
-        return standstill_.ask(moment());
+    /// Lets the friction law decide about a mass at velocity zero.
+    bool decide() {
+        if (const double theta = standstill_.place_at_stop(moment()); theta != y_.theta)
+            y_.theta = theta, theta_rest_ = 0;
+        return standstill_.decide(moment());
     }
-    /// After a word with the standstill, which may have seen enough.
+    /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
     bool asked_to_stop(double t);
     bool fail(model::Outcome outcome) {
@@ -54,7 +55,7 @@ private:
     [[nodiscard]] double pull() const {
         return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(standstill_.motion()));
     }
-    /// M - k theta less the braking of friction, rounded once: near the limit of sticking it is a small difference.
+    /// M - k theta minus the braking of friction, rounded once: near the limit of sticking it is a small difference.
     [[nodiscard]] static double pull_of(double k, double theta, double M, double braking) {
         const double sum = M - braking;
         const double part = sum - M;
@@ -62,18 +63,18 @@ private:
         return std::fma(-k, theta, sum) + rest;
     }
     [[nodiscard]] WalkedCurve::End start_from_rest(double start_pull) const;
-    /// From a standstill, under way: false when it does not get there.
+    /// Moves away from a standstill; returns false if the mass does not start.
     bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
-    /// The first zero of the velocity, or where it has crept to.
+    /// The first zero of the velocity, or the time at which a creep is detected.
     std::optional<double> stop(double start_pull, double length, bool& crept, bool& left);
     void record_turns(double start_pull, double length);
-    void settle();
+    void snap_to_equilibrium();
 
-    // The present moves on: to `tau` after the beginning of the arc, where the state is `state`.
+    // Advances the present to `tau` after the beginning of the arc.
     bool end_arc(double tau, model::State state, double start_pull);
     bool rows_until(double& tau, model::State& end, bool standing);
     void keep(double tau, double start_pull, bool standing);
-    void ask_M();
+    void update_M();
     void put_row() { rows_.put(y_, M_, model::friction_torque(system_, standstill_.motion(), M_, y_)); }
 
     // exact_stuck.cpp: the mass at rest.
@@ -90,10 +91,10 @@ private:
     bool tell_line(double h, double M, model::State end, double start_pull);
     bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
 
-    /// Between two questions to the monitor the arcs cost so much, in radians of their parts; a line is cheap.
+    /// The cost of arcs between two calls of the monitor, in radians of their parts; a line is cheap.
     static constexpr double cost_between_questions = 1e7;
     static constexpr double cost_of_a_line = cost_between_questions / 65536;
-    /// The looks on an arc are as short as its end needs them: by so many e-folds an M that grows does so on one.
+    /// Limits the growth of M on an arc, in e-folds: the end of an arc determines the lengths of all its looks.
     static constexpr double growth_of_an_arc = 4;
 
     model::Lowered system_;
@@ -105,23 +106,23 @@ private:
 
     Clock clock_;
     model::State y_;
-    double theta_rest_ = 0;                   // what theta lacks
-    double M_ = 0;                            // from the right
+    double theta_rest_ = 0;                   // rounding error of theta
+    double M_ = 0;                            // limit from the right
     double piece_end_;                        // the next break of M, or the end of the run
-    double asked_ = 0;                        // for how long the present arc was wanted
-    std::array<Habit, 2> moves_{}, rests_{};  // backward and forward: from one standstill to the next
+    double asked_ = 0;                        // requested length of the present arc
+    std::array<Habit, 2> moves_{}, rests_{};  // backward and forward: intervals between standstills
     Habit swings_;
     Habit* rest_ = rests_.data();
     Creep creep_;
     double creep_hold_;
-    double bound_ = 0;  // of the fourth derivative of its velocity
+    double bound_ = 0;  // bound of the velocity's fourth derivative
     std::optional<double> pull_at_release_ = {};
     Standstill standstill_;
     model::ClosedForm formula_;
     struct Record {
-        const model::Samples* samples = nullptr;  // of what M is, when it is nothing else
+        const model::Samples* samples = nullptr;  // the record if M is nothing else
         double gain = 0, from = 0, to = 0;
-        std::size_t place = 0;  // of the sample where the motion is
+        std::size_t place = 0;  // index of the present sample
         [[nodiscard]] double time(std::size_t ahead) const { return samples->t[place + ahead]; }
         [[nodiscard]] double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
         [[nodiscard]] double length() const { return time(1) - time(0); }
@@ -131,7 +132,7 @@ private:
     Arc arc_;
     LineStep line_;
     WalkedCurve load_;
-    double cost_ = std::numeric_limits<double>::infinity();  // since the monitor was asked last
+    double cost_ = std::numeric_limits<double>::infinity();  // since the last call of the monitor
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

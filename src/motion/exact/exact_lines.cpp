@@ -1,4 +1,4 @@
-// The exact engine along a record of samples: line after line, as long as nothing can happen on them.
+// The exact engine along a record of samples: line after line while no event is possible.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// The record that M is, when it is nothing else.
+/// The record that makes up all of M, or nullptr.
 const model::Component* record_of(const model::Excitation& excitation) {
     const model::Component* record = nullptr;
     for (const model::Component& component : excitation.components()) {
@@ -22,7 +22,7 @@ const model::Component* record_of(const model::Excitation& excitation) {
 }  // namespace
 
 void LineStep::make(double length) {
-    // The Taylor series of the motion, whose coefficients follow from the equation one by one.
+    // The Taylor series of the motion: the equation yields its coefficients one by one.
     constexpr std::size_t order = 16;
     length_ = length;
     for (std::size_t unit = 0; unit < way_.size(); ++unit) {
@@ -50,7 +50,7 @@ void ExactEngine::find_record() {
     record_ = {&samples, component->gain, component->from, component->to};
 }
 
-/// Goes on from sample to sample, as far as it can. False when it did not get anywhere.
+/// Advances from sample to sample as far as possible. Returns false if it did not advance.
 bool ExactEngine::along_lines() {
     using Phase = Standstill::Phase;
     if (record_.samples == nullptr || clock_.lo != 0) return false;
@@ -67,11 +67,11 @@ bool ExactEngine::along_lines() {
     standing ? rest_along(until) : move_along(until);
     if (clock_.hi == began) return false;
     if (standing && arcs_ != nullptr) arcs_->add({.start = {began, 0}, .length = clock_.hi - began, .begin = y_});
-    ask_M();
+    update_M();
     return true;
 }
 
-/// A line does not pass a limit that it does not pass at its ends.
+/// At rest: a line within the limits at both ends is within them throughout.
 void ExactEngine::rest_along(double until) {
     const double k_theta = system_.stiffness() * y_.theta;
     const double rounding = 64 * epsilon * (system_.greatest_holding() + std::fabs(k_theta));
@@ -85,9 +85,9 @@ void ExactEngine::rest_along(double until) {
     }
 }
 
-/// The velocity on a line is not farther from its chord than h^2/8 of its second derivative.
+/// In motion: the velocity deviates from its chord by at most h^2/8 times the bound of its second derivative.
 void ExactEngine::move_along(double until) {
-    // What is rounded off the angle is put back every so many lines: until then that is less than what rounds the pull.
+    // The rounding error of the angle is added every few lines; until then it is below the rounding of the pull.
     constexpr std::size_t lines_between_roundings = 16;
     const model::Motion motion = standstill_.motion();
     const double sign = model::sign_of(motion), braking = system_.braking(motion), k = system_.stiffness();
@@ -122,7 +122,7 @@ void ExactEngine::move_along(double until) {
             if (!tell_line(h, next_M, {end, y.velocity}, pull_of(k, theta, M, braking))) return;
             next_row = rows_.next_time();
         }
-        // The angle is the sum of all ways, and of what that rounds off.
+        // The angle is the sum of all ways and of their rounding errors.
         const double sum = theta + y.way, part = sum - theta;
         rest += (theta - (sum - part)) + (y.way - part);
         theta = sum, velocity = y.velocity, M = next_M;
@@ -132,7 +132,7 @@ void ExactEngine::move_along(double until) {
     stand();
 }
 
-/// The rows on a line in motion, and what is kept of it.
+/// Writes the rows on a line in motion, and stores its arc.
 bool ExactEngine::tell_line(double h, double M, model::State end, double start_pull) {
     asked_ = h;
     if (rows_.next_time() < record_.time(1)) {
@@ -142,7 +142,7 @@ bool ExactEngine::tell_line(double h, double M, model::State end, double start_p
     return end_line(h, M, end, false, start_pull);
 }
 
-/// The rows on it, and what is kept of it. False when the run ends here.
+/// The same for any line. Returns false if the run ends.
 bool ExactEngine::end_line(double h, double M, model::State state, bool standing, double start_pull) {
     double tau = h;
     if (rows_.next_time() < record_.time(1) && !rows_until(tau, state, standing)) {

@@ -1,4 +1,4 @@
-// The exact engine's mass at rest: how long M holds it there, and its breakaway.
+// The exact engine's mass at rest, until breakaway.
 #include <algorithm>
 #include <cmath>
 
@@ -8,12 +8,12 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// M is followed for so many radians of its parts at a time, that what its looks round does not add up.
+/// The greatest cost of a look at M, in radians of its parts; limits the accumulated rounding.
 constexpr double greatest_cost_at_rest = 1e6;
 
 }  // namespace
 
-/// The curve of M from here on.
+/// Makes M a curve from the present on.
 void ExactEngine::make_load() {
     load_.clear();
     for (const double c : formula_.powers()) load_.add_power(c);
@@ -22,7 +22,7 @@ void ExactEngine::make_load() {
     load_.begin();
 }
 
-/// Stuck, up to the first time that |M - k theta| > Re or the end of the piece.
+/// Stays stuck up to the first time with |M - k theta| > Re or the end of the piece.
 bool ExactEngine::stay() {
     const double cost = formula_.fastest() * static_cast<double>(1 + formula_.turning_parts());
     const double length =
@@ -50,12 +50,12 @@ bool ExactEngine::stay() {
     if (!found) found = exit.search(length);
     for (; found; found = exit.search(length)) {
         const model::Motion side = found->side > 0 ? model::Motion::forward : model::Motion::backward;
-        if (clock_.after(found->tau) >= piece_end_) break;  // the next piece's business
+        if (clock_.after(found->tau) >= piece_end_) break;  // left to the next piece
         if (found->crosses) {
             rest_->kept(found->tau);
             return release_at(found->tau, side, true);
         }
-        // It only meets the limit: M itself is asked, to the letter.
+        // M touches the limit within rounding: its exact value decides.
         if (standstill_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
             return release_at(found->tau, side, false);
         }
@@ -65,8 +65,7 @@ bool ExactEngine::stay() {
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
-/// It was let go within rounding of the limit and did not get under way: so it stays until M is clearly beyond the
-/// limit, or clearly below it again.
+/// Stays after a release without motion until M is clearly beyond the limit, or clearly below it.
 bool ExactEngine::stay_held(double length) {
     const double k_theta = system_.stiffness() * y_.theta, torque = std::fma(-system_.stiffness(), y_.theta, M_);
     const model::Motion side = torque > 0 ? model::Motion::forward : model::Motion::backward;
@@ -89,7 +88,7 @@ bool ExactEngine::stay_held(double length) {
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
-/// Breakaway: where M crosses the limit it is at the limit, whatever it is rounded to.
+/// Breaks away. If M crosses the limit, its pull is set to the limit exactly, whatever the rounding of the time.
 bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
     if (!end_arc(tau, y_, 0)) return false;
     if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
@@ -97,7 +96,7 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
         pull_at_release_ = model::sign_of(towards) * standstill_.limit(towards) - system_.braking(towards);
     }
     const bool sane = standstill_.release(moment(), towards);
-    if (standstill_.stuck()) pull_at_release_.reset();  // it crept, and is at rest now
+    if (standstill_.stuck()) pull_at_release_.reset();  // a creep that ended in rest
     return go_on(sane);
 }
 

@@ -7,15 +7,15 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// A motion that decays has smaller bounds later on.
+/// Bounds are refreshed after so many looks: those of a decaying motion shrink.
 constexpr unsigned looks_between_bounds = 8;
-constexpr double hermite = 1.0 / 384;  // of max|f''''| h^4
-/// A zero of the cubic to this part of a look: Newton's method squares it once more, and the curve lies elsewhere
-/// anyway.
+constexpr double hermite = 1.0 / 384;  // factor of max|f''''| h^4 in the error of the cubic
+/// The accuracy of the cubic's zero, as a part of a look: one more step of Newton's method squares it, and the cubic is
+/// only near the curve.
 constexpr double near_enough = 0.01;
-/// What is said to move at once is so many times faster than what creeps.
+/// A motion counts as a departure only if it is this many times faster than a Creep.
 constexpr double slowest_apart = 16;
-constexpr double of_slope = 0.0081;  // sqrt(3)/216, of max|f''''| h^3: what the slope of the cubic may be off by
+constexpr double of_slope = 0.0081;  // sqrt(3)/216, factor of max|f''''| h^3 in the error of the cubic's slope
 
 }  // namespace
 
@@ -25,13 +25,13 @@ inline FirstExit::Hull FirstExit::hull(const WalkedCurve::Value& a, const Walked
             b2 - b1, b3 - b2};
 }
 
-/// A crossing that needs no search.
+/// A crossing known without a search.
 Exit FirstExit::crossing(double tau, int side) {
     curve_.at(tau);
     return {tau, side, true};
 }
 
-/// A look as long as the bound lets it be, seen from where the curve is and where it heads.
+/// Chooses the longest look whose error bound fits the distance from the edges, or the distance it approaches.
 void FirstExit::choose_level(double bound, double rounding) {
     const double away = far_from_edges(rounding), heads = std::fabs(curve_.here().slope) / 12;
     const auto fits = [&](int level) { return bound * curve_.hides(level) <= away + heads * curve_.length(level); };
@@ -39,17 +39,17 @@ void FirstExit::choose_level(double bound, double rounding) {
     while (level_ + 1 < WalkedCurve::levels && !fits(level_)) ++level_;
 }
 
-/// The length of a look that hides no more than that.
+/// The length of a look whose error is within the distance from the edges.
 double FirstExit::farthest_look(double bound, double rounding) const {
     return std::sqrt(std::sqrt(far_from_edges(rounding) / (bound * hermite)));
 }
 
-/// A quarter of how far the curve is from the edges; where it stays at one, of what rounding hides anyway.
+/// A quarter of the distance from the edges; at an edge, of the rounding.
 double FirstExit::far_from_edges(double rounding) const {
     return std::max(std::fabs(margin(curve_.here().f)), rounding) / 4;
 }
 
-/// Whether it stays slower than rounding, also where the looks are shorter than a creep.
+/// Detects a creep if looks are shorter than one: whether the curve stays slower than rounding over the shortest one.
 bool FirstExit::creeps_from_here(double until) {
     const double h = creep_.shortest, from = curve_.place();
     const auto slow = [this](double speed) { return speed <= creep_.fastest; };
@@ -58,20 +58,20 @@ bool FirstExit::creeps_from_here(double until) {
     const double hidden = curve_.fourth_bound(until) * (h * h) * (h * h) * hermite;
     const Hull cubic = hull(here, curve_.look_at(from + h), h);
     if (!slow(std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden)) return false;
-    curve_.go();
+    curve_.accept_look();
     return crept_ = true;
 }
 
-/// Of a look without a table.
-double FirstExit::odd_length(double bound, int level, double left, int finer) const {
-    if (bound == 0) return std::ldexp(left, -finer);  // a polynomial hides nothing
+/// The length of a look outside the table.
+double FirstExit::untabulated_length(double bound, int level, double left, int finer) const {
+    if (bound == 0) return std::ldexp(left, -finer);  // a polynomial of low degree has no error
     constexpr int last = WalkedCurve::levels - 1;
     return std::ldexp(curve_.length(last), last - level);
 }
 
 std::optional<Exit> FirstExit::search(double until) {
     end_ = {};
-    int finer = 0, beyond = 0;  // halvings of the present look, and those of it beyond the table
+    int finer = 0, beyond = 0;  // halvings of the present look, and those beyond the table
     double far = 0;
     double rounding = 0, bound = bound_;
     for (unsigned looks = 0; curve_.place() < until; ++looks) {
@@ -87,13 +87,13 @@ std::optional<Exit> FirstExit::search(double until) {
             far = bound != 0 && level_ == 0 ? std::min(farthest_look(bound, rounding), left) : 0;
             beyond = 0;
         }
-        // What changes slowly is looked at from farther away than the table reaches.
+        // Slow curves allow looks longer than the table's.
         const double h_far = std::ldexp(far, -finer);
         const bool is_far = h_far > curve_.length(0);
         if (is_far) beyond = finer + 1;
         const int level = level_ + finer - beyond;
         const bool tabled = bound != 0 && !is_far && level < WalkedCurve::levels;
-        double h = tabled ? curve_.length(level) : is_far ? h_far : odd_length(bound, level, left, finer);
+        double h = tabled ? curve_.length(level) : is_far ? h_far : untabulated_length(bound, level, left, finer);
         WalkedCurve::Value there;
         if (tabled && h < left) {
             there = curve_.look(level);
@@ -106,17 +106,17 @@ std::optional<Exit> FirstExit::search(double until) {
         if (h >= creep_.shortest) {
             const double speed = std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden;
             if (speed * (creep_.damping + creep_.inertia / h) <= creep_.least) {
-                curve_.go();
+                curve_.accept_look();
                 crept_ = true;
                 return {};
             }
         }
         if (cubic.low - hidden > band_.low + rounding && cubic.high + hidden < band_.high - rounding) {
-            curve_.go();
+            curve_.accept_look();
             finer = 0;
             continue;
         }
-        if (!std::isfinite(cubic.high - cubic.low)) return {};  // where it ends it is no number, which ends the run
+        if (!std::isfinite(cubic.high - cubic.low)) return {};  // not finite: the run ends there
         const int side = there.f < band_.low - rounding ? -1 : there.f > band_.high + rounding ? 1 : 0;
         const double doubt = fourth * of_slope;
         const bool one_way = side < 0 ? cubic.rise() + doubt < 0 : cubic.fall() - doubt > 0;
@@ -127,7 +127,7 @@ std::optional<Exit> FirstExit::search(double until) {
                         true};
         }
         if (hidden + cubic.bend() <= rounding || h <= 4 * epsilon * (from + h) || finer - beyond > 100) {
-            // All of the look is a straight line within rounding.
+            // The whole look is a straight line within rounding.
             if (side != 0) {
                 const double edge = side < 0 ? band_.low : band_.high, off = here.f - edge;
                 const double part = off * side >= 0 ? 0 : off / (off - (there.f - edge));
@@ -137,10 +137,10 @@ std::optional<Exit> FirstExit::search(double until) {
             const double lowest = at_here ? here.f : there.f;
             if (margin(lowest) <= rounding) {
                 const Exit touch{at_here ? from : from + h, lowest - band_.low < band_.high - lowest ? -1 : 1, false};
-                curve_.go();
+                curve_.accept_look();
                 return touch;
             }
-            curve_.go();
+            curve_.accept_look();
             finer = 0;
             continue;
         }
@@ -149,7 +149,7 @@ std::optional<Exit> FirstExit::search(double until) {
     return {};
 }
 
-/// Where the cubic comes to the edge, by Newton's method from the chord.
+/// The crossing of the cubic with the edge, by Newton's method from the chord.
 double FirstExit::cubic_crossing(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h,
                                  double edge) const {
     const double f0 = a.f - edge, f1 = b.f - edge, s0 = a.slope * h, s1 = b.slope * h;
@@ -180,7 +180,7 @@ FirstExit::Zero FirstExit::near(double guess, const WalkedCurve::Jet& y, double 
         end_ = {edge, y[1] + x * (2 * y[2] + x * (3 * y[3])), 2 * y[2] + x * (6 * y[3])};
         return Zero{guess + x, true};
     };
-    // What three derivatives leave out, and the series.
+    // The error of truncation after three derivatives, and of the series.
     double x = a + first, square = a * a;
     if (bound * (square * square) * (1.0 / 24) <= rounding && bent * bent * bent * std::fabs(a * y[1]) <= rounding) {
         return said(x);
@@ -200,7 +200,7 @@ FirstExit::Zero FirstExit::near(double guess, const WalkedCurve::Jet& y, double 
     return said(x);
 }
 
-/// From a guess: by the Taylor polynomial about it, where that is the curve to rounding, else step by step.
+/// Refines a guess: by the Taylor polynomial about it if that is accurate to rounding, otherwise step by step.
 double FirstExit::polish(double from, double to, double guess, double edge, int side, double bound) {
     const Zero zero = near(guess, curve_.jet(guess), edge, bound);
     if (zero.exact && zero.tau >= from && zero.tau <= to) return zero.tau;
@@ -208,10 +208,10 @@ double FirstExit::polish(double from, double to, double guess, double edge, int 
     return step_by_step(from, to, guess, edge, side);
 }
 
-/// Whether the curve is on one side of an edge all over a stretch but for its ends, where it is not on the other side.
-/// From the polynomial of the fifth degree through values, slopes and bends at both ends it is not farther than
-/// max|f^(6)| s^3 (h - s)^3/720, which is nothing at the ends: so the Bernstein coefficients of the sixth degree tell,
-/// of which the doubt is in the middle one.
+/// Returns whether the curve is on one side of an edge on the whole stretch, its ends excepted, where it must not be on
+/// the other side. The curve differs from the quintic through values and two derivatives at both ends by at most
+/// max|f^(6)| s^3 (h - s)^3/720. So the Bernstein coefficients of degree six decide; only the middle one contains the
+/// error.
 bool FirstExit::apart(const WalkedCurve::End& a, const WalkedCurve::End& b, double h, double edge, double side,
                       const Doubt& doubt) {
     const double fifth = side * h * (1.0 / 5), square = side * (h * h) * (1.0 / 20), cube = h * h * h;
@@ -228,7 +228,7 @@ std::optional<Exit> FirstExit::at_once(double from, const WalkedCurve::End& star
     constexpr double off_by_half = 1.5;
     until = std::min(until, from + off_by_half * guess);
     double bound = curve_.may_grow() ? curve_.fourth_bound(until) : bound_;
-    // The walk is near `from`: what decays has not grown there by more than a hair.
+    // The walk is near `from`, where decaying parts are hardly larger.
     if (by == By::a_look) bound = std::min(bound, 1.01 * curve_.fourth_bound(until));
     double tau = from + guess;
     bool high = std::isinf(band_.low);
@@ -263,11 +263,11 @@ void FirstExit::depart(double from, const WalkedCurve::End& start, double until)
         const WalkedCurve::Value there = curve_.look_at(from + h);
         const double third = h * (1.0 / 3), b1 = third * start.slope, b2 = there.f - third * there.slope;
         const double middle = std::isinf(band_.high) ? b1 + b2 : -(b1 + b2);
-        // The cubic's Bernstein coefficients, raised to the fourth degree: what is hidden is nothing at both ends.
+        // The cubic's Bernstein coefficients, raised to degree four: the error vanishes at both ends.
         const double last = std::isinf(band_.high) ? 3 * b2 + there.f : -(3 * b2 + there.f);
         if (middle > bound_ * (h * h) * (h * h) * (1.0 / 72) && last > 0 && margin(there.f) > 0) break;
     }
-    curve_.go();
+    curve_.accept_look();
 }
 
 double FirstExit::step_by_step(double from, double to, double guess, double edge, int side) {
@@ -283,7 +283,7 @@ double FirstExit::step_by_step(double from, double to, double guess, double edge
         }
         const double moved = std::fabs(next - tau);
         tau = next;
-        // A step of true Newton leaves its square.
+        // The error of a Newton step is its square.
         if (moved <= 1e-9 * (to - from)) break;
     }
     return tau;
@@ -307,7 +307,7 @@ bool FirstExit::leave(double first, double second, double third, double until) {
         } else {
             curve_.look_at(s);
         }
-        curve_.go();
+        curve_.accept_look();
         return true;
     }
     return false;

@@ -1,8 +1,8 @@
-// Where a curve first leaves a band, proven: between its looks a bound of the fourth derivative says what they can
-// hide.
+// Finds the first exit of a curve from a band, with proof: a bound of the fourth derivative limits the curve between
+// its looks.
 //
-// On a look of length h the curve is not farther than max|f''''| h^4/384 from the cubic through its values and slopes
-// at both ends, and a cubic is not outside of its Bernstein coefficients.
+// On a look of length h the curve is within max|f''''| h^4/384 of the cubic through values and slopes at both ends, and
+// a cubic is within the hull of its Bernstein coefficients.
 #pragma once
 
 #include <algorithm>
@@ -19,37 +19,36 @@ struct Band {
 };
 
 struct Exit {
-    double tau;    ///< where it crosses, the curve was asked last and tells the way
+    double tau;    ///< at a crossing, way() refers to this point
     int side;      ///< +1 through the high edge, -1 through the low one
-    bool crosses;  ///< else it comes to the edge within rounding, and does not clearly cross it
+    bool crosses;  ///< otherwise it touches the edge within rounding without clearly crossing it
 };
 
-/// Where a motion is slower than rounding: speed (C + I/h) at most `least` torque all over a look of length h, which is
-/// not shorter than `shortest`. None, as it is made.
+/// Detects a motion slower than rounding: speed (C + I/h) is at most `least`, a torque, throughout a look of length h
+/// >= `shortest`. By default detects none.
 struct Creep {
     double damping = 0, inertia = 0, shortest = std::numeric_limits<double>::infinity(), least = 0;
-    double fastest = -1;  ///< the speed over the shortest look
+    double fastest = -1;  ///< greatest speed over the shortest look
 };
 
-/// How long such stretches took before, which is where the end of the next one is tried first. Where that was of no use
-/// it is left alone for a while.
+/// The length of the previous stretch of this kind, tried first as the next end. After failures it pauses for a while.
 class Habit {
 public:
     Habit() = default;
     explicit Habit(double length) : length_(length) {}
-    /// Where to try; 0: nowhere.
+    /// The length to try; 0: none.
     [[nodiscard]] double length() {
         if (waits_ == 0) return length_;
         --waits_;
         return 0;
     }
-    /// What is nearly the same stays the same, so that its turn need not be made again.
+    /// Keeps the length if it is nearly the same, so that cached factors remain usable.
     void kept(double length) {
         constexpr double same = 2e-5;
         if (!(std::fabs(length - length_) <= same * length)) length_ = length;
         missed_ = 0;
     }
-    /// It was tried in vain.
+    /// The attempt failed.
     void missed() {
         constexpr unsigned most = 16;
         waits_ = missed_ = std::min(2 * missed_ + 1, most);
@@ -61,7 +60,7 @@ private:
     unsigned waits_ = 0, missed_ = 0;
 };
 
-/// Whether a curve with such a bound of its fourth derivative can be searched: later bounds are twice as great at most.
+/// Returns whether a curve with this bound can be searched; later bounds may be twice as large.
 inline bool within_range(double fourth_bound) {
     return std::isfinite(4 * fourth_bound);
 }
@@ -69,37 +68,36 @@ inline bool within_range(double fourth_bound) {
 class FirstExit {
 public:
     FirstExit(WalkedCurve& curve, Band band, double floor) : curve_(curve), band_(band), floor_(floor) {}
-    /// The fourth derivative is known not to exceed `bound` from where the curve is.
+    /// Sets a bound of the fourth derivative from the present point on.
     void bounded(double bound) { bound_ = bound; }
 
     /// Watches for a creep.
     void watch(const Creep& creep) { creep_ = creep; }
     [[nodiscard]] bool crept() const { return crept_; }
 
-    /// The first exit from where the walk is up to `until`, to which the walk goes when there is none. A touch is told
-    /// once: after one, the next search goes on behind it.
+    /// The first exit from the present point to `until`; without one, the walk moves to `until`. A touch is reported
+    /// once: the next search starts behind it.
     std::optional<Exit> search(double until);
-    /// Whether the first exit from `from` on, where the curve is `start`, is one near `guess` later: proven from both
-    /// ends. The walk stays where it is: near `from`, when the curve is asked
-    /// by a look from there. Only for a curve of a known bound.
+    /// The first exit after `from`, where the curve is `start`, if it is near `from` + `guess` and proven to be the
+    /// first from both ends. Does not move the walk, which is near `from` for `By::a_look`. Requires a bound.
     enum class By { the_beginning, a_look };
     std::optional<Exit> at_once(double from, const WalkedCurve::End& start, double guess, double until,
                                 By by = By::the_beginning);
-    /// How the curve was where it was found to cross; a slope of 0: nobody asked.
+    /// The curve at the crossing found; slope 0 if it was not evaluated.
     [[nodiscard]] const WalkedCurve::End& end() const { return end_; }
-    /// From a crossing, where the walk is not yet: goes to where the curve is certain to be within.
+    /// Moves the walk from a crossing to a point certainly inside.
     void depart(double from, const WalkedCurve::End& start, double until);
-    /// The curve begins on the edge, and its first derivatives there are `first`, `second`, `third`, inwards positive:
-    /// goes to where it is certain to be within. False when it does not get there.
+    /// Moves to a point certainly inside, from a start on the edge with these derivatives (positive: inwards). Returns
+    /// false if there is none.
     bool leave(double first, double second, double third, double until);
-    /// Without an edge for what follows: the next zero of a curve that swings through it.
+    /// Changes the band, for the next zero of a curve that oscillates.
     void set_band(Band band) { band_ = band; }
 
 private:
     struct Hull {
-        double low, high;   ///< of the cubic
-        double d0, d1, d2;  ///< between its coefficients
-        /// How far they are from a straight line.
+        double low, high;   ///< range of the cubic
+        double d0, d1, d2;  ///< differences of its coefficients
+        /// Their deviation from a straight line.
         [[nodiscard]] double bend() const { return std::max(std::fabs(d1 - d0), std::fabs(d2 - d1)); }
         /// h times the greatest and the least slope of the cubic.
         [[nodiscard]] double rise() const { return 3 * std::max(std::max(d0, d1), d2); }
@@ -110,7 +108,7 @@ private:
                                         double edge) const;
     struct Zero {
         double tau;
-        bool exact;  ///< to rounding
+        bool exact;  ///< whether it is exact to rounding
     };
     Zero near(double guess, const WalkedCurve::Jet& y, double edge, double bound);
     struct Doubt {
@@ -125,7 +123,7 @@ private:
     void choose_level(double bound, double rounding);
     [[nodiscard]] double farthest_look(double bound, double rounding) const;
     [[nodiscard]] double far_from_edges(double rounding) const;
-    [[nodiscard]] double odd_length(double bound, int level, double left, int finer) const;
+    [[nodiscard]] double untabulated_length(double bound, int level, double left, int finer) const;
     [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 
     WalkedCurve& curve_;

@@ -8,7 +8,7 @@
 namespace dinal::motion::exact {
 
 LinearMotion::LinearMotion(const model::Lowered& system) {
-    // Once a run, so as exactly as the machine can: an error of w1 adds up over ten thousand periods.
+    // Computed once for each run in extended precision: an error of w1 accumulates over ten thousand periods.
     using Real = long double;
     const Real I = system.inertia(), k = system.stiffness(), C = system.damping();
     const Real delta = C / (2 * I), square = k / I;
@@ -40,7 +40,7 @@ LinearMotion::LinearMotion(const model::Lowered& system) {
 FreeStep LinearMotion::after(double tau) const {
     const double x = w1_ * tau;
     if (swings_) return step(turned(tau));
-    if (x < 0.5) {  // critical, or nearly: one formula on both sides of it
+    if (x < 0.5) {  // critical or nearly so: one formula for both sides
         const double fade = std::exp(-delta_ * tau);
         const double moved = x == 0 ? fade * tau : fade * tau * (std::sinh(x) / x);
         const double c = fade * (x == 0 ? 1 : std::cosh(x));
@@ -51,7 +51,7 @@ FreeStep LinearMotion::after(double tau) const {
 }
 
 double LinearMotion::turns_after(double velocity, double acceleration) const {
-    // The velocity is fading times velocity cos(w1 tau) + rising sin(w1 tau)/w1, or so with cosh and sinh.
+    // The velocity is fading (velocity cos(w1 tau) + rising sin(w1 tau)/w1), or the same with cosh and sinh.
     const double sign = velocity < 0 ? -1 : 1, speed = sign * velocity;
     const double rising = sign * (acceleration + delta_ * velocity);
     if (swings_) {

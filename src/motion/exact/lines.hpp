@@ -1,4 +1,4 @@
-// The motion under a torque that is a straight line, over a short time: what a record of samples is made of.
+// The motion under a torque that is linear in time, over a short time: one line of a record of samples.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace dinal::motion::exact {
 
-/// I q'' + C q' + k q = pull + slope t, from q = 0: linear in the velocity, the pull and the slope at the beginning.
-/// The factors are those of one length, as records are mostly sampled evenly.
+/// I q'' + C q' + k q = pull + slope t with q(0) = 0: linear in the initial velocity, pull and slope. Caches the
+/// factors of one length, as records are usually sampled evenly.
 class LineStep {
 public:
     LineStep(const model::Lowered& system, const LinearMotion& free)
@@ -20,28 +20,28 @@ public:
           per_w0_(1 / free.w0()),
           longest_(short_of / free.fastest()) {}
 
-    /// How the stretch begins.
+    /// The initial values of the stretch.
     struct Start {
         double velocity, pull, slope;
     };
     struct End {
         double way, velocity;
-        double bend;  ///< what |the second derivative of the velocity| does not exceed on the way
+        double bend;  ///< bound of |the second derivative of the velocity| on the way
     };
-    /// Whether the factors are those of this length, or nearly: times are rounded, and by a part of 1e-9 they are
-    /// turned to what they are without losing a digit.
+    /// Returns whether the factors are those of this length. Times are rounded: differences up to a part of 1e-9 are
+    /// corrected to full accuracy in over().
     [[nodiscard]] bool is_made_for(double length) const {
         constexpr double nearly = 1e-9;
         return std::fabs(length - length_) <= nearly * length_;
     }
-    /// Whether a stretch is short enough for the factors: some tenths of a radian. They are made if they are not.
+    /// Returns whether a stretch is short enough for the factors, some tenths of a radian, and makes them if necessary.
     bool takes(double length) {
         if (is_made_for(length)) return true;
         if (!(length <= longest_)) return false;
         make(length);
         return true;
     }
-    /// Over a stretch that it takes.
+    /// The end of a stretch; requires takes(length).
     [[nodiscard]] End over(double length, const Start& start) const {
         const auto& [v, P, S] = start;
         const double more = length - length_;
@@ -51,7 +51,7 @@ public:
         const double first = (P - damping_ * v) * per_inertia_;
         const double second = (S - damping_ * first - stiffness_ * v) * per_inertia_;
         const double third = (damping_ * second + stiffness_ * first) * per_inertia_;
-        // The second derivative is a free motion, and the energy of that does not grow.
+        // The second derivative is a free motion, whose energy does not grow.
         return {way + more * velocity, velocity + more * (torque * per_inertia_),
                 std::fabs(second) + std::fabs(third) * per_w0_};
     }
@@ -62,7 +62,7 @@ private:
 
     double inertia_, damping_, stiffness_, per_inertia_, per_w0_, longest_;
     double length_ = 0;
-    std::array<double, 3> way_{}, velocity_{};  // for a velocity, a pull and a slope of 1
+    std::array<double, 3> way_{}, velocity_{};  // responses to unit velocity, pull and slope
 };
 
 }  // namespace dinal::motion::exact

@@ -1,4 +1,4 @@
-// The answer to a sine near resonance, told relative to the resonant motion.
+// The response to a sine near resonance, relative to the resonant motion.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@ namespace dinal::motion::exact {
 
 using Complex = std::complex<double>;
 
-/// A product of numbers that are numbers.
+/// The product of finite numbers, without the checks of std::complex.
 inline Complex times(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
@@ -16,27 +16,27 @@ inline Complex times(Complex a, Complex b) {
 inline double imaginary(Complex a, Complex g, Complex b, Complex u) {
     return (a.real() * g.imag() + a.imag() * g.real()) + (b.real() * u.imag() + b.imag() * u.real());
 }
-/// Not less than |z|, and at most half as much again.
+/// An upper bound of |z|, at most 1.42 |z|.
 inline double length_of(Complex z) {
     return std::fabs(z.real()) + std::fabs(z.imag());
 }
 
-/// Near resonance the answer to exp(mu tau) is told by the divided difference (exp(mu tau) - exp(lambda tau)) /
-/// (mu - lambda), which is tau exp(lambda tau) at resonance, instead of by two large numbers that nearly cancel.
+/// Near resonance the response to exp(mu tau) is the divided difference (exp(mu tau) - exp(lambda tau)) / (mu -
+/// lambda), which is tau exp(lambda tau) at resonance, rather than two large numbers that nearly cancel.
 struct Resonance {
     Complex mu, from_root;                          ///< mu - lambda
-    Complex growing, turning;                       ///< the curve has Im(growing g(tau) + turning exp(mu tau))
-    Complex way_growing = 0, way_turning = 0;       ///< and so has the way, of a velocity
-    Complex slope_growing = 0, slope_turning = 0;   ///< and so has its slope
-    double fourth_growing = 0, fourth_turning = 0;  ///< the sizes of what its fourth derivative has
+    Complex growing, turning;                       ///< the curve is Im(growing g(tau) + turning exp(mu tau))
+    Complex way_growing = 0, way_turning = 0;       ///< the same for the way, if the curve is a velocity
+    Complex slope_growing = 0, slope_turning = 0;   ///< the same for the slope
+    double fourth_growing = 0, fourth_turning = 0;  ///< bounds for the fourth derivative
 
-    /// g(tau), from exp(lambda tau).
+    /// g(tau), given exp(lambda tau).
     [[nodiscard]] Complex difference(double tau, Complex root_turned) const {
         const Complex z = from_root * tau;
         const double size = length_of(z);
         if (size == 0) return tau * root_turned;
         if (size < 0.05) {
-            // (exp(z) - 1)/z: the term left out is z^3/24, or z^9/10!.
+            // (exp(z) - 1)/z: the first omitted term is z^3/24, or z^9/10!.
             Complex series = 1;
             for (int n = size < 1e-6 ? 3 : 9; n >= 2; --n) series = 1.0 + times(series, z) / static_cast<double>(n);
             return tau * times(series, root_turned);

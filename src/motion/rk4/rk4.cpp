@@ -11,7 +11,7 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// The steps around a time made again from the checkpoint before, which gives what the run itself went through.
+/// The motion at a time by replaying steps from the checkpoint before; bit for bit the same as in the run.
 class Replay final : public Course {
 public:
     Replay(const Problem& problem, const Rk4& method)
@@ -27,7 +27,7 @@ private:
     Window window_;
 };
 
-/// The next checkpoint must come out to the last bit; it does not when a scripted M has changed its mind since.
+/// Also checks that the next checkpoint is reproduced to the last bit; it is not if a script in M has changed since.
 text::Expected<model::State> Replay::at(double t) const {
     const auto grid = Grid::at({t}).within(window_);
     if (!grid) return grid.error();
@@ -42,7 +42,7 @@ text::Expected<model::State> Replay::at(double t) const {
     while (step > 0 && engine.time(step) > t) --step;
     while (step < engine.steps() && engine.time(step + 1) <= t) ++step;
     const Rk4Checkpoint* next = checkpoints.after(step);
-    // Only to the step's own end when the run broke off before another checkpoint.
+    // If no later checkpoint exists, the replay goes only to the end of the step.
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
     engine.run(checkpoints.before(step), last);
     if (trajectory.size() > 0 && rows.next_row() == 0) {

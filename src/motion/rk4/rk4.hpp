@@ -1,5 +1,5 @@
-// integrator.rk4: classical fourth-order Runge-Kutta, exact about dry friction: sign frozen per piece, step cut at
-// velocity zero and at breaks of M.
+// integrator.rk4: classical fourth-order Runge-Kutta with exact dry friction: the sign is fixed on each piece, and
+// steps are cut at velocity zero and at breaks of M.
 #pragma once
 
 #include "motion/method.hpp"

@@ -1,4 +1,4 @@
-// The careful steps of the Runge-Kutta engine: pieces between events and breaks of M, and what happens at velocity 0.
+// The careful steps of the Runge-Kutta engine: pieces between events and breaks of M, and decisions at velocity 0.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// Where f is greatest in [a, b], by golden sections, as soon as it is positive; f may be any unimodal function.
+/// The maximum of a unimodal f in [a, b] by golden sections, or the first positive value found.
 template <class F>
 std::pair<double, double> positive_peak(F&& f, double a, double b) {
     constexpr double golden = 0.6180339887498949;
@@ -36,7 +36,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
         if (!piece(breaks ? next_break : end, breaks, breaks ? nullptr : known)) return false;
         if (breaks) M_ = excitation_.value_after(t_, y_);
         if (!finite()) return false;
-        // There may be more breaks within a step than anyone would wait for.
+        // A step may contain a huge number of breaks.
         if (breaks && monitor_ && !monitor_(t_)) return fail(model::Outcome::interrupted);
         known = nullptr;
     }
@@ -45,7 +45,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     while (t_ < end) {
-        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
+        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
         if (standstill_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
@@ -75,14 +75,14 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
 
 Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
     if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
-    // Only the whole step has its samples ready; its end serves every piece that reaches it.
+    // Samples exist for the whole step only; its end serves every piece that reaches it.
     const bool whole = known != nullptr && length > full_.h * (1 - 1e-9);
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
     const double M1 = known != nullptr ? known->end : M_at(t_ + length, end, break_at_end, {});
     const double f0 = forcing(M_), f1 = forcing(M1);
     const model::State y =
         whole ? full_(y_, f0, forcing(middle), f1) : AffineStep(system_, length)(y_, f0, forcing(middle), f1);
-    // A middle that is not a number must be seen, also when the step is too short to show it in y.
+    // A middle that is not finite must be noticed, also if the step is too short to change y.
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
 }
 
@@ -92,10 +92,10 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
         return model::State{y_.theta + h * v, y_.velocity + h * a};
     };
     const auto M = [&](double t, const model::State& y) {
-        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_its_way(y) : y);
+        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_side_of_motion(y) : y);
     };
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_its_way(y_)) : M_);
+    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_side_of_motion(y_)) : M_);
     const model::State y2 = along(length / 2, y_.velocity, a0);
     const double a2 = acceleration_at(y2, M(half, y2));
     const model::State y3 = along(length / 2, y2.velocity, a2);
@@ -113,16 +113,16 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
     return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration_at(y1, M1)};
 }
 
-/// The velocity is down to zero a time `zero` into the piece: goes there, and leaves the rest to the friction law.
+/// Moves to velocity zero at the time `zero` into the piece; the friction law decides afterwards.
 bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool break_at_end) {
     if (zero <= 0 || t_ + zero <= t_) {
-        if (y_.velocity != 0) {  // so close to zero that no time passes
+        if (y_.velocity != 0) {  // so near zero that t + zero rounds to t
             y_.velocity = 0;
             M_ = standstill_.M_at_rest(t_, y_.theta, M_);
             if (!standstill_.creep(moment())) standstill_.arrive();
             return finite();
         }
-        if (!standstill_.creep(moment()) && !go_on(standstill_.never_left(moment()))) return false;
+        if (!standstill_.creep(moment()) && !go_on(standstill_.failed_to_leave(moment()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
         standstill_.go_on();
@@ -134,15 +134,15 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     if (!std::isfinite(s.M)) return fail(model::Outcome::excitation_not_finite);
     const double t = at_end ? end : t_ + length;
     rows_until(t, StepInterpolant(length, y_, s.a0, s.y, s.a1));
-    // The velocity that the cubic has left over is of fourth order, and is dropped. A Newton step in time to take it
-    // away was tried and changed no error by more than a twentieth.
+    // The velocity that the cubic leaves is of fourth order and is set to 0. A Newton step in time to remove it changed
+    // no error by more than a twentieth.
     y_ = {s.y.theta, 0};
     t_ = t, M_ = standstill_.M_at_rest(t, y_.theta, s.M);
     if (!standstill_.creep(moment())) standstill_.arrive();
     return finite();
 }
 
-/// Stuck, up to the end of the piece or the first time that |M - k theta| > Re.
+/// Stays stuck up to the end of the piece or the first time with |M - k theta| > Re.
 bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
     model::Motion next = standstill_.pulled(M_, y_.theta);
     if (next == model::Motion::stuck) {
@@ -173,7 +173,7 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
     const double e0 = std::min(excess_of(M_), 0.0), em = excess_of(M_middle), e1 = excess_of(M_end);
     double left = t_, e_left = e0, right = end, e_right = e1;
     if (!(em > 0)) {
-        // A peak between the samples: the parabola through them says whether it can reach the limit.
+        // A peak between the samples: the parabola through them shows whether it can reach the limit.
         const double a = (e0 - 2 * em + e1) / 2, b = (e1 - e0) / 2;
         const bool peak = a < 0 && std::fabs(b) < -2 * a;
         if (peak && em - b * b / (4 * a) - a / 4 > 0) {
@@ -190,17 +190,17 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
     return release;
 }
 
-/// Whether this is a system at its equilibrium, whose velocity changes sign by rounding alone.
+/// Returns whether the mass is at its equilibrium, where the velocity changes sign by rounding alone.
 bool Rk4Engine::lost_in_rounding(const model::State& y, double a) const {
     constexpr double few_ulps = 32 * std::numeric_limits<double>::epsilon();
-    constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
+    constexpr double nothing = 1e-290;  // products of smaller numbers underflow
     return std::fabs(a) <= few_ulps * full_.w * std::fabs(y.theta) ||
            (std::fabs(y.velocity) < nothing && std::fabs(y.theta) < nothing);
 }
 
 void Rk4Engine::record_turns(double t, double h, double direction, const model::State& y0, double a0,
                              const model::State& y1, double a1) {
-    if (!std::isfinite(y1.theta) || !std::isfinite(y1.velocity)) return;  // no events on the way out of the numbers
+    if (!std::isfinite(y1.theta) || !std::isfinite(y1.velocity)) return;  // no events once the state is not finite
     const StepInterpolant motion(h, y0, a0, y1, a1);
     if (direction == 0)
         direction = model::sign_of(model::motion_of(y0.velocity != 0 ? y0.velocity : a0 != 0 ? a0 : y1.velocity));
@@ -212,21 +212,21 @@ void Rk4Engine::record_turns(double t, double h, double direction, const model::
         const auto zero = first_velocity_zero(direction, h - from, y.velocity, a, y1.velocity, a1);
         if (!zero || (*zero <= 0 && y.velocity == 0)) break;
         double x = from + *zero;
-        // The interpolant knows the velocity better than the cubic: a secant step towards its own zero.
+        // The interpolant is more accurate than the cubic: one secant step towards its zero.
         const double e = 1e-4 * h;
         const double slope = (motion(std::min(x + e, h)).velocity - motion(std::max(x - e, 0.0)).velocity) / (2 * e);
         const double better = slope != 0 ? x - motion(x).velocity / slope : x;
         if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
         y = {motion(x).theta, 0};
         a = slope;
-        standstill_.head(model::motion_of(direction));
+        standstill_.set_direction(model::motion_of(direction));
         standstill_.turned({t + x, y.theta, excitation_.value(t + x, y)});
         direction = -direction;
         if (x >= h) break;
         from = x;
     }
-    // Whatever was found, the next step begins with the velocity that this one ended with.
-    standstill_.head(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
+    // The next step begins with the velocity at the end of this one, whatever zeros were found.
+    standstill_.set_direction(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
 }
 
 }  // namespace dinal::motion::rk4

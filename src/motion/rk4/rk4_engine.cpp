@@ -7,7 +7,7 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// How many steps of h cover the window. A remainder within the rounding of the division is none.
+/// The number of steps of h that cover the window; a remainder within the rounding of the division is ignored.
 std::size_t step_count(const Window& window, double h) {
     const double ratio = (window.end - window.start) / h;
     const double whole = std::round(ratio);
@@ -15,10 +15,11 @@ std::size_t step_count(const Window& window, double h) {
     return static_cast<std::size_t>(std::clamp(count, 1.0, 9e18));
 }
 
-/// How soon one standstill follows another at once: every second step, under a feedback that makes a step of it.
-// NOTE: a step too long for its system may have as many honest events, so only short ones are judged by that.
+/// The interval up to which successive standstills count as chatter: two steps under feedback, which can stop the mass
+/// at every second one.
+// NOTE: a step too long for its system may have as many genuine events, so this applies to short steps only.
 double at_once(const Problem& problem, double h) {
-    constexpr double a_piece = 1.0 / 256;  // of a step with more events than anyone can tell
+    constexpr double a_piece = 1.0 / 256;  // part of a step, far below the distance of real events
     const bool is_short = h * h * (problem.system.stiffness() / problem.system.inertia()) < 0.01;
     return problem.drive.M().has_feedback() && is_short ? 2 * h : a_piece * h;
 }
@@ -59,7 +60,7 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             break;
         }
         if (standstill_.for_good(moment())) {
-            rows_standing_until(model::never);  // nothing will ever move it again
+            rows_standing_until(model::never);  // nothing can move it again
             t_ = window_.end;
             break;
         }
@@ -93,7 +94,7 @@ void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
 std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
     if (feedback_) return 0;
     std::size_t count = std::min(block_steps, last_step - n);
-    // The last step of the window may be shorter than h, and its end is t_end to the letter.
+    // The last step may be shorter than h, and ends exactly at t_end.
     if (n + count == steps_) --count;
     const double next_break = excitation_.next_break(t_);
     while (count > 0 && time(n + count) >= next_break) count /= 2;
@@ -103,7 +104,7 @@ std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
     }
     const std::size_t good = excitation_.fill({block_.times.data(), 2 * count}, {block_.samples.data(), 2 * count});
     if (good < 2 * count) {
-        // Up to the bad one; the careful step that follows meets it and ends the run.
+        // Stop before the value that is not finite; the careful step that follows ends the run.
         count = good / 2;
     }
     return count;
@@ -127,11 +128,11 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
     return true;
 }
 
-// The plain loops: from step i of the block at n on, until something happens; the index of that step is returned with
-// the present at its beginning. A step is left to the careful way when the velocity changes sign in it, or dips
-// towards zero and comes back, since then it may have done both.
+// The plain loops advance from step i of the block at n until something happens, and return the index of that step,
+// with the state at its beginning. A step is left to the careful way if the velocity changes sign in it, or dips
+// towards zero and returns, as it may have crossed zero twice.
 
-/// What the samples mean for the present direction of motion; apart from the chain of steps, so that it vectorises.
+/// Prepares the samples for the present direction of motion; separate from the chain of steps, so that it vectorises.
 void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
     const AffineStep full = full_;
     block_.M[i] = M_;
@@ -146,8 +147,8 @@ void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
     block_.velocity[i] = y_.velocity;
 }
 
-/// Steps while the velocity keeps its direction for certain.
-// NOTE: plain local doubles; with a State in the loop g++ 12 carries the motion through memory, at twice the time.
+/// Steps while the velocity certainly keeps its direction.
+// NOTE: plain local doubles; with a State in the loop g++ 12 keeps the motion in memory and takes twice as long.
 std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direction) {
     const AffineStep m = full_;
     double theta = block_.theta[i], velocity = block_.velocity[i];
@@ -179,7 +180,7 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
     while (i < count) {
         i = plain_steps(i, count, model::sign_of(standstill_.motion()));
         if (i == count) break;
-        // The step in which the velocity changes sign is a step like the others, only noted.
+        // A step in which the velocity changes sign is an ordinary step that records a turn.
         const model::State y{block_.theta[i], block_.velocity[i]};
         const model::State y1 = full_(y, block_.push_theta[i], block_.push_velocity[i]);
         const double a = acceleration(block_.forcing[i], y), a1 = acceleration(block_.forcing[i + 1], y1);
@@ -192,7 +193,7 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
     return i;
 }
 
-/// The state at step i becomes the present, and the rows since step `first` are written.
+/// Makes step i the present and writes the rows since step `first`.
 void Rk4Engine::end_block(std::size_t n, std::size_t first, std::size_t i) {
     std::size_t good = i;
     while (good > first && !(std::isfinite(block_.theta[good]) && std::isfinite(block_.velocity[good]))) --good;
@@ -209,7 +210,7 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last && rows_.next_time() < model::never; ++i) {
         const double end = time(n + i + 1);
         if (steps_per_row_ != 0) {
-            // Rows that fall on steps: from row to row without looking at the steps between.
+            // If rows fall on steps, jump from row to row.
             i = std::max(i, rows_.next_row() * steps_per_row_ - n);
             if (i >= last) return;
             rows_.put({block_.theta[i], block_.velocity[i]}, block_.M[i], friction);
@@ -223,8 +224,8 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 }
 
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
-    // Well within the limit, also between the samples: a parabola through three of them rises above the highest by
-    // no more than an eighth of their second difference; a quarter is the careful side.
+    // Well within the limit also between the samples: a parabola through three of them exceeds the highest by at most
+    // an eighth of their second difference; a quarter is safe.
     const double forward = standstill_.limit(model::Motion::forward);
     const double backward = standstill_.limit(model::Motion::backward);
     const double limit = (forward + backward) / 2 * (1 - 1e-9);

@@ -1,6 +1,6 @@
-// Runge-Kutta through dry friction: whole blocks of plain steps while nothing happens, single careful steps where
-// something does. The steps lie on the grid t_start + n h; events and breaks of M cut a step in pieces, and the
-// rows asked for never do, so they do not change the motion.
+// Runge-Kutta through dry friction: blocks of plain steps while nothing happens, single careful steps around events.
+// Steps lie on the grid t_start + n h; events and breaks of M cut a step into pieces. Requested rows never do, so they
+// do not change the motion.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ public:
     Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<model::Event>* events,
               Checkpoints<Rk4Checkpoint>* checkpoints);
 
-    /// From a checkpoint to the end of the given step; by default from the beginning to the end of the window.
+    /// Runs from a checkpoint to the end of the given step; by default the whole window.
     model::Outcome run();
     model::Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
 
@@ -38,7 +38,7 @@ public:
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
     [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, standstill_.mark()}; }
-    /// Tells how far it came, and in which state.
+    /// Stores the time and state reached.
     void leave(Trajectory& trajectory) const {
         trajectory.t_stop = t_;
         trajectory.state_at_stop = y_;
@@ -49,11 +49,11 @@ public:
 
 private:
     static constexpr std::size_t block_steps = 128;
-    /// M in the middle and at the end of a step, when known.
+    /// M in the middle and at the end of a step, if known.
     struct Sampled {
         double middle, end;
     };
-    /// What one smooth step brought.
+    /// The result of one smooth step.
     struct Stepped {
         model::State y;
         double M;       ///< M at its end
@@ -61,7 +61,7 @@ private:
     };
 
     void begin_at(const Rk4Checkpoint& from);
-    /// Fills the samples of the steps n, n + 1, ... that end before the next break; returns for how many.
+    /// Samples the steps n, n + 1, ... that end before the next break; returns their number.
     std::size_t sample_block(std::size_t n, std::size_t last_step);
     bool run_block(std::size_t n, std::size_t count);
     void begin_block(std::size_t i, std::size_t count);
@@ -72,13 +72,14 @@ private:
     void block_rows(std::size_t n, std::size_t first, std::size_t last);
     std::size_t rest(std::size_t n, std::size_t i, std::size_t count);
 
-    // The careful way, for one step or a part of it:
+    // Careful steps, for one step or a part of it:
     bool careful_step(double end, const Sampled* known);
     bool piece(double end, bool break_at_end, const Sampled* known);
     bool stay(double end, bool break_at_end, const Sampled* known);
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
-    /// Asks M at the states that the step tries, or, `beside` a jump at velocity zero, on this side of it.
+    /// The states at which feedback is evaluated: those of the trial step, or, next to a jump at velocity zero, only on
+    /// this side of it.
     enum class Asks { freely, beside };
     [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
     [[nodiscard]] bool lost_in_rounding(const model::State& y, double a) const;
@@ -97,12 +98,12 @@ private:
         }
     }
     [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
-    /// What the mass does that has come to velocity zero.
-    bool ask() {
-        y_.theta = standstill_.arrived_at(moment());
-        return standstill_.ask(moment());
+    /// Lets the friction law decide about a mass at velocity zero.
+    bool decide() {
+        y_.theta = standstill_.place_at_stop(moment());
+        return standstill_.decide(moment());
     }
-    /// After a word with the standstill, which may have seen enough; the motion may be another now.
+    /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) {
         friction_ = system_.braking(standstill_.motion());
         return sane ? finite() : fail(model::Outcome::chattering);
@@ -119,9 +120,9 @@ private:
     [[nodiscard]] double M_at(double t, double end, bool break_at_end, const model::State& y) const {
         return break_at_end && t == end ? excitation_.value_before(t, y) : excitation_.value(t, y);
     }
-    /// F/I for the torque M and the present direction of motion.
+    /// F/I for the torque M in the present direction of motion.
     [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
-    /// theta'' under a torque that depends on the motion: M, given for this state, and a friction's remainder.
+    /// theta'' under a torque that depends on the motion: M at this state, and the remainder of friction.
     [[nodiscard]] double acceleration_at(const model::State& y, double M) const {
         return acceleration(forcing(M - system_.remainder(standstill_.motion(), y)), y);
     }
@@ -147,12 +148,11 @@ private:
     model::State y_;
     double M_ = 0;
     Standstill standstill_;
-    double friction_ = 0;  // the constant torque that brakes the present motion
-    bool failed_ = false;  // M between the steps, at a row, was not finite
+    double friction_ = 0;  // constant friction torque of the present motion
+    bool failed_ = false;  // whether M was not finite at a row between the steps
     model::Outcome outcome_ = model::Outcome::reached_end;
 
-    // M in the middle and at the end of each step of a block, what follows from it for the present motion, and the
-    // states at the steps.
+    // For each step of a block: M in the middle and at the end, the derived forcing, and the state.
     template <std::size_t n>
     using Each = std::array<double, n>;
     struct {

@@ -1,13 +1,13 @@
-// One classical Runge-Kutta step of I theta'' + C theta' + k theta = F(t) as the affine map that it is.
+// One classical Runge-Kutta step of I theta'' + C theta' + k theta = F(t) as an affine map.
 #pragma once
 
 #include "model/lowered.hpp"
 
 namespace dinal::motion::rk4 {
 
-/// For a linear system the four stages collapse: y1 = y0 + (R - 1) y0 + P0 f0 + Pm fm + P1 f1, with f = F/I at the
+/// For a linear system the four stages combine to y1 = y0 + (R - 1) y0 + P0 f0 + Pm fm + P1 f1, with f = F/I at the
 /// beginning, middle and end of the step, R = 1 + Z + Z^2/2 + Z^3/6 + Z^4/24 and Z = h [0 1; -k/I -C/I]
-/// (docs/theory.md). The increment R - 1 is kept, not R: its rounding is smaller by the factor h w0.
+/// (docs/theory.md). R - 1 is stored rather than R: its rounding is smaller by the factor h w0.
 struct AffineStep {
     AffineStep(const model::Lowered& system, double step)
         : h(step), w(system.stiffness() / system.inertia()), c(system.damping() / system.inertia()) {
@@ -29,10 +29,10 @@ struct AffineStep {
         pm = h / 6 * (2 * z1 + zz1 / 2), qm = h / 6 * (4 + 2 * z2 + zz2 / 2);
         q1 = h / 6;
     }
-    /// What the forcing alone adds to theta and to the velocity.
+    /// The contributions of the forcing to theta and to the velocity.
     [[nodiscard]] double push_theta(double f0, double fm) const { return p0 * f0 + pm * fm; }
     [[nodiscard]] double push_velocity(double f0, double fm, double f1) const { return q0 * f0 + qm * fm + q1 * f1; }
-    // NOTE: in this order the chain from step to step is one product and two sums long, and no longer.
+    // NOTE: this order makes the dependency from step to step one product and two sums long.
     [[nodiscard]] model::State operator()(const model::State& y, double push_theta, double push_velocity) const {
         return {(y.theta + push_theta) + (r11 * y.theta + r12 * y.velocity),
                 (y.velocity + push_velocity) + (r21 * y.theta + r22 * y.velocity)};

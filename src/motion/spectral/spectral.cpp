@@ -17,7 +17,7 @@ Resolution Spectral::resolution(const model::Oscillator& system) const {
 }
 
 double Spectral::widest_looks() const {
-    // The looks at both ends of the widest gap must not straddle a pulse.
+    // The samples at both ends of the widest gap must not straddle a pulse.
     constexpr double within = chebyshev::widest_gap * (1 + 1e-9);
     return narrowest / within;
 }

@@ -1,4 +1,4 @@
-// integrator.spectral: Chebyshev panels between events and breaks of M, each solved to rounding whatever M is.
+// integrator.spectral: Chebyshev panels between events and breaks of M, each solved to rounding, for any M.
 #pragma once
 
 #include <algorithm>
@@ -8,15 +8,15 @@
 
 namespace dinal::motion::spectral {
 
-/// No panel is longer than this many natural periods, whatever max_panel says.
+/// The longest panel in natural periods, whatever max_panel is.
 inline constexpr double longest_panel = 0.6;
-/// A block without a spring has no period: for its panels this part of the run stands for that length.
+/// The longest panel as a part of the run for a block without a spring, which has no period.
 inline constexpr double part_of_run = 1.0 / 16;
 
 struct Spectral {
-    double tolerance = 1e-12;                                    ///< of the motion, relative, on each panel
+    double tolerance = 1e-12;                                    ///< relative, for the motion on each panel
     double max_panel = std::numeric_limits<double>::infinity();  ///< longest panel, time units
-    double narrowest = std::numeric_limits<double>::infinity();  ///< no pulse of this width is missed, time units
+    double narrowest = std::numeric_limits<double>::infinity();  ///< pulses of this width are never missed, time units
 
     static const MethodText about;
     /// The longest panel whose samples miss no pulse of the width `narrowest`, time units.

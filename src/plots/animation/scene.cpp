@@ -17,7 +17,7 @@ namespace dinal::plots::animation {
 
 namespace {
 
-/// How far the surface moves from one time to another: Simpson's rule.
+/// The displacement of the surface between two times, by Simpson's rule.
 double way_of(const model::Excitation& belt, double from, double to) {
     return (to - from) / 6 * (belt.value(from) + 4 * belt.value((from + to) / 2) + belt.value(to));
 }
@@ -36,7 +36,7 @@ Interval reach_of(const std::vector<Frame>& frames, const motion::Trajectory& ru
         reach = {std::min(reach.low, theta), std::max(reach.high, theta)};
     };
     for (const Frame& frame : frames) include(frame.t, frame.theta);
-    // Extremes lie between frames: a computed run knows its turns, one from a file has only its rows.
+    // Extremes lie between frames: include the turns, which a computed run knows.
     for (const model::Event& event : run.events) include(event.t, event.theta);
     const auto t = run.find("t"), theta = run.find("theta");
     for (Eigen::Index i = 0; t && theta && i < run.size(); ++i) include(run.rows(i, *t), run.rows(i, *theta));
@@ -87,7 +87,7 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
 
 RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> links) {
     RigScene rig;
-    std::vector<std::size_t> place(bodies.size(), bodies.size());  // where each body comes to stand
+    std::vector<std::size_t> place(bodies.size(), bodies.size());  // the new position of each body
     const auto is_end = [&](std::size_t i) {
         return std::count_if(links.begin(), links.end(),
                              [i](const RigScene::Link& link) { return link.first == i || link.second == i; }) < 2;
@@ -128,7 +128,7 @@ RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> lin
 }
 
 std::vector<Point> spring_corners(int windings) {
-    constexpr double straight = 0.06;  // of the length, at each end
+    constexpr double straight = 0.06;  // straight part at each end, relative to the length
     std::vector<Point> corners{{0, 0}, {straight, 0}};
     for (int i = 0; i < 2 * windings; ++i) {
         corners.push_back({straight + (1 - 2 * straight) * (i + 0.5) / (2 * windings), i % 2 == 0 ? 1.0 : -1.0});
@@ -140,9 +140,9 @@ std::vector<Point> spring_corners(int windings) {
 
 namespace {
 
-constexpr double sheet_width = 480;  // pixels, or more for many bodies
+constexpr double sheet_width = 480;  // pixels; wider for many bodies
 
-/// The box in which theta is drawn over t.
+/// The box of theta over t.
 struct Graph {
     double left, right, top, bottom;
 };
@@ -151,7 +151,7 @@ constexpr double hatch_width = 12;
 constexpr const char* grey_ink = "#444444";
 constexpr const char* stuck_colour = "#D55E00";
 
-/// A sheet, and what moves on it.
+/// An SVG sheet and its moving parts.
 class Sheet {
 protected:
     explicit Sheet(const Scene& clock) : clock_(clock) {}
@@ -183,17 +183,17 @@ protected:
         return list;
     }
 
-    /// animateTransform of that type over all frames.
+    /// Adds animateTransform of this type over all frames.
     template <class Value>
     void add_motion(const char* attribute, const char* type, const Scene& scene, const Value& value) {
-        // What plays no animations, such as a printer, shows the start: the attribute of the element that was begun.
+        // Viewers without animation, such as a printer, show the initial attribute.
         const std::string start = value(scene.frames.front());
         all_.insert(all_.size() - 1, fmt::format(" {}=\"{}({})\"", attribute, type, start));
         add("<animateTransform attributeName=\"{}\" type=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
             attribute, type, clock_.seconds, values(scene, value));
     }
 
-    /// Only where it changes.
+    /// Adds colour changes only where they occur.
     void add_colours(const char* attribute, const Scene& scene, const char* moving) {
         std::string times, colours;
         const auto count = static_cast<double>(scene.frames.size() - 1);
@@ -213,14 +213,14 @@ protected:
             text::html(text::displayable(text)));
     }
 
-    /// A line of so many corners that is drawn anew for each frame: a stretched one would have stretched strokes.
+    /// A polyline redrawn in each frame: scaling would distort its strokes.
     template <class Points>
     void add_line(const std::string& style, const Scene& scene, const Points& points) {
         add("<polyline fill=\"none\" {} points=\"{}\">", style, points(scene.frames.front()));
         add("<animate attributeName=\"points\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
             clock_.seconds, values(scene, points));
     }
-    /// From one place to another, at this height.
+    /// The corners of a spring between two places, at this height.
     [[nodiscard]] static std::string spring_points(double from, double to, double middle, double half) {
         std::string list;
         for (const Point& corner : spring_corners(9)) {
@@ -239,7 +239,7 @@ protected:
         return graph.bottom - scene.at(theta) * (graph.bottom - graph.top);
     }
 
-    /// With the numbers at their ends and their names.
+    /// Axes with their names and the numbers at their ends.
     void add_axes(const Graph& graph) {
         add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph.left,
             graph.top - 4, graph.bottom + 4, graph.right, grey_ink);
@@ -266,7 +266,7 @@ protected:
     std::string all_;
 };
 
-/// One body or several, each in a cell of its own.
+/// One or several bodies, each in its own cell.
 class RigSvg : Sheet {
 public:
     explicit RigSvg(const RigScene& rig)
@@ -306,7 +306,7 @@ private:
         const double all = cell_ * static_cast<double>(rig_.bodies.size());
         return (width_ - all) / 2 + cell_ * (static_cast<double>(i) + 0.5);
     }
-    /// The springs on the left keep some room.
+    /// The travel of a block, with room for the spring on the left.
     [[nodiscard]] double travel() const { return std::max(cell_ - block - 44, 8.0); }
     [[nodiscard]] double shift(double theta) const {
         const Interval& reach = rig_.bodies.front().reach;
@@ -333,7 +333,7 @@ private:
                                        std::pair(body.walls ? body.walls->upper : INFINITY, block / 2)}) {
             if (!std::isfinite(wall)) continue;
             add("<rect x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"12\" fill=\"{}\"/>\n", x_of(i, wall) + at,
-                floor - 12, post, grey_ink);  // the spring goes past it
+                floor - 12, post, grey_ink);  // the spring passes it
         }
         if (!body.spring) return;
         const double anchor = centre(i) - cell_ / 2 + 3;
@@ -354,7 +354,7 @@ private:
         words(centre(i), floor + 24, "middle", rig_.bodies[i].name, colour(i));
     }
 
-    /// Seen from its face, with a mark that goes round.
+    /// A disc with a rotating mark.
     void add_disc(std::size_t i) {
         add("<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{}\" fill=\"{}\">", centre(i), middle, radius, colour(i));
         add_colours("fill", rig_.bodies[i], colour(i));
@@ -368,7 +368,7 @@ private:
         words(centre(i), middle + radius + 16, "middle", rig_.bodies[i].name, colour(i));
     }
 
-    /// Between neighbours straight, past others above them.
+    /// A link: straight between neighbours, otherwise above the bodies between.
     void add_link(const RigScene::Link& link, std::size_t k) {
         const std::size_t left = std::min(link.first, link.second), right = std::max(link.first, link.second);
         const Scene &a = rig_.bodies[left], &b = rig_.bodies[right];
@@ -389,7 +389,7 @@ private:
         direct ? words((centre(left) + centre(right)) / 2, middle - 14, "middle", link.scene.name)
                : words((centre(left) + centre(right)) / 2, above - 2, "middle", link.scene.name);
     }
-    /// Two links between the same bodies would hide each other.
+    /// Returns whether no earlier link connects the same bodies, as it would hide this one.
     [[nodiscard]] bool first_between(std::size_t left, std::size_t k) const {
         return std::none_of(rig_.links.begin(), rig_.links.begin() + static_cast<std::ptrdiff_t>(k),
                             [left](const RigScene::Link& other) {
@@ -462,7 +462,7 @@ private:
     std::vector<std::string_view> cells_;
 };
 
-/// The columns of a line: the spring's anchor, the middle of the mass at both ends of its reach.
+/// Columns: width of the mass, and its centre at both ends of its reach.
 struct Places {
     int mass, first, last;
     [[nodiscard]] double middle(double part) const { return first + part * (last - first); }
@@ -521,7 +521,7 @@ std::vector<std::string> text_frame(const Scene& scene, const Frame& frame, cons
         for (int column = 1; column < left; ++column) lower.put(column, signs.coil[column % 2]);
     }
     if (scene.walls) {
-        // The spring goes past the lower wall.
+        // The spring passes the lower wall.
         const int half = places.mass / 2 + 1;
         if (std::isfinite(scene.walls->lower)) {
             upper.put(nearest_dot(places.middle(scene.at(scene.walls->lower))) - half, signs.wall);
