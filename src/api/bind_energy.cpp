@@ -120,17 +120,28 @@ std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
     return list;
 }
 
-/// energy.load, energy.clutch: pushes the energy of a body or link.
+/// energy.load, energy.clutch: pushes the energy of a body or link. Their names come before those of the columns, as a
+/// link may well be called belt or spring.
 int part_of_energy(lua_State* L) {
-    if (lua_type(L, 2) != LUA_TSTRING) return 0;
-    const auto& energy = lua::self<EnergyHandle>(L, 1, "energy.load");
-    const Run& run = *energy->run;
-    if (!run.of_all()) return 0;
+    const auto* energy = lua::test<EnergyHandle>(L, 1);
+    if (energy == nullptr || !(*energy)->run->of_all()) return 0;
+    const auto& joints = (*energy)->run->system().joints;
+    const auto named =
+        std::find_if(joints.begin(), joints.end(),
+                     [name = std::string_view(lua_tostring(L, 2))](const auto& joint) { return joint.name == name; });
+    if (named == joints.end()) return 0;
     NamedNumbers numbers;
-    const std::size_t joint = joint_named(L, lua_tostring(L, 2), run.system(), "this energy", energy_class);
-    add_balance(numbers, energy->parts[joint].total, true);
+    add_balance(numbers, (*energy)->parts[static_cast<std::size_t>(named - joints.begin())].total, true);
     lua::push_value(L, numbers);
     return 1;
+}
+
+/// Raises the error for a name that is neither a column nor a body or link.
+int no_part_of_energy(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) return 0;
+    const Run& run = *lua::self<EnergyHandle>(L, 1, "energy.load")->run;
+    if (run.of_all()) joint_named(L, lua_tostring(L, 2), run.system(), "this energy", energy_class);
+    return 0;
 }
 
 std::string text_of_rig(const RunEnergy& energy) {
@@ -252,14 +263,15 @@ const lua::Class energy_class = {
     {"run:energy() -> energy",
      "The energy balance of a run: total, half_cycles, and columns as long as run.t. It cannot be changed. For a run of "
      "several bodies they are sums, half_cycles is nil, and each body and link has its own balance, as in "
-     "energy.clutch.dry. run.clutch:energy() has the columns and half cycles of one.",
+     "energy.clutch.dry, before a column of that name. run.clutch:energy() has the columns and half cycles of one.",
      DINAL_ENERGY "print(#energy.half_cycles)  --> 4\n"
                   "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } },\n"
                   "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
                   "print(rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }:energy().clutch.dry)  --> 3.375"},
     energy_members,
-    lua::guarded<part_of_energy>,
-    energy_card};
+    lua::guarded<no_part_of_energy>,
+    energy_card,
+    lua::guarded<part_of_energy>};
 
 #undef DINAL_ENERGY
 

@@ -203,4 +203,14 @@ test("half cycles of a body among several begin and end at its own events, also 
     end
 end)
 
+test("the energy of a link called as a column comes before that column", function()
+    local run = system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { belt = { "motor", "load", Rd = 2 } } }
+        :simulate { velocity0 = { motor = 3 }, t_end = 4 }
+    local energy = run:energy()
+    near(energy.belt.dry, 3.375, 1e-12)
+    equal(energy.total.belt, 0.0)
+    equal(#energy.dry, #run)
+    raises(function() return energy.blt end, "belt")
+end)
+
 finish()
