@@ -16,6 +16,7 @@
 namespace dinal::motion {
 
 struct Problem;
+struct Pair;
 
 /// What people read about a method, and the options that fill it.
 struct MethodText {
@@ -42,6 +43,7 @@ struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
+    const Pair* pair = nullptr;     ///< a step of this one instead of collocation
 };
 
 /// An option struct with its own run. The ranges of its options are in `about`; it may also have

@@ -381,7 +381,7 @@ Engine::Engine(const Request& problem, Run& result)
     longest_ = longest_all_;
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
-    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
+    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step, problem.pair);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
@@ -2968,6 +2968,7 @@ Run run_plain(const Request& problem) {
                        .tolerance = problem.tolerance,
                        .longest = problem.longest,
                        .step = problem.step,
+                       .pair = problem.pair,
                        .keeps_torques = problem.keeps_torques,
                        .history_bytes = problem.history_bytes,
                        .hidden = moving.system.joints.size() - problem.system.joints.size(),
@@ -3016,6 +3017,7 @@ Run run(const Request& problem) {
                         .tolerance = problem.tolerance,
                         .longest = problem.longest,
                         .step = problem.step,
+                        .pair = problem.pair,
                         .keeps_torques = problem.keeps_torques};
     Run result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;

@@ -66,6 +66,7 @@ struct Request {
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
+    const Pair* pair = nullptr;     ///< a step of this one instead of collocation
     bool keeps_torques = false;     ///< beside a dense motion, for its energy
     std::size_t history_bytes = limits.memory / 4;
     std::size_t hidden = 0;         ///< rigid joints behind those of the system, which move bodies
