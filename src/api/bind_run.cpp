@@ -625,7 +625,7 @@ constexpr lua::Member run_members[] = {
     {lua::a_question<RunHandle, energy_of_run>,
      {"run:energy() -> energy",
       "The energy balance: work of M, stored energy, losses; in total, for each half cycle and at the rows; of several "
-      "bodies the sum, and that of each body and link. Only for runs by integrator.exact and integrator.spectral.",
+      "bodies the sum, and that of each body and link. Only for runs by integrator.exact, spectral and dopri5.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {lua::a_question<RunHandle, story_of_run>,

@@ -5,6 +5,7 @@
 
 #include "model/drive.hpp"
 #include "motion/dinal1989/dinal1989.hpp"
+#include "motion/dopri5/dopri5.hpp"
 #include "motion/exact/exact.hpp"
 #include "motion/rk4/rk4.hpp"
 #include "motion/spectral/spectral.hpp"
@@ -13,6 +14,7 @@
 namespace dinal::motion {
 
 using dinal1989::Dinal1989;
+using dopri5::Dopri5;
 using exact::Exact;
 using rk4::Rk4;
 using spectral::Spectral;
@@ -20,6 +22,7 @@ using spectral::Spectral;
 using Integrator = std::variant<Spectral,  //
                                 Exact,     //
                                 Rk4,       //
+                                Dopri5,    //
                                 Dinal1989>;
 
 /// The default integrator: exact if it applies, otherwise spectral, which supports everything.

@@ -16,6 +16,7 @@
 namespace dinal::motion {
 
 struct Problem;
+struct Pair;
 
 /// The documentation of a method, and its options.
 struct MethodText {
@@ -43,6 +44,7 @@ struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< longest stretch, time units
     double step = 0;                ///< step of the classical Runge-Kutta method; 0 means collocation
+    const Pair* pair = nullptr;     ///< embedded Runge-Kutta pair used instead of collocation; null means none
 };
 
 /// An option struct with a run. `about` has the ranges of its options. Optional members:

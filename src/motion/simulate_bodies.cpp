@@ -56,6 +56,7 @@ text::Expected<engine::Run> run_of(const model::System& system, const model::Dri
                         .tolerance = cut.tolerance,
                         .longest = cut.longest,
                         .step = cut.step,
+                        .pair = cut.pair,
                         .keeps_torques = true});
 }
 

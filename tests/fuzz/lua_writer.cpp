@@ -86,12 +86,13 @@ constexpr std::array<std::string_view, 27> excitations{
     "$e:next_break($t)",
     "$e:window($t, $t)",
     "$g"};
-constexpr std::array<std::string_view, 8> integrators{"integrator.rk4{ h = 0.01 }",
+constexpr std::array<std::string_view, 9> integrators{"integrator.rk4{ h = 0.01 }",
                                                       "integrator.rk4{ h = $t }",
                                                       "integrator.dinal1989{ h = 0.01 }",
                                                       "integrator.dinal1989{ h = $t }",
                                                       "integrator.spectral{}",
                                                       "integrator.spectral{ tolerance = $n }",
+                                                      "integrator.dopri5{ tolerance = $n }",
                                                       "nil",
                                                       "$g"};
 constexpr std::array<std::string_view, 11> systems{

@@ -3,7 +3,7 @@
 dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0 }
-local methods = { integrator.spectral {}, integrator.rk4 { h = 0.01 } }
+local methods = { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-11 } }
 
 local function above(t, theta) return theta - 0.1 end
 

@@ -2,7 +2,7 @@
 local asked = {}
 
 asked.sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
-asked.methods = { integrator.spectral {}, integrator.rk4 { h = 0.002 } }
+asked.methods = { integrator.spectral {}, integrator.rk4 { h = 0.002 }, integrator.dopri5 { tolerance = 1e-9 } }
 
 --- Simulates with what `make` makes, by each integrator, and as a run with a state.
 function asked.runs(make, more)

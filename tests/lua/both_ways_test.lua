@@ -223,8 +223,8 @@ local questions = {
     ["energy of the run"] = function(way, kind) return balance(simulated(way, kind)) end,
     ["energy of the body"] = function(way, kind) return balance(way.part(simulated(way, kind))) end,
     integrators = function(way, kind)
-        return each(integrator, "spectral exact rk4", function(all, name)
-            local chosen = all[name] { h = name == "rk4" and 0.01 or nil }
+        return each(integrator, "spectral exact rk4 dopri5", function(all, name)
+            local chosen = all[name] { h = name == "rk4" and 0.01 or nil, tolerance = name == "dopri5" and 1e-9 or nil }
             return rows(way.part(simulated(way, kind, { integrator = chosen })))
         end)
     end,

@@ -17,6 +17,7 @@ for name, integrator in pairs {
     exact = integrator.exact {},
     spectral = integrator.spectral {},
     rk4 = integrator.rk4 { h = 0.001 },
+    dopri5 = integrator.dopri5 { tolerance = 1e-14 },
     dinal1989 = integrator.dinal1989 { h = 0.01 },
 } do
     test("a run that goes on is the run that never ended: " .. name, function()

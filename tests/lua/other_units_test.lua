@@ -60,7 +60,8 @@ local function run_of(change, method, t, angle, torque)
     return system(system_options):simulate(options)
 end
 
-local methods = { usual = function() end, spectral = function() return integrator.spectral {} end, rk4 = function(t) return integrator.rk4 { h = t/64 } end }
+local methods = { usual = function() end, spectral = function() return integrator.spectral {} end, rk4 = function(t) return integrator.rk4 { h = t/64 } end,
+    dopri5 = function() return integrator.dopri5 { tolerance = 1e-6 } end }
 
 for name, change in pairs(cases) do
     test("other units change no bit: " .. name, function()

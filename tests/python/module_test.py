@@ -268,7 +268,7 @@ class Travel(unittest.TestCase):
                            links=dict(l=("a", "b", dict(k=3, Rd=.1))))
         for value in (dinal.system(I=1, k=4, Rd=.3, Re=.4, C=.1, walls=dict(upper=1), spring=dinal.spring.polynomial({3: .1})), rig,
                       dinal.friction.stribeck(Rd=.3, Re=.6, speed=.1), dinal.friction.law(law), dinal.integrator.rk4(h=.01),
-                      dinal.spring.polynomial({3: .5}), dinal.system(I=1, k=1, spring=dinal.lua("function(x) return x^3 end"))):
+                      dinal.integrator.dopri5(tolerance=1e-9), dinal.spring.polynomial({3: .5}), dinal.system(I=1, k=1, spring=dinal.lua("function(x) return x^3 end"))):
             self.both(value)
         again = self.both(rig)
         starts = dict(theta0=dict(a=1, b=0), t_end=5)
@@ -756,6 +756,7 @@ class Help(unittest.TestCase):
         parameters = inspect.signature(simulate).parameters.values()
         self.assertEqual({p.kind for p in parameters}, {inspect.Parameter.KEYWORD_ONLY})
         self.assertEqual(str(inspect.signature(dinal.integrator.rk4)), "(*, h: Number) -> Integrator")
+        self.assertEqual(str(inspect.signature(dinal.integrator.dopri5)), "(*, tolerance: Number) -> Integrator")
         import pydoc
         self.assertIn("moment of inertia", pydoc.render_doc(dinal.system))
         self.assertIn("harmonic", pydoc.render_doc(dinal.excitation))

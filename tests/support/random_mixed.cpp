@@ -391,6 +391,8 @@ std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
         const std::string wrong = fault_in(c, closed, expected, truth, beside, accuracy);
         if (!wrong.empty()) return "by exact: " + wrong;
     }
+    const std::string adaptive = fault_in(c, run_by(motion::Dopri5{1e-12}), expected, truth, beside, 10 * accuracy);
+    if (!adaptive.empty()) return "by dopri5: " + adaptive;
     if (!rk4_too || c.untold || c.remembers || c.corners) return "";
     // (w h)^4/120 over some ten radians at w = 4, plus the cubics between its steps.
     const std::string late = fault_in(c, run_by(motion::Rk4{0.002}), expected, truth, beside, 100 * accuracy);

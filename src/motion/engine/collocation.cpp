@@ -104,11 +104,12 @@ void Collocation::integrate(const Nodes& values, double h, Nodes& sums) {
     for (double& sum : sums) sum *= h;
 }
 
-Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest, double step)
+Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest, double step, const Pair* pair)
     : mechanics_(mechanics),
       tolerance_(tolerance),
       longest_(longest),
       step_length_(step),
+      pair_(pair),
       n_(mechanics.bodies()),
       m_(mechanics.states()),
       fastest_belt_(mechanics.joints()),
@@ -672,15 +673,77 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     return Attempt::shorten;
 }
 
-/// One step for the groups and states. In between, angles are a polynomial that has the angles, velocities and
-/// accelerations of both ends, and states one that has values and rates.
+/// Where the stages of the pair do not lie on nodes, the first inner nodes are lent for them: what depends on the time
+/// alone is there what the polynomial through its samples is. The stretch is resolved only if that tells all of it.
+template <class Rates>
+bool Collocation::find_stages(Segment& s, const Rates& rates, std::vector<double>& change) {
+    const std::span<const Pair::Stage> stages = pair_->stages;
+    std::vector<std::pair<Nodes*, Nodes>> lent{{&s.times, s.times}};
+    for (auto* all : {&s.loads, &s.belts, &offset_, &offset_rate_, &offset_way_}) {
+        for (Nodes& values : *all) lent.emplace_back(&values, values);
+        if (!mechanics_.has_belts()) break;  // which move nothing
+    }
+    for (auto& [values, kept] : lent) {
+        const Series series = cheb::fit(kept);
+        for (std::size_t i = 0; i < stages.size(); ++i) {
+            if (stages[i].at < 1) (*values)[i + 1] = cheb::value(series, 2 * stages[i].at - 1);
+        }
+    }
+    const auto sum_of_stages = [&](const Pair::Weights& weights, std::vector<double>& sum) {
+        sum.assign(change.size(), 0);
+        for (std::size_t i = 0; i < stages_.size(); ++i) {
+            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += 2 * s.h * weights[i] * stages_[i][k];
+        }
+    };
+    stages_.resize(1);
+    bool good = rates(0, change, stages_[0]);
+    for (std::size_t i = 0; i < stages.size() && good; ++i) {
+        sum_of_stages(stages[i].sum, change);
+        stages_.emplace_back();
+        good = rates(stages[i].at < 1 ? i + 1 : node_count - 1, change, stages_.back());
+    }
+    for (auto& [values, kept] : lent) *values = kept;
+    if (good) sum_of_stages(pair_->error, error_), sum_of_stages(pair_->bulge, bulge_);
+    return good;
+}
+
+/// Returns the estimated error of the last step of the pair, in units of what is allowed. A step that is much too long
+/// may go far away, where torques are huge: it is compared with those at its start. Noise of what acts is in the
+/// estimate, and a shorter step would not take it out.
+double Collocation::error_of_step(const Segment& s, const Frame& frame) const {
+    constexpr double of_longest = 4;  // an error of an angle counts like one of a velocity over a radian of the motion
+    const std::size_t groups = frame.groups();
+    double most = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+        double way = 0, velocity = 0, per_torque = 0;
+        for (const auto& [group, by] : frame.bodies[i]) {
+            way += by * error_[group], velocity += by * error_[groups + group];
+            per_torque += s.h * by * by / frame.inertia[group];
+        }
+        const double size = std::max(greatest(s.y[n_ + i]), s.h * std::fabs(s.f[n_ + i][0]));
+        const double acts = size + per_torque * sizes_at_start_[i];
+        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[n_ + i]), most_noise * acts);
+        const double allowed = tolerance_ * size + 64 * rounding * acts + rough + smallest / s.h;
+        most = std::max({most, std::fabs(velocity) / allowed, of_longest / longest_ * std::fabs(way) / allowed});
+    }
+    for (std::size_t k = 0; k < m_; ++k) {
+        const double size = std::max(greatest(s.y[2 * n_ + k]), s.h * std::fabs(s.f[2 * n_ + k][0]));
+        const double acts = size + s.h * fastest_rate_[k];
+        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[2 * n_ + k]), most_noise * acts);
+        const double allowed = tolerance_ * size + 64 * rounding * acts + rough + smallest;
+        most = std::max(most, std::fabs(error_[2 * groups + k]) / allowed);
+    }
+    return most;
+}
+
+/// One step for the groups and states. In between, angles of rk4 are a polynomial that has the angles, velocities and
+/// accelerations of both ends, and all else one that has values and rates, and of a pair its bulge.
 Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, const Frame& frame,
                                               const std::vector<double>& departing) {
     constexpr std::size_t middle = node_count / 2, last = node_count - 1;
     const double h = 2 * s.h;
     const std::size_t groups = frame.groups(), size = 2 * groups + m_;
     unknown_.resize(groups + m_), found_.resize(groups + m_);
-    const std::vector<double> none(size, 0);
     std::vector<double> speeds(groups, 0);  // of the groups, at the start
     for (std::size_t i = 0; i < n_; ++i) {
         const double v = s.y[n_ + i][0] - offset_[i][0], momentum = mechanics_.system().bodies[i].inertia * v;
@@ -691,8 +754,7 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
         if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offset_[i][0]) / shape[0].by;
     }
     /// Of groups the way and the change of velocity, of states the change.
-    const auto rates = [&](std::size_t node, const std::vector<double>& change, const std::vector<double>* asked,
-                           std::vector<double>& out) {
+    const auto put = [&](std::size_t node, const std::vector<double>& change) {
         for (std::size_t i = 0; i < n_; ++i) {
             const Frame::Shape& shape = frame.bodies[i];
             const double first = shape.empty() ? 0 : s.y[n_ + i][0] - offset_[i][0];
@@ -703,7 +765,10 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
                 offset_[i][node] + (first + sum_of_groups(shape, [&](std::size_t g) { return change[groups + g]; }));
         }
         for (std::size_t k = 0; k < m_; ++k) s.y[2 * n_ + k][node] = s.y[2 * n_ + k][0] + change[2 * groups + k];
-        if (!evaluate(s, mode, frame, node, node + 1, asked)) return false;
+    };
+    const auto rates = [&](std::size_t node, const std::vector<double>& change, std::vector<double>& out) {
+        put(node, change);
+        if (!evaluate(s, mode, frame, node, node + 1, node == 0 ? &departing : nullptr)) return false;
         out.resize(size);
         for (std::size_t g = 0; g < groups; ++g) out[g] = speeds[g] + change[groups + g];
         for (std::size_t k = 0; k < groups + m_; ++k) out[groups + k] = found_[k][node];
@@ -714,15 +779,20 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
         for (std::size_t k = 0; k < size; ++k) change[k] = length * slope[k];
         return change;
     };
-    std::vector<double> a, b, c, d, e, z(size);
-    if (!rates(0, none, &departing, a) || !rates(middle, along(h / 2, a), nullptr, b) ||
-        !rates(middle, along(h / 2, b), nullptr, c) || !rates(last, along(h, c), nullptr, d)) {
-        return Attempt::failed;
+    std::vector<double> a, b, c, d, e, z(size, 0);
+    if (pair_ != nullptr) {
+        if (!find_stages(s, rates, z)) return Attempt::failed;
+        a = stages_.front(), e = stages_.back();
+    } else {
+        if (!rates(0, z, a) || !rates(middle, along(h / 2, a), b) || !rates(middle, along(h / 2, b), c) ||
+            !rates(last, along(h, c), d)) {
+            return Attempt::failed;
+        }
+        for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+        if (!rates(last, z, e)) return Attempt::failed;
     }
-    for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
-    if (!rates(last, z, nullptr, e)) return Attempt::failed;
     // In a small part of a step the places differ by rounding, of which no velocity can be made.
-    const bool small = h < 1e-3 * step_length_;
+    const bool quintic = h >= 1e-3 * step_length_ && pair_ == nullptr;
     const auto cubic = [&](std::size_t k, double x) {
         const double v0 = h * a[k], v1 = h * e[k];
         return x * (v0 + x * ((3 * z[k] - 2 * v0 - v1) + x * (v0 + v1 - 2 * z[k])));
@@ -731,14 +801,16 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
     for (std::size_t j = 1; j < last; ++j) {
         const double x = (1 + cheb::nodes[j]) / 2;
         for (std::size_t k = 0; k < size; ++k) change[k] = cubic(k, x);
-        for (std::size_t g = 0; g < groups && !small; ++g) {
+        for (std::size_t k = 0; k < size && pair_ != nullptr; ++k) change[k] += x * x * (1 - x) * (1 - x) * bulge_[k];
+        for (std::size_t g = 0; g < groups && quintic; ++g) {
             const std::size_t v = groups + g;
             const StepInterpolant motion(h, {0, a[g]}, a[v], {z[g], e[g]}, e[v]);
             const model::State between = motion(x * h);
             change[g] = between.theta, change[v] = between.velocity - a[g];
         }
-        if (!rates(j, change, nullptr, d)) return Attempt::failed;
+        put(j, change);
     }
+    if (!evaluate(s, mode, frame, 1, last, nullptr)) return Attempt::failed;
     unknown_ = found_;
     return Attempt::resolved;
 }
@@ -749,7 +821,8 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
     find_sizes_at_start(s, begin);
     const bool stepping = step_length_ > 0;
-    const Attempt attempt = stepping ? runge_kutta(s, mode, frame, departing) : iterate(s, mode, frame, departing);
+    const Attempt attempt =
+        stepping || pair_ != nullptr ? runge_kutta(s, mode, frame, departing) : iterate(s, mode, frame, departing);
     if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
@@ -765,9 +838,16 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     }
     find_holding(s, mode, frame);
     find_limits(s, mode);
+    const double error = pair_ != nullptr ? error_of_step(s, frame) : 0;
+    const std::vector<double> fastest = fastest_rate_;
     judge(s, mode, frame);
     s.proven = !stepping || !mechanics_.has_functions();
     if (stepping) return Attempt::resolved;
+    if (pair_ != nullptr) {
+        unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_->power));
+        growth_ = std::min(growth_, std::pow(error, -1 / pair_->power));
+        if (unresolved_ > 1) fastest_rate_ = fastest;  // not those of a step that went far away
+    }
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     if (unresolved_ <= 1 && !hides_nothing(s, mode)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
@@ -781,7 +861,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
 /// last one are added to those that they equal at the nodes.
 void Collocation::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
     for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
-    const bool integrated = step_length_ == 0 && !mechanics_.has_belts();
+    const bool integrated = step_length_ == 0 && pair_ == nullptr && !mechanics_.has_belts();
     for (std::size_t i = 0; i < n_ && integrated; ++i) {
         auto w = s.rates[n_ + i];
         for (double& c : w) c *= s.h;

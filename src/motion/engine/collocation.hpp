@@ -15,6 +15,7 @@
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
 #include "motion/engine/unseen.hpp"
+#include "motion/pair.hpp"
 
 namespace dinal::motion::engine {
 
@@ -58,8 +59,9 @@ struct Segment : NodeTimes {
 class Collocation {
 public:
     enum class Attempt { resolved, shorten, failed };
-    /// `step`: the classical Runge-Kutta method instead, each stretch one step.
-    Collocation(const Mechanics& mechanics, double tolerance, double longest, double step = 0);
+    /// `step`: the classical Runge-Kutta method instead, each stretch one step. `pair`: a step of this one.
+    Collocation(const Mechanics& mechanics, double tolerance, double longest, double step = 0,
+                const Pair* pair = nullptr);
 
     /// From `start` to `end`, 2 h later. Functions of the motion are asked at `departing` at its beginning. failed:
     /// something is not finite at bad_time().
@@ -143,6 +145,9 @@ private:
     };
     const Factors& newton_matrix(double h, const Frame& frame);
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
+    template <class Rates>
+    bool find_stages(Segment& segment, const Rates& rates, std::vector<double>& change);
+    [[nodiscard]] double error_of_step(const Segment& segment, const Frame& frame) const;
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     void add_turns(const Segment& segment, std::vector<double>& places) const;
@@ -160,6 +165,9 @@ private:
 
     const Mechanics& mechanics_;
     double tolerance_, longest_, step_length_;
+    const Pair* pair_;
+    std::vector<std::vector<double>> stages_;  ///< of the pair: how the groups and states change there
+    std::vector<double> error_, bulge_;        ///< of the last step of the pair
     std::size_t n_, m_;
     bool tells_rests_ = true;  ///< the loads
     double bad_time_ = 0, unresolved_ = 0, growth_ = 1;

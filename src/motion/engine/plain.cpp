@@ -20,6 +20,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
                          .tolerance = cut.tolerance,
                          .longest = cut.longest,
                          .step = cut.step,
+                         .pair = cut.pair,
                          .keeps_torques = true,
                          .history_bytes = problem.course_bytes,
                          .joined_elsewhere = true});

@@ -381,7 +381,7 @@ Engine::Engine(const Request& problem, Run& result)
     longest_ = longest_all_;
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
-    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
+    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step, problem.pair);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);

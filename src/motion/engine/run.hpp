@@ -66,6 +66,7 @@ struct Request {
     double tolerance = 1e-12;
     double longest = model::never;  ///< longest stretch, time units
     double step = 0;                ///< step of the classical Runge-Kutta method; 0 means collocation
+    const Pair* pair = nullptr;     ///< embedded Runge-Kutta pair used instead of collocation; null means none
     bool keeps_torques = false;     ///< whether the dense motion includes torques, for its energy
     std::size_t history_bytes = limits.memory / 4;
     std::size_t hidden = 0;         ///< number of rigid joints behind the system's own, which impose prescribed motions
@@ -83,6 +84,7 @@ struct Request {
                 .tolerance = tolerance,
                 .longest = longest,
                 .step = step,
+                .pair = pair,
                 .keeps_torques = keeps_torques,
                 .history_bytes = history_bytes,
                 .hidden = hidden,
