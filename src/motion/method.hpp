@@ -2,8 +2,10 @@
 // satisfies `Method`, and a row in integrators.hpp.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -16,7 +18,6 @@
 namespace dinal::motion {
 
 struct Problem;
-struct Pair;
 
 /// The documentation of a method, and its options.
 struct MethodText {
@@ -37,6 +38,20 @@ struct Resolution {
 struct OwnRule {
     std::string setting;  ///< a sentence on the settings of the run
     const char* release;  ///< text before the release torque: "the listing released it at"
+};
+
+/// An embedded pair of explicit Runge-Kutta methods with dense output.
+struct Pair {
+    using Weights = std::array<double, 7>;  ///< of the slopes at the stages, by the step
+    struct Stage {
+        double at;  ///< the time as a part of the step
+        Weights sum;
+    };
+    double power;                   ///< the estimated error grows like this power of the step
+    std::span<const Stage> stages;  ///< behind the one at the start; the last one is the end of the step
+    Weights error;                  ///< in the estimate
+    /// Within the step, at its part x, the motion is the cubic of both ends and x^2 (1 - x)^2 times the sum by these.
+    Weights bulge;
 };
 
 /// The division of a run into stretches by the general engine.

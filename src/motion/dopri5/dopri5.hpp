@@ -4,7 +4,6 @@
 
 #include "motion/engine/plain.hpp"
 #include "motion/method.hpp"
-#include "motion/pair.hpp"
 
 namespace dinal::motion::dopri5 {
 

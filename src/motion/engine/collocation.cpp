@@ -678,16 +678,17 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
 template <class Rates>
 bool Collocation::find_stages(Segment& s, const Rates& rates, std::vector<double>& change) {
     const std::span<const Pair::Stage> stages = pair_->stages;
-    std::vector<std::pair<Nodes*, Nodes>> lent{{&s.times, s.times}};
-    for (auto* all : {&s.loads, &s.belts, &offset_, &offset_rate_, &offset_way_}) {
-        for (Nodes& values : *all) lent.emplace_back(&values, values);
-        if (!mechanics_.has_belts()) break;  // which move nothing
-    }
-    for (auto& [values, kept] : lent) {
-        const Series series = cheb::fit(kept);
+    std::vector<std::pair<Nodes*, Nodes>> lent;
+    const auto lend = [&](Nodes& values) {
+        const Series series = cheb::fit(lent.emplace_back(&values, values).second);
         for (std::size_t i = 0; i < stages.size(); ++i) {
-            if (stages[i].at < 1) (*values)[i + 1] = cheb::value(series, 2 * stages[i].at - 1);
+            if (stages[i].at < 1) values[i + 1] = cheb::value(series, 2 * stages[i].at - 1);
         }
+    };
+    lend(s.times);
+    for (auto* all : {&s.loads, &s.belts, &offset_, &offset_rate_, &offset_way_}) {
+        std::for_each(all->begin(), all->end(), lend);
+        if (!mechanics_.has_belts()) break;  // which move nothing
     }
     const auto sum_of_stages = [&](const Pair::Weights& weights, std::vector<double>& sum) {
         sum.assign(change.size(), 0);
@@ -714,25 +715,21 @@ double Collocation::error_of_step(const Segment& s, const Frame& frame) const {
     constexpr double of_longest = 4;  // an error of an angle counts like one of a velocity over a radian of the motion
     const std::size_t groups = frame.groups();
     double most = 0;
+    const auto note = [&](double error, std::size_t k, double acts) {
+        const double size = std::max(greatest(s.y[k]), s.h * std::fabs(s.f[k][0])), all = size + acts;
+        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[k]), most_noise * all);
+        most = std::max(most, error / (tolerance_ * size + 64 * rounding * all + rough + smallest / s.h));
+    };
     for (std::size_t i = 0; i < n_; ++i) {
         double way = 0, velocity = 0, per_torque = 0;
         for (const auto& [group, by] : frame.bodies[i]) {
             way += by * error_[group], velocity += by * error_[groups + group];
             per_torque += s.h * by * by / frame.inertia[group];
         }
-        const double size = std::max(greatest(s.y[n_ + i]), s.h * std::fabs(s.f[n_ + i][0]));
-        const double acts = size + per_torque * sizes_at_start_[i];
-        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[n_ + i]), most_noise * acts);
-        const double allowed = tolerance_ * size + 64 * rounding * acts + rough + smallest / s.h;
-        most = std::max({most, std::fabs(velocity) / allowed, of_longest / longest_ * std::fabs(way) / allowed});
+        note(std::max(std::fabs(velocity), of_longest / longest_ * std::fabs(way)), n_ + i,
+             per_torque * sizes_at_start_[i]);
     }
-    for (std::size_t k = 0; k < m_; ++k) {
-        const double size = std::max(greatest(s.y[2 * n_ + k]), s.h * std::fabs(s.f[2 * n_ + k][0]));
-        const double acts = size + s.h * fastest_rate_[k];
-        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[2 * n_ + k]), most_noise * acts);
-        const double allowed = tolerance_ * size + 64 * rounding * acts + rough + smallest;
-        most = std::max(most, std::fabs(error_[2 * groups + k]) / allowed);
-    }
+    for (std::size_t k = 0; k < m_; ++k) note(std::fabs(error_[2 * groups + k]), 2 * n_ + k, s.h * fastest_rate_[k]);
     return most;
 }
 

@@ -15,7 +15,7 @@
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
 #include "motion/engine/unseen.hpp"
-#include "motion/pair.hpp"
+#include "motion/method.hpp"
 
 namespace dinal::motion::engine {
 
