@@ -19,6 +19,7 @@
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/engine/moving.hpp"
+#include "motion/engine/now.hpp"
 #include "motion/first_below.hpp"
 #include "motion/roughness.hpp"
 #include "motion/witness.hpp"
@@ -102,7 +103,6 @@ private:
     // The loop.
     void begin();
     bool advance();
-    [[nodiscard]] double greatest_of_state() const;
     bool stands_for_good();
     bool rest();
     void choose();
@@ -118,7 +118,6 @@ private:
     bool ask_after_break();
     void foresee_break();
     void go_to(double x);
-    [[nodiscard]] double gap(std::size_t joint, double place) const;
     void keep(double length);
     std::vector<Kept::Acting> acting();
     [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
@@ -134,30 +133,19 @@ private:
     bool box_of(const std::vector<std::size_t>& held, Box& box);
     bool decide_together(std::size_t full);
     void project(Side when);
-    void keep_rigid_places();
     [[nodiscard]] double angle_given(std::size_t body, Side when) const;
     [[nodiscard]] double kinetic_energy() const;
-    void put_child(std::size_t joint, std::size_t child, double weight, double place);
     enum class Loads { asked, sampled };
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {},
               Loads from = Loads::asked);
     std::optional<double> sampled_load(std::size_t body, double x);
-    [[nodiscard]] const std::vector<double>& departing() const;
-    [[nodiscard]] double slip(std::size_t joint) const {
-        return mechanics_.velocity(joint, y_) - mechanics_.belt(joint, now_.hi, side());
-    }
     [[nodiscard]] double excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at,
                                 Motion& towards) const;
     void slide(std::size_t joint, Motion way, bool leaving);
     [[nodiscard]] bool moves_as_one(std::size_t joint, const Frame& frame) const;
     /// The part of a pull that is right whatever states of the user's are wrong by.
     [[nodiscard]] double known() const { return mechanics_.states_of_user() > 0 ? 1 - 3e-12 : 1; }
-    [[nodiscard]] double belt_heading(std::size_t joint) const;
-    [[nodiscard]] BeltSlope belt_slope(std::size_t joint) const { return slopes_[joint]; }
-    [[nodiscard]] bool belt_sets_off(std::size_t joint) const;
     void find_belt_slopes(std::optional<double> x);
-    /// It has dry friction, and is not open.
-    [[nodiscard]] bool rubs(std::size_t joint) const { return mode_.rubs[joint] != 0; }
     [[nodiscard]] bool nothing_presses(std::size_t joint) const;
     bool open_and_close();
     enum class Because { impact, act, belt };
@@ -226,10 +214,8 @@ private:
         outcome_ = outcome;
         return false;
     }
-    [[nodiscard]] Side side() const { return after_break_ ? Side::after : Side::at; }
     /// Nothing that contacts do is an event at the start.
-    [[nodiscard]] bool begun() const { return now_.hi > problem_.window.start || problem_.before != nullptr; }
-    [[nodiscard]] Moment here() const { return {now_.hi, side(), y_}; }
+    [[nodiscard]] bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
     /// Those that were asked for: behind them are the joints that move bodies.
     [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
@@ -248,12 +234,10 @@ private:
     const Frame* frame_ = nullptr;
     std::pair<std::vector<char>, std::vector<int>> frame_of_;  ///< which joints hold, and at which walls
 
-    Clock now_;
-    std::vector<double> y_, low_;         ///< what the angles have rounded off
+    Now now_;
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
-    std::vector<double> rigid_at_;        ///< the angle that a rigid joint keeps
     std::optional<Frame> rigid_;          ///< what moves where nothing but rigid joints hold
-    Mode mode_, entered_, left_;          ///< now, when the decision in progress began, and before a release
+    Mode entered_, left_;                 ///< when the decision in progress began, and before a release
     /// What a decision knows of a joint.
     struct Asked {
         bool asked = false;  ///< it is at slip 0
@@ -274,15 +258,14 @@ private:
     std::vector<char> crept_;                    ///< of each joint: it has come down to rounding, and may creep
     std::map<std::size_t, Event> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
     std::vector<Motion> arrived_;                ///< of each joint: which way it slid until now; stuck: it did not
-    std::vector<int> edge_;          ///< of each joint: the corner that its speed is at, 1 the upper one of its range
-    std::vector<char> at_wall_;      ///< of each joint: it begins at a wall, and leaves it
-    std::vector<char> leaned_;       ///< of each joint: it came to stand at a wall, which was told
-    std::vector<int> normal_half_;   ///< of each joint: the sign of its normal load
-    std::vector<Motion> heading_;    ///< of each body without dry friction
-    std::vector<Watch> watches_;     ///< of the events of the user
-    std::vector<Half> came_from_;    ///< the events of the user that were told last
-    std::vector<BeltSlope> slopes_;  ///< of the belts, now
-    bool after_break_ = false, has_walls_ = false;
+    std::vector<int> edge_;         ///< of each joint: the corner that its speed is at, 1 the upper one of its range
+    std::vector<char> at_wall_;     ///< of each joint: it begins at a wall, and leaves it
+    std::vector<char> leaned_;      ///< of each joint: it came to stand at a wall, which was told
+    std::vector<int> normal_half_;  ///< of each joint: the sign of its normal load
+    std::vector<Motion> heading_;   ///< of each body without dry friction
+    std::vector<Watch> watches_;    ///< of the events of the user
+    std::vector<Half> came_from_;   ///< the events of the user that were told last
+    bool has_walls_ = false;
     bool has_pieces_ = false;             ///< of a function of the motion whose conditions are known
     bool samples_ = false;                ///< another function of the motion, which may jump anywhere
     bool has_jumped_ = true;              ///< all conditions are to be decided anew
@@ -318,7 +301,7 @@ private:
     std::array<std::vector<double>, 5> scratch_;    ///< of look()
     std::array<std::vector<double>, 4> projected_;  ///< of project()
     std::vector<char> seen_, alike_;                ///< of project()
-    mutable std::vector<double> point_, departing_;
+    mutable std::vector<double> point_;
     mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
     mutable double sizes_at_ = -model::never;
 };
@@ -328,38 +311,38 @@ Engine::Engine(const Request& problem, Run& result)
       result_(result),
       asking_{.named = problem.system.named, .told = 2 * problem.system.bodies.size() + problem.drive.states.size()},
       mechanics_(problem.system, problem.drive, asking_),
-      now_{problem.window.start, 0} {
+      now_{.t = {problem.window.start, 0}} {
     const std::size_t joints = mechanics_.joints();
-    y_ = problem.drive.theta0;
-    y_.insert(y_.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
-    for (const model::OwnState& state : problem.drive.states) y_.push_back(state.start);
-    y_.resize(2 * n() + mechanics_.states(), 0);
-    mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
-    low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
-    mode_.presses.assign(joints, 0), mode_.sliders.assign(mechanics_.sliders().size(), Motion::stuck);
-    mode_.rubs = mechanics_.rubbing(), mode_.rigid.assign(joints, 0), rigid_at_.assign(joints, 0);
-    for (std::size_t j = 0; j < joints; ++j) mode_.rigid[j] = problem.system.joints[j].rigid ? 1 : 0;
+    now_.y = problem.drive.theta0;
+    now_.y.insert(now_.y.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
+    for (const model::OwnState& state : problem.drive.states) now_.y.push_back(state.start);
+    now_.y.resize(2 * n() + mechanics_.states(), 0);
+    now_.mode.friction.resize(joints), now_.mode.leans.assign(joints, 0);
+    now_.low.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
+    now_.mode.presses.assign(joints, 0), now_.mode.sliders.assign(mechanics_.sliders().size(), Motion::stuck);
+    now_.mode.rubs = mechanics_.rubbing(), now_.mode.rigid.assign(joints, 0), now_.rigid_at.assign(joints, 0);
+    for (std::size_t j = 0; j < joints; ++j) now_.mode.rigid[j] = problem.system.joints[j].rigid ? 1 : 0;
     arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
     edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
     heading_.assign(n(), Motion::stuck);
     watches_.resize(problem.drive.events.size()), arrivals_.resize(joints);
     if (problem.before != nullptr) {
-        y_ = problem.before->y;
-        if (!problem.before->low.empty()) low_ = problem.before->low;
-        mode_ = problem.before->mode;
-        for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
+        now_.y = problem.before->y;
+        if (!problem.before->low.empty()) now_.low = problem.before->low;
+        now_.mode = problem.before->mode;
+        for (std::size_t j = 0; j < joints; ++j) leaned_[j] = now_.mode.leans[j] != 0 ? 1 : 0;
         for (std::size_t j = 0; j < joints; ++j) mechanics_.loads()[j].remember(problem.before->controllers[j]);
         echoes_ = problem.before->echoes;
         if (!problem.before->watches.empty()) watches_ = problem.before->watches;
         if (!problem.before->heading.empty()) heading_ = problem.before->heading;
     }
-    keep_rigid_places();
+    now_.keep_rigid_places(problem_.system);
     std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
         weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping, .stops = joint.stops});
         has_walls_ |= joint.any_walls() != nullptr;
     }
-    history_ = std::make_shared<History>(std::move(weights), n(), y_, now_.hi,
+    history_ = std::make_shared<History>(std::move(weights), n(), now_.y, now_.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
     mechanics_.for_each_signal([&](const Signal& s) {
         for (const double by : s.delays()) {
@@ -367,12 +350,12 @@ Engine::Engine(const Request& problem, Run& result)
         }
     });
     for (const model::Body& body : problem.system.bodies) inertia_ += body.inertia;
-    mechanics_.for_each_piecewise(now_.hi, [this](Piecewise&) { has_pieces_ = true; });
+    mechanics_.for_each_piecewise(now_.t.hi, [this](Piecewise&) { has_pieces_ = true; });
     samples_ = mechanics_.samples_the_motion();
-    born_ = problem.before ? problem.before->born : now_.hi;
+    born_ = problem.before ? problem.before->born : now_.t.hi;
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
     const double run = problem.window.end - problem.window.start;
-    Mode free = mode_;
+    Mode free = now_.mode;
     for (std::size_t j = 0; j < joints; ++j) free.friction[j].way = Motion::forward, free.leans[j] = 0;
     const double w = mechanics_.fastest(Frame(problem.system, free));
     period_ = w > 0 ? 2 * std::numbers::pi / w : model::never;
@@ -380,7 +363,7 @@ Engine::Engine(const Request& problem, Run& result)
     longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period_ : part_of_run * run);
     longest_ = longest_all_;
     h_ = longest_ / 2;
-    attempts_since_ = now_.hi;
+    attempts_since_ = now_.t.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
@@ -389,17 +372,18 @@ Engine::Engine(const Request& problem, Run& result)
 }
 
 const Frame& Engine::frame() {
-    bool same = frame_ != nullptr && frame_of_.second == mode_.leans;
-    for (std::size_t j = 0; same && j < mechanics_.joints(); ++j) same = mode_.holds(j) == (frame_of_.first[j] != 0);
+    bool same = frame_ != nullptr && frame_of_.second == now_.mode.leans;
+    for (std::size_t j = 0; same && j < mechanics_.joints(); ++j)
+        same = now_.mode.holds(j) == (frame_of_.first[j] != 0);
     if (same) return *frame_;
     frame_of_.first.resize(mechanics_.joints());
-    for (std::size_t j = 0; j < frame_of_.first.size(); ++j) frame_of_.first[j] = mode_.holds(j) ? 1 : 0;
-    frame_of_.second = mode_.leans;
+    for (std::size_t j = 0; j < frame_of_.first.size(); ++j) frame_of_.first[j] = now_.mode.holds(j) ? 1 : 0;
+    frame_of_.second = now_.mode.leans;
     auto found = frames_.find(frame_of_);
     if (found == frames_.end()) {
         constexpr std::size_t most_frames = 512;
         if (frames_.size() >= most_frames) frames_.clear();
-        Frame made(problem_.system, mode_);
+        Frame made(problem_.system, now_.mode);
         const double w = mechanics_.fastest(made);
         const double longest =
             w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * std::numbers::pi / w) : longest_all_;
@@ -412,7 +396,7 @@ const Frame& Engine::frame() {
 
 /// How great the torques at its bodies are, as torques on its angle.
 double Engine::torque_size(std::size_t joint) const {
-    if (sizes_at_ != now_.hi || sizes_.empty()) {
+    if (sizes_at_ != now_.t.hi || sizes_.empty()) {
         sizes_.assign(n(), 0);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const Joint& own = problem_.system.joints[j];
@@ -421,10 +405,10 @@ double Engine::torque_size(std::size_t joint) const {
             if (!segment_.loads.empty() && mechanics_.loads()[j].asks_the_motion()) {
                 load = std::max(load, greatest(segment_.driven[j]));
             }
-            const double size = load + mechanics_.size_of(j, here());
+            const double size = load + mechanics_.size_of(j, now_.here());
             for (const auto& [body, by] : own.of) sizes_[body] += std::fabs(by) * size;
         }
-        sizes_at_ = now_.hi;
+        sizes_at_ = now_.t.hi;
     }
     double size = 0;
     for (const auto& [body, by] : problem_.system.joints[joint].of) size += sizes_[body] / std::fabs(by);
@@ -432,23 +416,6 @@ double Engine::torque_size(std::size_t joint) const {
 }
 
 // ---- decisions
-
-/// The state at which functions that jump at slip 0 are asked: a hair of velocity on the way of what leaves.
-const std::vector<double>& Engine::departing() const {
-    const auto leaves = [this](std::size_t j) { return mode_.friction[j].leaving && mode_.leans[j] == 0; };
-    bool any = false;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) any = any || leaves(j);
-    if (!any) return y_;
-    departing_ = y_;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!leaves(j)) continue;
-        const model::Weight& first = problem_.system.joints[j].of.front();
-        double& v = departing_[n() + first.body];
-        if (v == 0)
-            v = std::copysign(std::numeric_limits<double>::min(), model::sign_of(mode_.friction[j].way) * first.by);
-    }
-    return departing_;
-}
 
 /// Torques, accelerations and what holds, at a moment, which may be at x of the stretch. False when something is not
 /// finite.
@@ -466,7 +433,7 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
         if (x) {
             rates[j] = cheb::value(cheb::fit(segment_.belt_rates[j]), *x);
         } else {
-            const BeltSlope slope = belt_slope(j);
+            const BeltSlope slope = now_.belt_slopes[j];
             rates[j] = slope.rate;
             result.blurred = std::max(result.blurred, inertia_ * slope.doubt);
         }
@@ -537,28 +504,14 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
     return beyond < grace ? std::min(beyond, 0.0) : beyond;
 }
 
-/// The velocity of the belt; where it passes zero, a hair of velocity that way on which it goes.
-double Engine::belt_heading(std::size_t joint) const {
-    const double v = mechanics_.belt(joint, now_.hi, side());
-    if (v != 0 || !mechanics_.has_belt(joint)) return v;
-    const double rate = belt_slope(joint).sure();
-    return rate == 0 ? 0 : std::copysign(std::numeric_limits<double>::min(), rate);
-}
-
-/// Its velocity is 0, or what it has become in the roundings of the time.
-bool Engine::belt_sets_off(std::size_t joint) const {
-    const double v = mechanics_.belt(joint, now_.hi, side());
-    return std::fabs(v) <= 16 * rounding * std::fabs(now_.hi * belt_slope(joint).rate);
-}
-
 /// At x of the last stretch; at a break from the right, where nothing tells them but the belts.
 void Engine::find_belt_slopes(std::optional<double> x) {
-    slopes_.assign(mechanics_.joints(), {0, 0});
-    for (std::size_t j = 0; mechanics_.has_belts() && j < slopes_.size(); ++j) {
+    now_.belt_slopes.assign(mechanics_.joints(), {0, 0});
+    for (std::size_t j = 0; mechanics_.has_belts() && j < now_.belt_slopes.size(); ++j) {
         if (!mechanics_.has_belt(j)) continue;
-        slopes_[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
-                                   solver_->blurred_by_belts(segment_) / inertia_}
-                       : mechanics_.belt_slope(j, towards(now_.hi, side()), belt_stretch * pace_);
+        now_.belt_slopes[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
+                                            solver_->blurred_by_belts(segment_) / inertia_}
+                                : mechanics_.belt_slope(j, towards(now_.t.hi, now_.side()), belt_stretch * pace_);
     }
 }
 
@@ -570,26 +523,26 @@ bool Engine::moves_as_one(std::size_t joint, const Frame& frame) const {
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;
-        frame.offsets(of_joints, mode_, offsets);
+        frame.offsets(of_joints, now_.mode, offsets);
         double size = 0;
         for (const auto& [body, by] : own.of) size += std::fabs(by * offsets[body]);
         return std::fabs(own.sum(offsets) - of_joints[joint]) <= nearly * size;
     };
     std::vector<double> belts(mechanics_.joints()), rates(mechanics_.joints());
     for (std::size_t j = 0; j < belts.size(); ++j) {
-        belts[j] = mechanics_.belt(j, now_.hi, side()), rates[j] = belt_slope(j).rate;
+        belts[j] = mechanics_.belt(j, now_.t.hi, now_.side()), rates[j] = now_.belt_slopes[j].rate;
     }
     constexpr double of_slopes = 1e-6;  // which are differences
     return alike(belts, 64 * rounding) && alike(rates, of_slopes);
 }
 
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
-    Slipping& how = mode_.friction[joint];
+    Slipping& how = now_.mode.friction[joint];
     how.way = way, how.leaving = leaving, how.riding = false, how.creeps = Motion::stuck;
     edge_[joint] = 0;
     const model::Friction& law = problem_.system.joints[joint].friction.law;
     if (law.ranges() > 0) {
-        const double speed = leaving ? 0 : std::max(0.0, model::sign_of(way) * slip(joint));
+        const double speed = leaving ? 0 : std::max(0.0, model::sign_of(way) * now_.slip(mechanics_, joint));
         how.range = mechanics_.range_of(joint, speed);
         if (speed > 0 && law.range(how.range).from == speed) edge_[joint] = -1;
     }
@@ -603,16 +556,16 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     const std::size_t joints = mechanics_.joints();
     asked_.assign(joints, {});
     for (std::size_t j = 0; j < joints; ++j) {
-        asked_[j].leant = mode_.leans[j];
-        if (!rubs(j)) continue;
-        Slipping& how = mode_.friction[j];
-        if (mode_.leans[j] != 0 && how.leaving) continue;
-        if (const double heading = belt_heading(j); mode_.leans[j] != 0 && heading != 0) {
+        asked_[j].leant = now_.mode.leans[j];
+        if (!now_.rubs(j)) continue;
+        Slipping& how = now_.mode.friction[j];
+        if (now_.mode.leans[j] != 0 && how.leaving) continue;
+        if (const double heading = now_.belt_heading(mechanics_, j); now_.mode.leans[j] != 0 && heading != 0) {
             const Motion way = model::motion_of(-heading);
             if (how.way != way) slide(j, way, false);
             continue;
         }
-        if (mode_.leans[j] != 0) {  // wall and friction hold it together
+        if (now_.mode.leans[j] != 0) {  // wall and friction hold it together
             how.way = Motion::stuck, how.riding = false;
             arrived_[j] = Motion::stuck;
             continue;
@@ -626,14 +579,14 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
                      .let_go = released && how.leaving && !how.riding && !arrived ? how.way : Motion::stuck};
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
-    entered_ = mode_;
+    entered_ = now_.mode;
     const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
     if (free && frame().edges.empty()) return true;
-    project(side());
+    project(now_.side());
     const bool loops = !frame().closing.empty();
     // One after the other comes to its limit now, or can not go: no sharing holds any longer.
-    const bool all_used = loops && last_full_at_ == now_.hi;
-    if (loops && released) last_full_at_ = now_.hi, last_full_ = released->which;
+    const bool all_used = loops && last_full_at_ == now_.t.hi;
+    if (loops && released) last_full_at_ = now_.t.hi, last_full_ = released->which;
     const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
     if (loops && !all_used && !share_loops(released)) return false;
     for (std::size_t j = 0; j < joints && told; ++j) {
@@ -641,7 +594,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     }
     Look& found = decided_;
     // What was released is so between two doubles of the time.
-    const double late = std::fabs(now_.hi);
+    const double late = std::fabs(now_.t.hi);
     const double between =
         released ? lost_in_time(cheb::fit(segment_.holding[released->which]), late, segment_.h, model::never) : 0;
     const int most = 8 * static_cast<int>(joints) + 16;
@@ -653,23 +606,24 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         const Frame& present = frame();
         bool grown = false;
         for (std::size_t j = 0; j < joints; ++j) {
-            Slipping& how = mode_.friction[j];
+            Slipping& how = now_.mode.friction[j];
             const bool together = moves_as_one(j, present);
             if (how.riding && !together) slide(j, how.way, true);
             // What others hold together stands at slip 0 with them.
-            const bool slides = rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
+            const bool slides = now_.rubs(j) && how.way != Motion::stuck && !how.riding && now_.mode.leans[j] == 0;
             if (slides && together && how.leaving) how.riding = true, how.leaving = false;
-            if (!slides || !together || how.riding || mechanics_.belt(j, now_.hi, side()) != 0) continue;
+            if (!slides || !together || how.riding || mechanics_.belt(j, now_.t.hi, now_.side()) != 0) continue;
             asked_[j].slid = how.way, asked_[j].asked = true, grown = true;
             how.way = Motion::stuck;
         }
         if (grown) {
-            project(side());
+            project(now_.side());
             continue;
         }
-        if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+        if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, present, found))
+            return fail(Outcome::excitation_not_finite);
         for (std::size_t j = 0; j < joints; ++j) {
-            if (crept_[j] != 0 && asked_[j].slid != Motion::stuck && mode_.holds(j))
+            if (crept_[j] != 0 && asked_[j].slid != Motion::stuck && now_.mode.holds(j))
                 creep(j, asked_[j].slid, -found.holding[j]);
         }
         constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
@@ -677,9 +631,9 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         double most_beyond = 0;
         Motion way = Motion::stuck;
         for (std::size_t j = 0; j < joints; ++j) {
-            if (!mode_.holds(j)) continue;
+            if (!now_.mode.holds(j)) continue;
             Motion towards = Motion::stuck;
-            const double beyond = excess(j, found, mode_, here(), towards);
+            const double beyond = excess(j, found, now_.mode, now_.here(), towards);
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
             const bool own = released && released->which == j;
@@ -690,47 +644,47 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
                 continue;
             }
             if (!(beyond > size)) continue;
-            const double part = beyond / (mechanics_.size_of(j, here()) + std::numeric_limits<double>::min());
+            const double part = beyond / (mechanics_.size_of(j, now_.here()) + std::numeric_limits<double>::min());
             if (worst == joints || part > most_beyond) worst = j, most_beyond = part, way = towards;
         }
         if (worst < joints) {
             if (released && released->which == worst) released.reset();
             asked_[worst].pull = -found.holding[worst];
             asked_[worst].let_go = Motion::stuck;
-            if (Slipping& how = mode_.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
+            if (Slipping& how = now_.mode.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
                 how.creeps = Motion::stuck;
                 if (told) tell(EventKind::stick, static_cast<int>(worst));
                 continue;
             }
-            if (mode_.friction[worst].creeps != Motion::stuck) asked_[worst].was_held = false;
-            if (mode_.leans[worst] != 0) {
-                mode_.leans[worst] = 0, at_wall_[worst] = 1;
-                const Motion slides = mode_.friction[worst].way;
-                if (rubs(worst) && slides == Motion::stuck) {
+            if (now_.mode.friction[worst].creeps != Motion::stuck) asked_[worst].was_held = false;
+            if (now_.mode.leans[worst] != 0) {
+                now_.mode.leans[worst] = 0, at_wall_[worst] = 1;
+                const Motion slides = now_.mode.friction[worst].way;
+                if (now_.rubs(worst) && slides == Motion::stuck) {
                     slide(worst, way, true);
-                } else if (rubs(worst) && belt_sets_off(worst)) {
-                    mode_.friction[worst].way = Motion::stuck;  // it may go with the belt
+                } else if (now_.rubs(worst) && now_.belt_sets_off(mechanics_, worst)) {
+                    now_.mode.friction[worst].way = Motion::stuck;  // it may go with the belt
                 }
             } else {
                 slide(worst, way, true);
                 // In a loop others may hold on, while this one gives all that it can.
                 if (moves_as_one(worst, frame())) {
-                    mode_.friction[worst].riding = true, mode_.friction[worst].leaving = false;
+                    now_.mode.friction[worst].riding = true, now_.mode.friction[worst].leaving = false;
                 }
             }
             continue;
         }
         bool changed = false, goes_round = false;
         for (std::size_t j = 0; j < joints && !changed; ++j) {
-            Slipping& how = mode_.friction[j];
-            const bool lifted = asked_[j].leant != 0 && mode_.leans[j] == 0;
+            Slipping& how = now_.mode.friction[j];
+            const bool lifted = asked_[j].leant != 0 && now_.mode.leans[j] == 0;
             if (!how.leaving && !lifted) continue;
             const Joint& joint = problem_.system.joints[j];
             double rate = joint.sum(found.accelerations);
             const double I = problem_.system.bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
             const double nothing = 64 * rounding * torque_size(j) + between;
             goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
-            if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
+            if (mechanics_.has_belt(j)) rate -= now_.belt_slopes[j].rate;
             if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
             if (asked_[j].taken_back) {
                 goes_round = true;
@@ -744,16 +698,16 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (goes_round && !decide_together(full)) return false;
         break;
     }
-    project(side());
+    project(now_.side());
     for (std::size_t j = 0; j < joints; ++j) {
-        if (asked_[j].leant != 0 || mode_.leans[j] != 0) {
-            if (told && leaned_[j] != 0 && mode_.leans[j] == 0) tell(EventKind::slip, static_cast<int>(j));
-            if (mode_.leans[j] == 0) leaned_[j] = 0;
+        if (asked_[j].leant != 0 || now_.mode.leans[j] != 0) {
+            if (told && leaned_[j] != 0 && now_.mode.leans[j] == 0) tell(EventKind::slip, static_cast<int>(j));
+            if (now_.mode.leans[j] == 0) leaned_[j] = 0;
             arrived_[j] = Motion::stuck;
             continue;
         }
         if (!asked_[j].asked) continue;
-        const Slipping& how = mode_.friction[j];
+        const Slipping& how = now_.mode.friction[j];
         const bool slides = how.way != Motion::stuck && !how.riding;
         crept_[j] = 0;
         if (how.creeps != Motion::stuck) {
@@ -781,19 +735,19 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
 void Engine::settle_at_limit(std::size_t joint) {
     const Joint& own = problem_.system.joints[joint];
     const double before = std::exchange(size_at_stop_, torque_size(joint));
-    const bool alone = n() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && mode_.leans[joint] == 0;
+    const bool alone = n() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && now_.mode.leans[joint] == 0;
     if (!alone || own.stiffness == 0) return;
-    if (!look({now_.hi, side(), departing()}, mode_, frame(), decided_)) return;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), decided_)) return;
     constexpr double roundings = 1024 * rounding;
     Motion towards = Motion::stuck;
-    const double beyond = excess(joint, decided_, mode_, here(), towards);
+    const double beyond = excess(joint, decided_, now_.mode, now_.here(), towards);
     if (!(beyond > 0) || beyond > roundings * std::max(size_at_stop_, before)) return;
-    const double way = model::sign_of(towards), limit = mechanics_.holding(joint, towards, here());
+    const double way = model::sign_of(towards), limit = mechanics_.holding(joint, towards, now_.here());
     double place = (decided_.loads[0] - way * limit) / own.stiffness;
     while (model::excess_over(limit, own.stiffness, decided_.loads[0], place, way) > 0) {
         place = std::nextafter(place, way * model::never);
     }
-    y_[0] = place, low_[0] = 0;
+    now_.y[0] = place, now_.low[0] = 0;
 }
 
 /// Whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld an
@@ -803,7 +757,7 @@ bool Engine::only_touched(std::size_t joint, Motion way) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
     if (result_.events.empty() || arrivals_[joint].slid == Motion::stuck) return false;
     Event& last = result_.events.back();
-    const double part = (now_.hi - last.t) / pace_;
+    const double part = (now_.t.hi - last.t) / pace_;
     if (last.kind != EventKind::stick || last.where != static_cast<int>(joint) || part > briefly) return false;
     const double impulse = std::fabs(asked_[joint].pull - arrivals_[joint].pull) * (2 * std::numbers::pi * part);
     if (!(impulse <= withheld * torque_size(joint))) return false;
@@ -818,9 +772,9 @@ bool Engine::only_touched(std::size_t joint, Motion way) {
 /// Whether what has come down to rounding is on its way still, because no more than the friction of sliding balances
 /// its pull, and more would hold it.
 void Engine::creep(std::size_t joint, Motion way, double pull) {
-    Slipping& how = mode_.friction[joint];
-    const double level = mechanics_.sliding(joint, {.way = way}, 0, here()), size = torque_size(joint);
-    if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, here()) > level)) return;
+    Slipping& how = now_.mode.friction[joint];
+    const double level = mechanics_.sliding(joint, {.way = way}, 0, now_.here()), size = torque_size(joint);
+    if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, now_.here()) > level)) return;
     const double off = std::fabs(model::sign_of(way) * pull - level);
     constexpr double balances = 1024 * rounding;  // of the torques
     if (!(off <= balances * size)) return;
@@ -839,7 +793,8 @@ struct Engine::Box {
 bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
     const Frame present = frame();
     Look found;
-    if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, present, found))
+        return fail(Outcome::excitation_not_finite);
     const auto count = static_cast<Eigen::Index>(held.size());
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n()), count);
     box.low.resize(count), box.high.resize(count), box.slope.resize(count);
@@ -847,13 +802,13 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const Joint& joint = problem_.system.joints[j];
         for (const auto& [body, by] : joint.of) D(static_cast<Eigen::Index>(body), c) = by;
-        const bool sticks = rubs(j) && mode_.friction[j].way == Motion::stuck;
+        const bool sticks = now_.rubs(j) && now_.mode.friction[j].way == Motion::stuck;
         constexpr double wall = 1e30;
-        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
-        box.high(c) = sticks ? std::min(wall, mechanics_.holding(j, Motion::backward, here())) : 0;
-        if (mode_.leans[j] > 0 || mode_.rigid[j] != 0) box.low(c) = -wall;
-        if (mode_.leans[j] < 0 || mode_.rigid[j] != 0) box.high(c) = wall;
-        box.slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
+        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, now_.here()) : 0;
+        box.high(c) = sticks ? std::min(wall, mechanics_.holding(j, Motion::backward, now_.here())) : 0;
+        if (now_.mode.leans[j] > 0 || now_.mode.rigid[j] != 0) box.low(c) = -wall;
+        if (now_.mode.leans[j] < 0 || now_.mode.rigid[j] != 0) box.high(c) = wall;
+        box.slope(c) = now_.mode.leans[j] == 0 ? -now_.belt_slopes[j].rate : 0;
     }
     Eigen::VectorXd lightness(static_cast<Eigen::Index>(n())), torques(static_cast<Eigen::Index>(n()));
     for (std::size_t i = 0; i < n(); ++i) {
@@ -871,10 +826,10 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
 /// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
 /// that came to its limit, if one did, is short of a little already.
 bool Engine::decide_together(std::size_t full) {
-    mode_ = entered_;
+    now_.mode = entered_;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (asked_[j].asked || mode_.keeps_place(j)) held.push_back(j);
+        if (asked_[j].asked || now_.mode.keeps_place(j)) held.push_back(j);
     }
     Box box;
     if (!box_of(held, box)) return false;
@@ -892,11 +847,11 @@ bool Engine::decide_together(std::size_t full) {
         for (Eigen::Index c = 0; c < torque.size(); ++c) {
             const std::size_t k = static_cast<std::size_t>(c), j = held[k];
             const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
-            if (slips[k] != 0 || !at_limit || !rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+            if (slips[k] != 0 || !at_limit || !now_.rubs(j) || now_.mode.friction[j].way != Motion::stuck) continue;
             if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * torque_size(j))) continue;  // others hold it, too
             slips[k] = 1, grown = true;
-            if (mode_.leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here());
-            if (mode_.leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here());
+            if (now_.mode.leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, now_.here());
+            if (now_.mode.leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, now_.here());
         }
     }
     std::vector<std::size_t> gone;
@@ -904,19 +859,19 @@ bool Engine::decide_together(std::size_t full) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
         if (!at_low && !at_high) continue;
-        if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
-        if (!rubs(j)) continue;
-        if (mode_.friction[j].way == Motion::stuck) {
+        if (now_.mode.leans[j] != 0) now_.mode.leans[j] = 0, at_wall_[j] = 1;
+        if (!now_.rubs(j)) continue;
+        if (now_.mode.friction[j].way == Motion::stuck) {
             // What can hold nothing is at both of its limits.
             slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
             gone.push_back(j);
-        } else if (mechanics_.belt(j, now_.hi, side()) == 0) {
-            mode_.friction[j].way = Motion::stuck;  // it may go with the belt, which sets off
+        } else if (mechanics_.belt(j, now_.t.hi, now_.side()) == 0) {
+            now_.mode.friction[j].way = Motion::stuck;  // it may go with the belt, which sets off
         }
     }
     for (const std::size_t j : gone) {
         if (!moves_as_one(j, frame())) continue;
-        mode_.friction[j].riding = true, mode_.friction[j].leaving = false;
+        now_.mode.friction[j].riding = true, now_.mode.friction[j].leaving = false;
     }
     return true;
 }
@@ -951,10 +906,10 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
         if (!at_low && !at_high) continue;
-        if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
-        if (!rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+        if (now_.mode.leans[j] != 0) now_.mode.leans[j] = 0, at_wall_[j] = 1;
+        if (!now_.rubs(j) || now_.mode.friction[j].way != Motion::stuck) continue;
         slide(j, at_low ? Motion::forward : Motion::backward, false);
-        mode_.friction[j].riding = true;
+        now_.mode.friction[j].riding = true;
     }
     return true;
 }
@@ -965,12 +920,12 @@ void Engine::project(Side when) {
     if (present.edges.empty()) return;
     auto& [belts, offsets, momentum, first] = projected_;
     belts.resize(mechanics_.joints());
-    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, when);
-    present.offsets(belts, mode_, offsets);
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.t.hi, when);
+    present.offsets(belts, now_.mode, offsets);
     momentum.assign(present.groups(), 0), first.resize(present.groups());
     seen_.assign(present.groups(), 0), alike_.assign(present.groups(), 1);
     for (std::size_t i = 0; i < n(); ++i) {
-        const double v = y_[n() + i] - offsets[i];
+        const double v = now_.y[n() + i] - offsets[i];
         for (const auto& [group, by] : present.bodies[i]) {
             momentum[group] += by * problem_.system.bodies[i].inertia * v;
             if (seen_[group] == 0) first[group] = v / by, seen_[group] = 1;
@@ -980,58 +935,42 @@ void Engine::project(Side when) {
     for (std::size_t i = 0; i < n(); ++i) {
         const Frame::Shape& shape = present.bodies[i];
         if (std::all_of(shape.begin(), shape.end(), [this](const auto& share) { return alike_[share.group] != 0; })) {
-            if (shape.empty()) y_[n() + i] = offsets[i];
+            if (shape.empty()) now_.y[n() + i] = offsets[i];
             continue;
         }
         double v = 0;
         for (const auto& [group, by] : shape) v += by * (momentum[group] / present.inertia[group]);
-        y_[n() + i] = v + offsets[i];
+        now_.y[n() + i] = v + offsets[i];
     }
     for (const Frame::Edge& edge : present.edges) {
-        if (!mode_.keeps_place(edge.joint)) continue;
+        if (!now_.mode.keeps_place(edge.joint)) continue;
         const bool moved = edge.joint >= told_joints();
         if (moved && !problem_.system.bodies[moved_body(edge.joint)].moved->by_angle) continue;
-        if (moved) rigid_at_[edge.joint] = angle_given(moved_body(edge.joint), when);
-        const int wall = mode_.leans[edge.joint];
-        put_child(edge.joint, edge.child, edge.by,
-                  wall != 0 ? problem_.system.joints[edge.joint].walls->at(wall) : rigid_at_[edge.joint]);
+        if (moved) now_.rigid_at[edge.joint] = angle_given(moved_body(edge.joint), when);
+        const int wall = now_.mode.leans[edge.joint];
+        now_.put_child(problem_.system.joints[edge.joint], edge.child, edge.by,
+                       wall != 0 ? problem_.system.joints[edge.joint].walls->at(wall) : now_.rigid_at[edge.joint]);
     }
 }
 
 /// The angle that a body is moved to, now.
 double Engine::angle_given(std::size_t body, Side when) const {
     const model::Excitation& angle = problem_.system.bodies[body].moved->motion;
-    const bool breaks = when != Side::at && angle.next_break(std::nextafter(now_.hi, -model::never)) == now_.hi;
-    return !breaks                ? angle.value(now_.hi)
-           : when == Side::before ? angle.value_before(now_.hi)
-                                  : angle.value_after(now_.hi);
-}
-
-/// Rigid joints keep the angles that they have now.
-void Engine::keep_rigid_places() {
-    for (std::size_t j = 0; j < rigid_at_.size(); ++j) {
-        if (mode_.rigid[j] != 0) rigid_at_[j] = mechanics_.angle(j, y_) + problem_.system.joints[j].sum(low_);
-    }
-}
-
-/// Puts a body where the angle of a joint is at this place.
-void Engine::put_child(std::size_t joint, std::size_t child, double weight, double place) {
-    double low = 0;
-    for (const auto& [body, by] : problem_.system.joints[joint].of) {
-        if (body != child) place -= by * y_[body], low -= by * low_[body];
-    }
-    y_[child] = place / weight, low_[child] = low / weight;
+    const bool breaks = when != Side::at && angle.next_break(std::nextafter(now_.t.hi, -model::never)) == now_.t.hi;
+    return !breaks                ? angle.value(now_.t.hi)
+           : when == Side::before ? angle.value_before(now_.t.hi)
+                                  : angle.value_after(now_.t.hi);
 }
 
 /// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
 bool Engine::nothing_presses(std::size_t joint) const {
     constexpr double later = 1e-9;
     // Where the load was found to fall below zero it may still be its rounding.
-    if (normal_half_[joint] >= 0 && !(mechanics_.pressing(joint, here()) <= 0)) return false;
-    std::vector<double> y = y_;
+    if (normal_half_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
+    std::vector<double> y = now_.y;
     const double h = later * pace_;
     for (std::size_t i = 0; i < n(); ++i) y[i] += h * y[n() + i];
-    return mechanics_.pressing(joint, {now_.hi + h, Side::at, y}) <= 0;
+    return mechanics_.pressing(joint, {now_.t.hi + h, Side::at, y}) <= 0;
 }
 
 /// A contact on which nothing presses is open: it neither sticks nor slips. True when one has opened or closed.
@@ -1040,22 +979,22 @@ bool Engine::open_and_close() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!mechanics_.may_open(j)) continue;
         const bool opens = nothing_presses(j);
-        if (opens != rubs(j)) continue;
+        if (opens != now_.rubs(j)) continue;
         changed = true;
-        mode_.rubs[j] = opens ? 0 : 1;
-        mode_.friction[j] = {};
+        now_.mode.rubs[j] = opens ? 0 : 1;
+        now_.mode.friction[j] = {};
         arrived_[j] = Motion::stuck;
         normal_half_[j] = opens ? -1 : 1;
         const Joint& joint = problem_.system.joints[j];
-        double fastest = std::fabs(mechanics_.belt(j, now_.hi, side()));
+        double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side()));
         for (const auto& [body, by] : joint.of) {
-            const double v = y_[n() + body];
+            const double v = now_.y[n() + body];
             fastest = std::max(fastest, std::fabs(by * v));
             if (opens) heading_[body] = model::motion_of(v);
         }
-        if (!opens && std::fabs(slip(j)) > 16 * rounding * fastest) {
-            slide(j, model::motion_of(slip(j)), false);
-        } else if (!opens && mode_.leans[j] == 0) {
+        if (!opens && std::fabs(now_.slip(mechanics_, j)) > 16 * rounding * fastest) {
+            slide(j, model::motion_of(now_.slip(mechanics_, j)), false);
+        } else if (!opens && now_.mode.leans[j] == 0) {
             slide(j, Motion::forward, true);  // if it sticks from now on, that is told
         }
         if (begun()) tell(opens ? EventKind::opened : EventKind::closed, static_cast<int>(j));
@@ -1070,18 +1009,18 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
     press_stops();
     turn_sliders();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!rubs(j) || mode_.leans[j] != 0) continue;
-        Slipping& how = mode_.friction[j];
-        const double s = slip(j);
-        const double belt = mechanics_.belt(j, now_.hi, side());
+        if (!now_.rubs(j) || now_.mode.leans[j] != 0) continue;
+        Slipping& how = now_.mode.friction[j];
+        const double s = now_.slip(mechanics_, j);
+        const double belt = mechanics_.belt(j, now_.t.hi, now_.side());
         const bool weighted = problem_.system.joints[j].is_weighted();
-        const double known = weighted ? mechanics_.speed_scale(j, y_) : std::fabs(mechanics_.velocity(j, y_));
+        const double known = weighted ? mechanics_.speed_scale(j, now_.y) : std::fabs(mechanics_.velocity(j, now_.y));
         double corner = 4 * rounding * (known + std::fabs(belt));
         if (why == Because::belt && mechanics_.has_belt(j)) {
             // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
-            double rate = std::fabs(belt_slope(j).rate);
+            double rate = std::fabs(now_.belt_slopes[j].rate);
             if (!segment_.belt_rates.empty()) rate = std::max(rate, std::fabs(segment_.belt_rates[j][node_count - 1]));
-            corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.hi);
+            corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.t.hi);
         }
         if (std::fabs(s) <= corner) {
             if (how.way == Motion::stuck || how.riding) continue;
@@ -1112,7 +1051,7 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
 // ---- the loop
 
 void Engine::begin() {
-    after_break_ = mechanics_.next_break(std::nextafter(now_.hi, -model::never)) == now_.hi;
+    now_.after_break = mechanics_.next_break(std::nextafter(now_.t.hi, -model::never)) == now_.t.hi;
     find_belt_slopes({});
     std::vector<std::string> names;
     if (problem_.system.named) {
@@ -1124,37 +1063,37 @@ void Engine::begin() {
     }
     for (const model::OwnState& state : problem_.drive.states) names.push_back(state.name);
     if (problem_.before == nullptr) {
-        mechanics_.for_each_signal([&](Signal& s) { s.begin(here(), names); });
+        mechanics_.for_each_signal([&](Signal& s) { s.begin(now_.here(), names); });
         bool good = true;
-        mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
+        mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
         if (!good) fail(Outcome::excitation_not_finite);
-        echo(now_.hi, 1);
+        echo(now_.t.hi, 1);
         open_and_close();
         press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (!rubs(j)) continue;
-            const double s = slip(j);
+            if (!now_.rubs(j)) continue;
+            const double s = now_.slip(mechanics_, j);
             const bool weighted = problem_.system.joints[j].is_weighted();
-            if (std::fabs(s) > (weighted ? 4 * rounding * mechanics_.speed_scale(j, y_) : 0)) {
+            if (std::fabs(s) > (weighted ? 4 * rounding * mechanics_.speed_scale(j, now_.y) : 0)) {
                 slide(j, model::motion_of(s), false);
             } else {
-                mode_.friction[j].way = Motion::stuck;
+                now_.mode.friction[j].way = Motion::stuck;
             }
         }
         touch_walls();
         if (outcome_ == Outcome::reached_end) decide(false);
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = now_.mode.leans[j] != 0 ? 1 : 0;
     } else {
-        project(side());
+        project(now_.side());
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (mode_.friction[j].creeps == Motion::stuck) continue;
+            if (now_.mode.friction[j].creeps == Motion::stuck) continue;
             crept_events_[j] = event_at(EventKind::stick, static_cast<int>(j), -1);
         }
-        if (after_break_) ask_after_break();
+        if (now_.after_break) ask_after_break();
     }
-    result_.begun = mode_;
-    result_.initial = y_;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
+    result_.begun = now_.mode;
+    result_.initial = now_.y;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, now_.y));
 }
 
 void Engine::run() {
@@ -1162,8 +1101,8 @@ void Engine::run() {
     unsigned pieces = 0;
     constexpr unsigned between_questions = 16;
     bool alive = outcome_ == Outcome::reached_end;
-    while (alive && now_.hi < problem_.window.end) {
-        if (pieces++ % between_questions == 0 && problem_.monitor && !problem_.monitor(now_.hi)) {
+    while (alive && now_.t.hi < problem_.window.end) {
+        if (pieces++ % between_questions == 0 && problem_.monitor && !problem_.monitor(now_.t.hi)) {
             outcome_ = Outcome::interrupted;
             break;
         }
@@ -1172,11 +1111,12 @@ void Engine::run() {
     if (outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering) explain_end();
     const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;
     if (stands_at_now) {
-        while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
+        while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.t.hi &&
+               put_row(now_.t.hi, -2)) {
         }
     }
     for (const auto& [joint, event] : crept_events_) {  // nothing came that would have moved it
-        if (outcome_ != Outcome::reached_end || mode_.friction[joint].creeps == Motion::stuck) continue;
+        if (outcome_ != Outcome::reached_end || now_.mode.friction[joint].creeps == Motion::stuck) continue;
         const auto later = std::upper_bound(result_.events.begin(), result_.events.end(), event,
                                             [](const Event& a, const Event& b) { return a.t < b.t; });
         result_.events.insert(later, event);
@@ -1185,9 +1125,9 @@ void Engine::run() {
         const Frame& present = frame();
         bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
         for (std::size_t i = 0; i < n(); ++i) {
-            still = still && present.bodies[i].empty() && (y_[n() + i] == 0 || problem_.joined_elsewhere);
+            still = still && present.bodies[i].empty() && (now_.y[n() + i] == 0 || problem_.joined_elsewhere);
         }
-        mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.hi; });
+        mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.t.hi; });
         for_good = for_good && mechanics_.states() == 0;
         for (const model::WantedEvent& event : problem_.drive.events) for_good = for_good && event.act == nullptr;
         for (const Joint& joint : problem_.system.joints) {
@@ -1200,23 +1140,24 @@ void Engine::run() {
             if (last != result_.events.rend()) last->kind = EventKind::rest;
         }
     }
-    if (mode_.friction[0].way != Motion::stuck && !mode_.holds(0)) result_.motion_at_stop = mode_.friction[0].way;
-    if (!rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
-    if (mode_.friction[0].creeps != Motion::stuck) result_.motion_at_stop = mode_.friction[0].creeps;
+    if (now_.mode.friction[0].way != Motion::stuck && !now_.mode.holds(0))
+        result_.motion_at_stop = now_.mode.friction[0].way;
+    if (!now_.rubs(0) && now_.mode.leans[0] == 0) result_.motion_at_stop = heading_[0];
+    if (now_.mode.friction[0].creeps != Motion::stuck) result_.motion_at_stop = now_.mode.friction[0].creeps;
     result_.outcome = outcome_;
     result_.located = has_pieces_;
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
     result_.noise = lost ? 0 : solver_->clear_noise();
     if (outcome_ == Outcome::chattering) forget_chatter();
-    keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
+    keep_within_walls(now_.y);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
-    result_.t_stop = now_.hi;
+    result_.t_stop = now_.t.hi;
     if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
-    history_->close(now_, y_);
+    history_->close(now_.t, now_.y);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
-    carry->y = y_, carry->low = low_, carry->mode = mode_, carry->watches = watches_, carry->echoes = echoes_,
-    carry->heading = heading_, carry->born = born_, carry->floor = solver_->floor();
+    carry->y = now_.y, carry->low = now_.low, carry->mode = now_.mode, carry->watches = watches_,
+    carry->echoes = echoes_, carry->heading = heading_, carry->born = born_, carry->floor = solver_->floor();
     if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
@@ -1234,31 +1175,31 @@ void Engine::forget_chatter() {
 
 void Engine::choose() {
     frame();
-    double breaks = std::min(mechanics_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
+    double breaks = std::min(mechanics_.next_break(now_.t.hi), echoes_.empty() ? model::never : echoes_.front().first);
     if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
     for (const model::WantedEvent& event : problem_.drive.events) {
-        breaks = std::min(breaks, event.when->next_break(now_.hi));
+        breaks = std::min(breaks, event.when->next_break(now_.t.hi));
     }
     double limit = std::min(problem_.window.end, breaks);
     if (problem_.step > 0) {
         // A break that rounding puts beside a step's end is that end.
-        const double beside = std::max(1e-9 * problem_.step, 4 * rounding * std::fabs(now_.hi));
-        const double steps = std::floor((now_.hi - problem_.window.start + beside) / problem_.step) + 1;
+        const double beside = std::max(1e-9 * problem_.step, 4 * rounding * std::fabs(now_.t.hi));
+        const double steps = std::floor((now_.t.hi - problem_.window.start + beside) / problem_.step) + 1;
         const double step_end = problem_.window.start + steps * problem_.step;
         if (step_end < limit - beside) limit = step_end;
     }
     double h = std::min(
-        {rung(h_, longest_ / 2), mechanics_.view(now_.hi, cheb::widest_gap) / 2, shortest_delay_ / 2 * (1 - 1e-12)});
-    if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
+        {rung(h_, longest_ / 2), mechanics_.view(now_.t.hi, cheb::widest_gap) / 2, shortest_delay_ / 2 * (1 - 1e-12)});
+    if (bad_time_ < model::never) h = std::min(h, now_.t.until(bad_time_) / 4);
     if (problem_.step == 0) h = std::min(h, longest_under_friction() / 2);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
-    const double remaining = now_.until(limit);
+    const double remaining = now_.t.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
-    segment_.start = now_;
+    segment_.start = now_.t;
     segment_.h = to_limit ? remaining / 2 : remaining < 4 * h ? remaining / 4 : h;
-    segment_.end = to_limit ? limit : now_.after(2 * segment_.h);
-    segment_.from_break = after_break_;
+    segment_.end = to_limit ? limit : now_.t.after(2 * segment_.h);
+    segment_.from_break = now_.after_break;
     segment_.to_break = to_limit && limit == breaks;
     segment_.to_the_end = to_limit && (segment_.to_break || limit == problem_.window.end || problem_.step == 0);
 }
@@ -1266,15 +1207,15 @@ void Engine::choose() {
 /// How long it takes to the next wall, if all accelerations stay as they are.
 double Engine::until_wall() {
     double first = model::never;
-    if (!look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return first;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, *frame_, look_)) return first;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         const model::Walls* walls = joint.any_walls();
-        if (walls == nullptr || mode_.holds(j) || mode_.presses[j] != 0) continue;
+        if (walls == nullptr || now_.mode.holds(j) || now_.mode.presses[j] != 0) continue;
         const double rate = joint.sum(look_.accelerations);
         for (const int wall : {1, -1}) {
-            const double apart = std::max(0.0, wall * gap(j, walls->at(wall)));
-            const double v = wall * mechanics_.velocity(j, y_);
+            const double apart = std::max(0.0, wall * now_.gap(problem_.system.joints[j], walls->at(wall)));
+            const double v = wall * mechanics_.velocity(j, now_.y);
             const double a = wall * rate, root = v * v + 2 * a * apart;
             if (!(root >= 0) || !(apart < model::never)) continue;
             const double t = v > 0   ? 2 * apart / (v + std::sqrt(root))
@@ -1293,16 +1234,18 @@ double Engine::longest_under_friction() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         const model::Friction& law = joint.friction.law;
-        const Slipping& how = mode_.friction[j];
-        if (law.ranges() == 0 || how.way == Motion::stuck || how.riding || mode_.leans[j] != 0) continue;
-        if (!looked && !look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return longest;
+        const Slipping& how = now_.mode.friction[j];
+        if (law.ranges() == 0 || how.way == Motion::stuck || how.riding || now_.mode.leans[j] != 0) continue;
+        if (!looked && !look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, *frame_, look_))
+            return longest;
         looked = true;
         const double sign = model::sign_of(how.way);
         const double lightness = joint.lightness(problem_.system.bodies), first = joint.sum(look_.accelerations);
-        const double C = joint.damping, v = mechanics_.velocity(j, y_);
+        const double C = joint.damping, v = mechanics_.velocity(j, now_.y);
         const double second = (std::fabs(joint.stiffness * v) + std::fabs(C * first)) * lightness;
-        longest = std::min(longest, longest_step(law, law.range(how.range), std::max(0.0, sign * slip(j)), sign * first,
-                                                 second, C, 1 / lightness));
+        longest =
+            std::min(longest, longest_step(law, law.range(how.range), std::max(0.0, sign * now_.slip(mechanics_, j)),
+                                           sign * first, second, C, 1 / lightness));
     }
     return longest;
 }
@@ -1310,25 +1253,25 @@ double Engine::longest_under_friction() {
 void Engine::again(Collocation::Attempt attempt) {
     const int most = samples_ ? most_attempts_sampled : most_attempts;
     if (++attempts_ >= most) {
-        if (now_.hi - attempts_since_ < 1e-7 * most * pace_) {
+        if (now_.t.hi - attempts_since_ < 1e-7 * most * pace_) {
             fail(samples_ ? Outcome::chattering : Outcome::unresolved);
             return;
         }
-        attempts_ = 0, attempts_since_ = now_.hi;
+        attempts_ = 0, attempts_since_ = now_.t.hi;
     }
     if (attempt == Collocation::Attempt::failed) {
         bad_time_ = solver_->bad_time();
-        const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
-        if (problem_.step > 0 || now_.until(bad_time_) <= near || !mechanics_.may_go_on())
-            fail(greatest_of_state() > huge ? Outcome::state_not_finite : Outcome::excitation_not_finite);
+        const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.t.hi));
+        if (problem_.step > 0 || now_.t.until(bad_time_) <= near || !mechanics_.may_go_on())
+            fail(now_.greatest_of_state() > huge ? Outcome::state_not_finite : Outcome::excitation_not_finite);
         h_ = segment_.h / 2;
         return;
     }
-    if (solver_->found_noise(segment_, mode_)) return;
-    const bool searched = searched_from_ == now_.hi && segment_.h > 0.1 * searched_h_;
+    if (solver_->found_noise(segment_, now_.mode)) return;
+    const bool searched = searched_from_ == now_.t.hi && segment_.h > 0.1 * searched_h_;
     if (!searched && breaks_.size() < most_found_breaks) {
-        searched_from_ = now_.hi, searched_h_ = segment_.h;
-        if (const auto found = solver_->found_break(segment_); found && *found > now_.hi) {
+        searched_from_ = now_.t.hi, searched_h_ = segment_.h;
+        if (const auto found = solver_->found_break(segment_); found && *found > now_.t.hi) {
             const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *found);
             if (place == breaks_.end() || *place != *found) {
                 breaks_.insert(place, *found);
@@ -1359,10 +1302,10 @@ bool Engine::belt_jump_found() {
     }
     if (!first) return false;
     constexpr double right_behind = 1e-6;
-    if (now_.until(*first) < right_behind * segment_.h) {  // it is behind this moment, and was before it
-        if (after_break_) return false;
-        after_break_ = true;
-        mechanics_.jumps_at(now_.hi);
+    if (now_.t.until(*first) < right_behind * segment_.h) {  // it is behind this moment, and was before it
+        if (now_.after_break) return false;
+        now_.after_break = true;
+        mechanics_.jumps_at(now_.t.hi);
         find_belt_slopes({});
         restart_contacts(Because::belt);
         return true;
@@ -1377,18 +1320,19 @@ bool Engine::belt_jump_found() {
 /// The name of a state that has come to where its rate jumps, and drives it back from both sides; empty where none has.
 std::string Engine::state_driven_back() {
     constexpr double near = 1e-9, steep = 1e6;
-    mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
-    std::vector<double> y = y_, rates(mechanics_.states());
+    mechanics_.for_each_piecewise(now_.t.hi, [](Piecewise& function) { function.let_go(); });
+    std::vector<double> y = now_.y, rates(mechanics_.states());
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
         const auto rate = [&](double by) {
-            y[2 * n() + k] = y_[2 * n() + k] + by;
-            mechanics_.rates({now_.hi, side(), y}, rates.data());
+            y[2 * n() + k] = now_.y[2 * n() + k] + by;
+            mechanics_.rates({now_.t.hi, now_.side(), y}, rates.data());
             return rates[k];
         };
-        const double own = std::max(std::fabs(rate(0)), std::fabs(rate(near * std::fabs(y_[2 * n() + k]))));
-        const double d = near * std::max(own * pace_, std::fabs(y_[2 * n() + k])) + std::numeric_limits<double>::min();
+        const double own = std::max(std::fabs(rate(0)), std::fabs(rate(near * std::fabs(now_.y[2 * n() + k]))));
+        const double d =
+            near * std::max(own * pace_, std::fabs(now_.y[2 * n() + k])) + std::numeric_limits<double>::min();
         const double least = std::min(-rate(d), rate(-d));
-        y[2 * n() + k] = y_[2 * n() + k];
+        y[2 * n() + k] = now_.y[2 * n() + k];
         if (least * pace_ > steep * d) return problem_.drive.states[k].name;
     }
     return {};
@@ -1396,8 +1340,8 @@ std::string Engine::state_driven_back() {
 
 /// The run got nowhere: if something that acts in it is rough on every scale, that is why.
 void Engine::explain_end() {
-    const double most = std::min({pace_, problem_.window.end - now_.hi, shortest_delay_});
-    const double from = now_.hi, length = std::min(rough_stretch * pace_, most / 8);
+    const double most = std::min({pace_, problem_.window.end - now_.t.hi, shortest_delay_});
+    const double from = now_.t.hi, length = std::min(rough_stretch * pace_, most / 8);
     struct Source {
         std::string name;
         std::function<double(double)> value;
@@ -1408,8 +1352,8 @@ void Engine::explain_end() {
         return problem_.system.named ? fmt::format("{} of {}", what, who) : std::string(what);
     };
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
-        const auto load = [this, i](double t) { return mechanics_.load(i, {t, Side::at, y_}); };
-        sources.push_back({of("M", problem_.system.joints[i].name), load, mechanics_.size_of(i, here())});
+        const auto load = [this, i](double t) { return mechanics_.load(i, {t, Side::at, now_.y}); };
+        sources.push_back({of("M", problem_.system.joints[i].name), load, mechanics_.size_of(i, now_.here())});
     }
     sources.push_back({"the base", [&](double t) { return mechanics_.base(t, Side::at); }, 0});
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -1420,7 +1364,7 @@ void Engine::explain_end() {
     std::vector<double> rates(mechanics_.states());
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
         const auto rate = [this, k, &rates](double t) {
-            mechanics_.rates({t, Side::at, y_}, rates.data());
+            mechanics_.rates({t, Side::at, now_.y}, rates.data());
             return rates[k];
         };
         sources.push_back({"the rate of " + problem_.drive.states[k].name, rate, 0});
@@ -1440,12 +1384,6 @@ void Engine::explain_end() {
     outcome_ = Outcome::chattering;
 }
 
-double Engine::greatest_of_state() const {
-    double most = 0;
-    for (const double value : y_) most = std::max(most, std::fabs(value));
-    return most;
-}
-
 /// Whether nothing that may still come moves any body.
 bool Engine::stands_for_good() {
     const Frame& present = frame();
@@ -1453,12 +1391,12 @@ bool Engine::stands_for_good() {
         return false;
     if (mechanics_.has_belts() || !problem_.drive.events.empty()) return false;
     bool constant = true;
-    mechanics_.for_each_signal([&](const Signal& s) { constant = constant && s.constant_from() <= now_.hi; });
+    mechanics_.for_each_signal([&](const Signal& s) { constant = constant && s.constant_from() <= now_.t.hi; });
     std::vector<double> greatest_pull(mechanics_.joints()), lacking(n()), held(mechanics_.joints());
     std::vector<double> none(mechanics_.joints()), torques;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!mechanics_.is_native(j) || mode_.friction[j].riding) return false;
-        if (!constant && (mode_.leans[j] != 0 || mode_.friction[j].creeps != Motion::stuck)) return false;
+        if (!mechanics_.is_native(j) || now_.mode.friction[j].riding) return false;
+        if (!constant && (now_.mode.leans[j] != 0 || now_.mode.friction[j].creeps != Motion::stuck)) return false;
     }
     if (constant) return true;
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
@@ -1469,13 +1407,13 @@ bool Engine::stands_for_good() {
         present.multipliers(lacking, held);
         for (std::size_t j = 0; j < held.size(); ++j) greatest_pull[j] += most * std::fabs(held[j]);
     }
-    mechanics_.torques(here(), mode_, std::vector<double>(mechanics_.joints()), none, torques);
+    mechanics_.torques(now_.here(), now_.mode, std::vector<double>(mechanics_.joints()), none, torques);
     for (std::size_t i = 0; i < n(); ++i) lacking[i] = -torques[i];
     present.multipliers(lacking, held);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (!mode_.holds(j) || mode_.rigid[j] != 0) continue;
-        if (!(greatest_pull[j] - held[j] <= mechanics_.holding(j, Motion::forward, here()))) return false;
-        if (!(greatest_pull[j] + held[j] <= mechanics_.holding(j, Motion::backward, here()))) return false;
+        if (!now_.mode.holds(j) || now_.mode.rigid[j] != 0) continue;
+        if (!(greatest_pull[j] - held[j] <= mechanics_.holding(j, Motion::forward, now_.here()))) return false;
+        if (!(greatest_pull[j] + held[j] <= mechanics_.holding(j, Motion::backward, now_.here()))) return false;
     }
     return true;
 }
@@ -1484,26 +1422,26 @@ bool Engine::stands_for_good() {
 bool Engine::rest() {
     constexpr std::size_t rows_at_once = 1U << 12U;
     const bool many = problem_.rows.count() - next_row_ > rows_at_once;
-    segment_.start = now_;
+    segment_.start = now_.t;
     segment_.end = many ? problem_.rows.time(next_row_ + rows_at_once) : problem_.window.end;
-    segment_.h = now_.until(segment_.end) / 2;
+    segment_.h = now_.t.until(segment_.end) / 2;
     segment_.from_break = segment_.to_break = false, segment_.to_the_end = true;
-    solver_->stand_still(segment_, y_);
+    solver_->stand_still(segment_, now_.y);
     sampled_.clear();
     return end_at(1);
 }
 
 bool Engine::advance() {
-    if (greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
+    if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     if (stands_for_good()) return rest();
     choose();
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     const Frame& present = *frame_;
-    decide_conditions({now_.hi, side(), departing()}, mode_);
-    segment_.low = low_, sampled_.clear();
-    const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
+    decide_conditions({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode);
+    segment_.low = now_.low, sampled_.clear();
+    const auto attempt = solver_->solve(segment_, now_.mode, present, now_.y, now_.departing(problem_.system));
     sizes_at_ = -model::never;  // they depend on the loads of the stretch
-    const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
+    const double late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
     if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
         return outcome_ == Outcome::reached_end;
     }
@@ -1511,7 +1449,7 @@ bool Engine::advance() {
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
         if (++too_short_ > most_short) return fail(Outcome::chattering);
         solver_->pass_over(segment_);
-        solver_->find_limits(segment_, mode_);
+        solver_->find_limits(segment_, now_.mode);
         h_ = 64 * segment_.h;
     } else if (attempt != Collocation::Attempt::resolved) {
         again(attempt);
@@ -1546,39 +1484,39 @@ bool Engine::end_at(double x) {
     if (mechanics_.has_functions()) result_.gap = std::max(result_.gap, between);
     if (!segment_.proven) result_.unproven = std::max(result_.unproven, problem_.step > 0 ? between : length);
     if (x > -1) go_to(x);
-    now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
-    after_break_ = whole && segment_.to_break && now_.hi < problem_.window.end;
-    has_jumped_ = has_jumped_ || (after_break_ && now_.hi != crossing_at_);
-    mechanics_.forget_jumps(now_.hi);
-    if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
+    now_.t = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
+    now_.after_break = whole && segment_.to_break && now_.t.hi < problem_.window.end;
+    has_jumped_ = has_jumped_ || (now_.after_break && now_.t.hi != crossing_at_);
+    mechanics_.forget_jumps(now_.t.hi);
+    if (bad_time_ <= now_.t.hi) bad_time_ = model::never, mechanics_.forget_failure();
     const std::size_t ahead = breaks_.size();
-    while (!breaks_.empty() && breaks_.front() <= now_.hi) {
+    while (!breaks_.empty() && breaks_.front() <= now_.t.hi) {
         passed_breaks_.pass(breaks_.front());
         breaks_.erase(breaks_.begin());
     }
     if (ahead > 0 && breaks_.empty()) foresee_break();
     if (length > 0) {
-        for (Slipping& how : mode_.friction) how.leaving = false;
+        for (Slipping& how : now_.mode.friction) how.leaving = false;
         if (whole) {
-            for (Slipping& how : mode_.friction) how.blunt = 0;
+            for (Slipping& how : now_.mode.friction) how.blunt = 0;
         }
         std::fill(edge_.begin(), edge_.end(), 0);
         std::fill(at_wall_.begin(), at_wall_.end(), 0);
     }
     int generation = 0;
-    while (!echoes_.empty() && echoes_.front().first <= now_.hi) {
+    while (!echoes_.empty() && echoes_.front().first <= now_.t.hi) {
         generation = std::max(generation, echoes_.front().second);
         echoes_.erase(echoes_.begin());
     }
-    if (generation > 0) echo(now_.hi, generation + 1);
-    if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
-    find_belt_slopes(after_break_ ? std::nullopt : std::optional(x));
-    project(after_break_ ? Side::before : Side::at);
+    if (generation > 0) echo(now_.t.hi, generation + 1);
+    if (!whole || (now_.after_break && generation == 0)) echo(now_.t.hi, 1);
+    find_belt_slopes(now_.after_break ? std::nullopt : std::optional(x));
+    project(now_.after_break ? Side::before : Side::at);
     bool good = true;
-    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
+    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
     if (!good) return fail(Outcome::excitation_not_finite);
     const bool changed = open_and_close();
-    if (after_break_) return ask_after_break();
+    if (now_.after_break) return ask_after_break();
     return !changed || (decide(true) && (!too_often() || fail(Outcome::chattering)));
 }
 
@@ -1586,14 +1524,14 @@ bool Engine::end_at(double x) {
 bool Engine::ask_after_break() {
     if (!mechanics_.has_belts()) return decide(true);
     // What is moved with a new velocity at once throws all that is rigidly linked to it.
-    const std::vector<double> before = y_;
+    const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
-    if (problem_.hidden > 0) project(side());
+    if (problem_.hidden > 0) project(now_.side());
     for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
-        const double v = y_[n() + body], jump = v - before[n() + body];
+        const double v = now_.y[n() + body], jump = v - before[n() + body];
         if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
-        history_->add_jump(now_.hi, body, {.input = kinetic_energy() - energy});
+        history_->add_jump(now_.t.hi, body, {.input = kinetic_energy() - energy});
         heading_[body] = model::motion_of(v);
         has_jumped_ = true;
         tell(EventKind::impact, static_cast<int>(body));
@@ -1605,7 +1543,7 @@ bool Engine::ask_after_break() {
 double Engine::kinetic_energy() const {
     double sum = 0;
     for (std::size_t i = 0; i < n() && problem_.hidden > 0; ++i) {
-        sum += mechanics_.own_inertia(i) * y_[n() + i] * y_[n() + i] / 2;
+        sum += mechanics_.own_inertia(i) * now_.y[n() + i] * now_.y[n() + i] / 2;
     }
     return sum;
 }
@@ -1621,32 +1559,27 @@ void Engine::foresee_break() {
 
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
 void Engine::go_to(double x) {
-    const std::vector<double> begin = y_;
-    segment_.state(x, y_);
+    const std::vector<double> begin = now_.y;
+    segment_.state(x, now_.y);
     for (std::size_t i = 0; i < n(); ++i) {
         const double moved =
-            (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + low_[i];
-        y_[i] = begin[i] + moved;
-        const double added = y_[i] - begin[i];
-        low_[i] = (begin[i] - (y_[i] - added)) + (moved - added);
+            (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + now_.low[i];
+        now_.y[i] = begin[i] + moved;
+        const double added = now_.y[i] - begin[i];
+        now_.low[i] = (begin[i] - (now_.y[i] - added)) + (moved - added);
     }
     for (std::size_t j = 0; has_walls_ && j < mechanics_.joints(); ++j) {
         if (problem_.system.joints[j].any_walls() != nullptr)
-            reach_[j] = std::max(reach_[j], std::fabs(gap(j, origin_[j])));
+            reach_[j] = std::max(reach_[j], std::fabs(now_.gap(problem_.system.joints[j], origin_[j])));
     }
-}
-
-/// From the angle of a joint to a place.
-double Engine::gap(std::size_t joint, double place) const {
-    return (place - mechanics_.angle(joint, y_)) - problem_.system.joints[joint].sum(low_);
 }
 
 void Engine::keep(double length) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
-    Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
+    Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = now_.y, .series = segment_.series};
     // For the legs of its course.
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting();
-    const double past = longest_delay_ > 0 ? now_.hi - 2 * longest_delay_ : model::never;
+    const double past = longest_delay_ > 0 ? now_.t.hi - 2 * longest_delay_ : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
 }
 
@@ -1667,7 +1600,7 @@ std::vector<Kept::Acting> Engine::acting() {
                 all[j].M[node] -= push;
             }
         }
-        all[j].holds = rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
+        all[j].holds = now_.rubs(j) && now_.mode.leans[j] == 0 && now_.mode.friction[j].way == Motion::stuck;
         if (j >= told_joints()) {  // what moves a body is its input
             const std::size_t body = moved_body(j);
             const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
@@ -1677,16 +1610,16 @@ std::vector<Kept::Acting> Engine::acting() {
             continue;
         }
         Nodes springs{};
-        all[j].presses = mode_.presses[j] != 0;
+        all[j].presses = now_.mode.presses[j] != 0;
         if (all[j].presses) {
             const model::Walls& stops = *problem_.system.joints[j].stops;
             springs = mechanics_.between(j, segment_.y);
-            for (double& q : springs) q = stops.torque(mode_.presses[j], q, 0);
+            for (double& q : springs) q = stops.torque(now_.mode.presses[j], q, 0);
         }
-        for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
+        for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
             const Mechanics::Slider& slider = mechanics_.sliders()[s];
             if (slider.joint != j) continue;
-            if (mode_.sliders[s] == Motion::stuck) {
+            if (now_.mode.sliders[s] == Motion::stuck) {
                 add(springs, segment_.y[slider.bend], slider.stiffness);
             } else {
                 all[j].slides += slider.stiffness * segment_.y[slider.bend][0];
@@ -1696,15 +1629,15 @@ std::vector<Kept::Acting> Engine::acting() {
         if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = segment_.holding[j];
-        } else if (mechanics_.is_native(j) && rubs(j) && mode_.leans[j] == 0) {
+        } else if (mechanics_.is_native(j) && now_.rubs(j) && now_.mode.leans[j] == 0) {
             const Nodes slips = mechanics_.slips(j, segment_.y, segment_.belts[j]);
-            mechanics_.add_native_friction(j, mode_, slips, 0, node_count, all[j].friction);
+            mechanics_.add_native_friction(j, now_.mode, slips, 0, node_count, all[j].friction);
             for (double& torque : all[j].friction) torque = -torque;
-        } else if (rubs(j) || mechanics_.bristle(j) != nullptr) {
+        } else if (now_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 const Moment at = segment_.moment(node, point_);
                 all[j].friction[node] =
-                    mechanics_.friction(j, at, mode_, segment_.belts[j][node]) + mechanics_.slider_torque(j, at.y);
+                    mechanics_.friction(j, at, now_.mode, segment_.belts[j][node]) + mechanics_.slider_torque(j, at.y);
             }
         }
     }
@@ -1729,38 +1662,39 @@ bool Engine::handle(const Ending& ending) {
         case By::stays:
             return decide(true);
         case By::slip: {
-            const double fastest = std::fabs(mechanics_.belt(j, now_.hi, side())) + greatest(segment_.y[n()]);
+            const double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.y[n()]);
             // What passed zero because the belt jumped has not come to a standstill.
             constexpr double clearly = 1e-6;
-            if (mechanics_.has_belt(j) && std::fabs(slip(j)) > clearly * fastest && mode_.leans[j] == 0) {
+            if (mechanics_.has_belt(j) && std::fabs(now_.slip(mechanics_, j)) > clearly * fastest &&
+                now_.mode.leans[j] == 0) {
                 return restart_contacts(Because::belt) && (!too_often() || fail(Outcome::chattering));
             }
             for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
-                const Slipping& how = mode_.friction[i];
-                if (!rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
+                const Slipping& how = now_.mode.friction[i];
+                if (!now_.rubs(i) || how.way == Motion::stuck || how.riding || now_.mode.leans[i] != 0) continue;
                 const model::Weight& first = problem_.system.joints[i].of.front();
                 const double size = std::max(fastest, std::fabs(first.by) * greatest(segment_.y[n() + first.body]));
-                if (i == j || std::fabs(slip(i)) <= 64 * rounding * size) arrived_[i] = how.way;
+                if (i == j || std::fabs(now_.slip(mechanics_, i)) <= 64 * rounding * size) arrived_[i] = how.way;
             }
-            if (mode_.leans[j] != 0) {  // the belt turns along a mass at a wall
-                slide(j, mode_.friction[j].way == Motion::forward ? Motion::backward : Motion::forward, true);
+            if (now_.mode.leans[j] != 0) {  // the belt turns along a mass at a wall
+                slide(j, now_.mode.friction[j].way == Motion::forward ? Motion::backward : Motion::forward, true);
                 arrived_[j] = Motion::stuck;
             }
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
         case By::release: {
-            left_ = mode_;
-            const double blunt = mode_.friction[j].blunt;
+            left_ = now_.mode;
+            const double blunt = now_.mode.friction[j].blunt;
             if (!decide(true, ending)) return false;
-            bool same = mode_.leans == left_.leans;
+            bool same = now_.mode.leans == left_.leans;
             for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
-                same = mode_.friction[i].way == left_.friction[i].way &&
-                       mode_.friction[i].riding == left_.friction[i].riding &&
-                       mode_.friction[i].creeps == left_.friction[i].creeps;
+                same = now_.mode.friction[i].way == left_.friction[i].way &&
+                       now_.mode.friction[i].riding == left_.friction[i].riding &&
+                       now_.mode.friction[i].creeps == left_.friction[i].creeps;
             }
             // What only touched its limit must pass it clearly the next time.
             if (same) {
-                Slipping& how = mode_.friction[j];
+                Slipping& how = now_.mode.friction[j];
                 how.blunt = std::max(2 * blunt, 64 * rounding * torque_size(j));
                 if (how.blunt > most_blunt * torque_size(j)) return fail(Outcome::chattering);
             }
@@ -1770,12 +1704,13 @@ bool Engine::handle(const Ending& ending) {
             return hit(j, ending.side);
         case By::stop: {
             const model::Walls& stops = *problem_.system.joints[j].stops;
-            const int side = ending.side != 0 ? ending.side : mode_.presses[j];
+            const int side = ending.side != 0 ? ending.side : now_.mode.presses[j];
             origin_[j] = stops.at(side), reach_[j] = 0;
-            const bool there = std::fabs(gap(j, origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
+            const bool there =
+                std::fabs(now_.gap(problem_.system.joints[j], origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
             at_wall_[j] = ending.side == 0 && there ? 1 : 0;
             press(j, ending.side);
-            echo(now_.hi, 1);
+            echo(now_.t.hi, 1);
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
         case By::slider:
@@ -1783,13 +1718,13 @@ bool Engine::handle(const Ending& ending) {
                 // What its slip has left, and its spring beyond its limit, is rounding: it would slide again at once.
                 const Mechanics::Slider& own = mechanics_.sliders()[j];
                 const model::Weight& first = problem_.system.joints[own.joint].of.front();
-                y_[n() + first.body] -= slip(own.joint) / first.by;
-                y_[own.bend] *= 1 - 8 * rounding;
+                now_.y[n() + first.body] -= now_.slip(mechanics_, own.joint) / first.by;
+                now_.y[own.bend] *= 1 - 8 * rounding;
             }
             let_slide(j, static_cast<Motion>(ending.side));
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         case By::corner: {
-            Slipping& how = mode_.friction[j];
+            Slipping& how = now_.mode.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
             edge_[j] = -ending.side;
             return !too_often() || fail(Outcome::chattering);
@@ -1808,8 +1743,8 @@ bool Engine::handle(const Ending& ending) {
 }
 
 bool Engine::too_often(int most) {
-    at_once_in_a_row_ = now_.hi - last_event_ <= at_once * pace_ ? at_once_in_a_row_ + 1 : 0;
-    last_event_ = now_.hi;
+    at_once_in_a_row_ = now_.t.hi - last_event_ <= at_once * pace_ ? at_once_in_a_row_ + 1 : 0;
+    last_event_ = now_.t.hi;
     return at_once_in_a_row_ > most;
 }
 
@@ -1837,13 +1772,13 @@ void Engine::tell_user(std::size_t event) {
 Event Engine::event_at(EventKind kind, int where, int user) const {
     const std::size_t joint = index(where);
     const std::size_t loaded = kind == EventKind::switched ? joint : problem_.system.joints[joint].first();
-    return {.t = now_.hi,
+    return {.t = now_.t.hi,
             .kind = kind,
-            .theta = mechanics_.angle(joint, y_),
-            .M = mechanics_.load(loaded, here()),
+            .theta = mechanics_.angle(joint, now_.y),
+            .M = mechanics_.load(loaded, now_.here()),
             .user = user,
             .where = where,
-            .velocity = mechanics_.velocity(joint, y_)};
+            .velocity = mechanics_.velocity(joint, now_.y)};
 }
 
 // ---- guards
@@ -1851,18 +1786,18 @@ Event Engine::event_at(EventKind kind, int where, int user) const {
 void Engine::watch(Ending& ending) {
     std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (mode_.holds(j) && mode_.rigid[j] == 0) watch_release(j, ending);
-        if (rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
+        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j, ending);
+        if (now_.rubs(j) && now_.mode.friction[j].way != Motion::stuck && !now_.mode.friction[j].riding) {
             watch_slip(j, ending);
             watch_corner(j, ending);
         }
         const auto& [walls, stops] = std::tie(problem_.system.joints[j].walls, problem_.system.joints[j].stops);
-        if (walls && mode_.leans[j] == 0) watch_walls(j, *walls, By::wall, ending);
+        if (walls && now_.mode.leans[j] == 0) watch_walls(j, *walls, By::wall, ending);
         if (stops) watch_stop(j, ending);
-        if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !rubs(j))) watch_normal(j, ending);
+        if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !now_.rubs(j))) watch_normal(j, ending);
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
-    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
+    for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
         // Where others hold its contact, what is left of the slip is rounding.
         if (!frame_->keeps(mechanics_.sliders()[s].joint)) watch_slider(s, ending);
     }
@@ -1874,10 +1809,10 @@ void Engine::watch(Ending& ending) {
 
 void Engine::watch_slip(std::size_t joint, Ending& ending) {
     const Joint& own = problem_.system.joints[joint];
-    const Slipping& how = mode_.friction[joint];
+    const Slipping& how = now_.mode.friction[joint];
     const double sign = model::sign_of(how.way);
     const Nodes& belt = segment_.belts[joint];
-    const bool leans = mode_.leans[joint] != 0;
+    const bool leans = now_.mode.leans[joint] != 0;
     const Nodes turns = leans ? Nodes{} : mechanics_.between(joint, std::span(segment_.y).subspan(n()));
     const double first = how.leaving ? 0 : turns[0] - belt[0];
     Series series{};
@@ -1897,7 +1832,7 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
     // the angle.
     const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
-    const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, y_));
+    const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, now_.y));
     const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
     if (crept) {
         crept_[joint] = 1;
@@ -1938,7 +1873,7 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     // It was let go and does not leave: what is told of that was none, and it must be pulled clearly farther.
     ending.by = By::stays;
     take_back_slip(joint);
-    Slipping& stays = mode_.friction[joint];
+    Slipping& stays = now_.mode.friction[joint];
     stays.way = Motion::stuck, stays.leaving = false;
     stays.blunt = std::max(2 * stays.blunt, 64 * rounding * torques);
     if (too_often() || stays.blunt > most_blunt * torques) fail(Outcome::chattering);
@@ -1946,13 +1881,13 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
 
 /// It has no belt, and nothing asks for its motion: what it is under is known as well as the rounding.
 bool Engine::may_creep(std::size_t joint) const {
-    return mechanics_.all_linear() && !mechanics_.has_belt(joint) && mode_.leans[joint] == 0;
+    return mechanics_.all_linear() && !mechanics_.has_belt(joint) && now_.mode.leans[joint] == 0;
 }
 
 /// What was told to slip right now, and did not. Whether there was such an event.
 bool Engine::take_back_slip(std::size_t joint) {
     auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
-        return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == now_.hi;
+        return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == now_.t.hi;
     });
     if (told == result_.events.rend()) return false;
     result_.events.erase(std::next(told).base());
@@ -1964,29 +1899,29 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
     Nodes pull{};
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
     const Series series = cheb::fit(pull);
-    const int wall = mode_.leans[joint];
+    const int wall = now_.mode.leans[joint];
     const double largest = torque_size(joint);
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
         if (wall * sign > 0) continue;
-        const bool sticks = rubs(joint) && mode_.friction[joint].way == Motion::stuck;
+        const bool sticks = now_.rubs(joint) && now_.mode.friction[joint].way == Motion::stuck;
         Nodes limit{};
-        if (mechanics_.limits_change(joint, mode_)) {
+        if (mechanics_.limits_change(joint, now_.mode)) {
             limit = segment_.limits[joint][side == Motion::forward ? 1 : 0];
             if (!std::all_of(limit.begin(), limit.end(), [](double x) { return std::isfinite(x); })) {
                 fail(Outcome::excitation_not_finite);
                 return;
             }
         } else {
-            limit.fill(sticks ? mechanics_.holding(joint, side, here()) : 0);
+            limit.fill(sticks ? mechanics_.holding(joint, side, now_.here()) : 0);
             if (std::isinf(limit[0])) continue;  // a freewheel, backward
         }
-        if (const Slipping& how = mode_.friction[joint]; how.creeps != Motion::stuck) {
-            const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, here());
+        if (const Slipping& how = now_.mode.friction[joint]; how.creeps != Motion::stuck) {
+            const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, now_.here());
             limit.fill(side == how.creeps ? how.apart + level : how.apart - level);
         }
         Nodes values{};
-        const double blunt = mode_.friction[joint].blunt;
+        const double blunt = now_.mode.friction[joint].blunt;
         for (std::size_t j = 0; j < node_count; ++j) values[j] = limit[j] - sign * pull[j] + blunt;
         const Series left = cheb::fit(values);
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
@@ -1999,9 +1934,9 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
             segment_.state(x, y);
             const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
             Look found;
-            if (!look(at, mode_, *frame_, found, x)) return false;
+            if (!look(at, now_.mode, *frame_, found, x)) return false;
             Motion towards = Motion::stuck;
-            return excess(joint, found, mode_, at, towards) > 0 && towards == side;
+            return excess(joint, found, now_.mode, at, towards) > 0 && towards == side;
         };
         std::optional<double> touch;
         const auto touches = [&](double x) {
@@ -2025,7 +1960,7 @@ void Engine::watch_walls(std::size_t joint, const model::Walls& walls, By by, En
     for (const int wall : {1, -1}) {
         const double place = walls.at(wall);
         if (!std::isfinite(place)) continue;
-        const double begin = wall * gap(joint, place);
+        const double begin = wall * now_.gap(problem_.system.joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
         for (double& way : change) way *= -wall;
         // What begins at the wall is known as well as its way from there.
@@ -2046,7 +1981,7 @@ void Engine::watch_stop(std::size_t joint, Ending& ending) const {
     const model::Walls& stops = *problem_.system.joints[joint].stops;
     const Nodes angle = mechanics_.between(joint, segment_.y),
                 velocity = mechanics_.between(joint, std::span(segment_.y).subspan(n()));
-    const int pressed = mode_.presses[joint];
+    const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : angle[0] > stops.upper ? 1 : angle[0] < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && at_wall_[joint] != 0)) return watch_walls(joint, stops, By::stop, ending);
     if (pressed == 0) {  // it may come to the other wall before
@@ -2075,8 +2010,8 @@ void Engine::watch_stop(std::size_t joint, Ending& ending) const {
 void Engine::watch_corner(std::size_t joint, Ending& ending) const {
     const Joint& own = problem_.system.joints[joint];
     const model::Friction& law = own.friction.law;
-    const Slipping& how = mode_.friction[joint];
-    if (law.ranges() < 2 || own.friction.function != nullptr || mode_.leans[joint] != 0) return;
+    const Slipping& how = now_.mode.friction[joint];
+    if (law.ranges() < 2 || own.friction.function != nullptr || now_.mode.leans[joint] != 0) return;
     const model::SpeedRange range = law.range(how.range);
     const double sign = model::sign_of(how.way);
     double fastest = greatest(segment_.belts[joint]);
@@ -2126,7 +2061,7 @@ void Engine::watch_normal(std::size_t joint, Ending& ending) {
         segment_.state(x, y);
         return mechanics_.pressing(joint, {segment_.time(x), Side::at, y});
     };
-    if (mechanics_.rubs(joint) && !rubs(joint)) {
+    if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
         // Nothing presses at the start, where the load may be its rounding, or 0 for long.
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
@@ -2244,7 +2179,7 @@ void Engine::watch_conditions(Ending& ending) {
         double rounded;
     };
     std::vector<Unknown> not_finite;
-    mechanics_.for_each_piecewise(now_.hi, [&](Piecewise& function) {
+    mechanics_.for_each_piecewise(now_.t.hi, [&](Piecewise& function) {
         const std::size_t count = function.conditions().size();
         if (count == 0) return;
         std::vector<Nodes> values(count);
@@ -2254,18 +2189,18 @@ void Engine::watch_conditions(Ending& ending) {
         }
         // What some ulps of the motion change in them is rounding.
         std::vector<double> rounded(count, 0);
-        y = y_;
+        y = now_.y;
         for (std::size_t k = 0; k < asking_.told; ++k) {
-            y[k] = y_[k] * (1 + 4 * rounding);
+            y[k] = now_.y[k] * (1 + 4 * rounding);
             function.margins({segment_.times[0], segment_.side(0), y}, margins);
             for (std::size_t c = 0; c < count; ++c) {
                 const double change = std::fabs(margins[c] - values[c][0]);
                 if (is_known(change)) rounded[c] += change;
             }
-            y[k] = y_[k];
+            y[k] = now_.y[k];
         }
         // What has just been crossed is as near to zero as it was then, also in a stretch that is shorter.
-        for (std::size_t c = 0; c < count && crossed_last_.function == &function && crossed_last_.t == now_.hi; ++c) {
+        for (std::size_t c = 0; c < count && crossed_last_.function == &function && crossed_last_.t == now_.t.hi; ++c) {
             if (function.conditions()[c].step == crossed_last_.step)
                 rounded[c] = std::max(rounded[c], crossed_last_.within);
         }
@@ -2314,7 +2249,7 @@ bool Engine::ends_before(double x) {
     constexpr double beside_end = 1e-6;
     if (!samples_ || 1 + x < beside_end || 1 - x < beside_end) return false;
     const double t = segment_.time(x), nothing = 64 * rounding * std::fabs(t);
-    if (t - now_.hi <= nothing || segment_.end - t <= nothing) return false;
+    if (t - now_.t.hi <= nothing || segment_.end - t <= nothing) return false;
     breaks_.insert(std::lower_bound(breaks_.begin(), breaks_.end(), t), t);
     crossing_at_ = t;
     return true;
@@ -2330,12 +2265,12 @@ bool Engine::cross(const Ending& ending) {
     for (const auto& [function, condition] : ending.conditions) {
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool back = crossed_last_.function == function && crossed_last_.step == step &&
-                          crossed_last_.from == beyond && now_.hi - crossed_last_.t <= soon * pace_;
+                          crossed_last_.from == beyond && now_.t.hi - crossed_last_.t <= soon * pace_;
         to_and_fro_ = back ? to_and_fro_ + 1 : 0;
-        crossed_last_ = {function, step, function->decision(step), now_.hi, crossed_within_};
-        const double before = function->value(here());
+        crossed_last_ = {function, step, function->decision(step), now_.t.hi, crossed_within_};
+        const double before = function->value(now_.here());
         function->cross(condition);
-        const double jump = std::fabs(function->value(here()) - before);
+        const double jump = std::fabs(function->value(now_.here()) - before);
         greatest_crossed_ = std::max({greatest_crossed_, std::fabs(before), jump});
         const bool clear = jump > nothing * greatest_crossed_;
         jumps = jumps || clear;
@@ -2346,7 +2281,7 @@ bool Engine::cross(const Ending& ending) {
     const bool endless = too_often() || to_and_fro_ >= most_to_and_fro;
     if (!endless && small_in_a_row_ < most_small) return true;
     if (endless && jumps) return fail(Outcome::chattering);
-    mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
+    mechanics_.for_each_piecewise(now_.t.hi, [](Piecewise& function) { function.let_go(); });
     has_pieces_ = false;
     return true;
 }
@@ -2410,14 +2345,15 @@ void Engine::watch_users(Ending& ending) {
 /// What an act threw back, or stopped, is through zero without having been beyond rounding on the side that it came
 /// from: it would be thrown back again at once, and again.
 void Engine::come_again(std::size_t event) {
-    const bool told = !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == now_.hi;
+    const bool told =
+        !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == now_.t.hi;
     if (!told) tell_user(event);
     fail(Outcome::chattering);
 }
 
 bool Engine::rubs_somewhere(std::size_t body) const {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (problem_.system.joints[j].is_on(body) && rubs(j)) return true;
+        if (problem_.system.joints[j].is_on(body) && now_.rubs(j)) return true;
     }
     return false;
 }
@@ -2482,16 +2418,16 @@ void Engine::record_turns(double until) {
 std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall, double speed) {
     const Joint& own = problem_.system.joints[joint];
     const auto back_in = [&](bool out) {
-        Mode thrown = mode_;
+        Mode thrown = now_.mode;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (!rubs(j)) continue;
-            if (slip(j) != 0) thrown.friction[j].way = model::motion_of(slip(j));
+            if (!now_.rubs(j)) continue;
+            if (now_.slip(mechanics_, j) != 0) thrown.friction[j].way = model::motion_of(now_.slip(mechanics_, j));
             // Friction acts against the sliding: out and back again, or, on a belt, the same way all the time.
-            const bool turns = j == joint && mechanics_.belt(j, now_.hi, side()) == 0;
+            const bool turns = j == joint && mechanics_.belt(j, now_.t.hi, now_.side()) == 0;
             if (turns) thrown.friction[j].way = (wall > 0) == out ? Motion::backward : Motion::forward;
         }
         Look found;
-        if (!look(here(), thrown, Frame(problem_.system, thrown), found)) return -model::never;
+        if (!look(now_.here(), thrown, Frame(problem_.system, thrown), found)) return -model::never;
         return wall * own.sum(found.accelerations);
     };
     const double out = back_in(true), back = back_in(false);
@@ -2507,18 +2443,18 @@ bool Engine::hit(std::size_t joint, int wall) {
     const Joint& own = problem_.system.joints[joint];
     const double place = own.walls->at(wall), e = own.walls->restitution;
     const bool stayed = at_wall_[joint] != 0;
-    put_child(joint, own.first(), own.of.front().by, place);
+    now_.put_child(own, own.first(), own.of.front().by, place);
     origin_[joint] = place, reach_[joint] = 0;
-    const double before = std::max(0.0, wall * mechanics_.velocity(joint, y_));
+    const double before = std::max(0.0, wall * mechanics_.velocity(joint, now_.y));
     at_wall_[joint] = 1;
     const auto stands = [&] {
-        if (mode_.leans[joint] != wall || leaned_[joint] != 0) return;
+        if (now_.mode.leans[joint] != wall || leaned_[joint] != 0) return;
         tell(EventKind::stick, static_cast<int>(joint));
         leaned_[joint] = 1;
     };
     if (stayed && before == 0) {
-        mode_.leans[joint] = wall;
-        Slipping& how = mode_.friction[joint];
+        now_.mode.leans[joint] = wall;
+        Slipping& how = now_.mode.friction[joint];
         how.leaving = false;
         how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
         if (!decide(true)) return false;
@@ -2536,28 +2472,28 @@ bool Engine::hit(std::size_t joint, int wall) {
         const auto bounces = next_bounces(joint, wall, e * before);
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring the run so far tells what is short: not its end, so that one may stop anywhere and go on.
-        const double pace = std::min(period_, now_.hi - born_);
+        const double pace = std::min(period_, now_.t.hi - born_);
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
     const double after = rests ? 0 : e * before;
-    history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
-    echo(now_.hi, 1);
+    history_->add_jump(now_.t.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+    echo(now_.t.hi, 1);
     for (std::size_t i = 0; i < n(); ++i) {
-        if (thrown.velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : y_[n() + i]);
+        if (thrown.velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : now_.y[n() + i]);
     }
     if (rests) {
         velocity(0);
         has_jumped_ = true;
-        if (rest > 0 && now_.after(rest) < std::min(mechanics_.next_break(now_.hi), problem_.window.end)) {
+        if (rest > 0 && now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end)) {
             std::vector<double> rates(mechanics_.states());
-            mechanics_.rates(here(), rates.data(), &mode_);
-            for (std::size_t k = 0; k < rates.size(); ++k) y_[2 * n() + k] += rest * rates[k];
-            now_ = now_.later(rest);
+            mechanics_.rates(now_.here(), rates.data(), &now_.mode);
+            for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
+            now_.t = now_.t.later(rest);
         }
-        mode_.leans[joint] = wall;
-        if (rubs(joint)) {
-            Slipping& how = mode_.friction[joint];
+        now_.mode.leans[joint] = wall;
+        if (now_.rubs(joint)) {
+            Slipping& how = now_.mode.friction[joint];
             if (how.way != Motion::stuck) arrived_[joint] = how.way;
             how.leaving = false;
         }
@@ -2576,10 +2512,10 @@ bool Engine::hit(std::size_t joint, int wall) {
 /// What leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
 void Engine::leave_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const double v = mechanics_.velocity(j, y_);
-        if (mode_.leans[j] == 0 || v == 0) continue;
-        if (leaned_[j] != 0 && mode_.leans[j] * v < 0) tell(EventKind::slip, static_cast<int>(j));
-        mode_.leans[j] = 0, leaned_[j] = 0, at_wall_[j] = 1;
+        const double v = mechanics_.velocity(j, now_.y);
+        if (now_.mode.leans[j] == 0 || v == 0) continue;
+        if (leaned_[j] != 0 && now_.mode.leans[j] * v < 0) tell(EventKind::slip, static_cast<int>(j));
+        now_.mode.leans[j] = 0, leaned_[j] = 0, at_wall_[j] = 1;
     }
 }
 
@@ -2598,36 +2534,37 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
     const model::WantedEvent& wanted = problem_.drive.events[event];
     tell_user(event);
     if (wanted.act != nullptr) {
-        const std::vector<double> before = y_;
+        const std::vector<double> before = now_.y;
         std::vector<double> values;
-        for (std::size_t e = 0; e < watches_.size(); ++e) values.push_back(watched(e, here()));
-        model::State state{y_[0], y_[n()]};
+        for (std::size_t e = 0; e < watches_.size(); ++e) values.push_back(watched(e, now_.here()));
+        model::State state{now_.y[0], now_.y[n()]};
         const bool named = problem_.system.named;
-        const std::span<double> all(y_);
+        const std::span<double> all(now_.y);
         const std::span<double> given = all.first(asking_.told);
-        if (!wanted.act->act(now_.hi, state, named ? given : given.subspan(2 * n()))) {
+        if (!wanted.act->act(now_.t.hi, state, named ? given : given.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
         }
-        if (!named) y_[0] = state.theta, y_[1] = state.velocity;
-        keep_within_walls(y_);
+        if (!named) now_.y[0] = state.theta, now_.y[1] = state.velocity;
+        keep_within_walls(now_.y);
         has_jumped_ = true;
-        if (y_ != before) low_.assign(n(), 0);  // what the user was given is what he goes on from
-        keep_rigid_places();
+        if (now_.y != before) now_.low.assign(n(), 0);  // what the user was given is what he goes on from
+        now_.keep_rigid_places(problem_.system);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const double work = energy_at(j, y_) - energy_at(j, before);
-            if (work != 0 || j == 0) history_->add_jump(now_.hi, j, {.acts = work});
+            const double work = energy_at(j, now_.y) - energy_at(j, before);
+            if (work != 0 || j == 0) history_->add_jump(now_.t.hi, j, {.acts = work});
         }
-        echo(now_.hi, 1);
-        const bool moved = !std::equal(y_.begin(), y_.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
+        echo(now_.t.hi, 1);
+        const bool moved =
+            !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
-            std::fill(mode_.leans.begin(), mode_.leans.end(), 0);
-            for (std::size_t i = 0; i < n(); ++i) heading_[i] = model::motion_of(y_[n() + i]);
+            std::fill(now_.mode.leans.begin(), now_.mode.leans.end(), 0);
+            for (std::size_t i = 0; i < n(); ++i) heading_[i] = model::motion_of(now_.y[n() + i]);
             touch_walls();
             if (!restart_contacts(Because::act)) return false;
             see_flight();
         }
-        stand_where_put(values, y_ != before ? told : std::vector<std::size_t>());
-        if (moved && watches_[event].fading.after(now_.hi) && !wanted.stop) return fail(Outcome::chattering);
+        stand_where_put(values, now_.y != before ? told : std::vector<std::size_t>());
+        if (moved && watches_[event].fading.after(now_.t.hi) && !wanted.stop) return fail(Outcome::chattering);
     }
     return wanted.stop || !too_often() || fail(Outcome::chattering);
 }
@@ -2644,22 +2581,22 @@ bool Engine::press_stops() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const auto& stops = problem_.system.joints[j].stops;
         if (!stops) continue;
-        const double q = mechanics_.angle(j, y_), v = mechanics_.velocity(j, y_);
+        const double q = mechanics_.angle(j, now_.y), v = mechanics_.velocity(j, now_.y);
         int side = 0;
         for (const int wall : {1, -1}) {
             if (!std::isfinite(stops->at(wall))) continue;
             const double nothing = 64 * rounding * std::fabs(stops->at(wall));
             const double depth = wall * (q - stops->at(wall)), torque = wall * stops->torque(wall, q, v);
-            const bool before = mode_.presses[j] == wall;
+            const bool before = now_.mode.presses[j] == wall;
             const double least = before ? -nothing : nothing;
             if (depth > least && torque > least * stops->stiffness) side = wall;
         }
-        if (side == mode_.presses[j]) continue;
+        if (side == now_.mode.presses[j]) continue;
         changed = true;
         if (begun()) {
             press(j, side);
         } else {
-            mode_.presses[j] = side;
+            now_.mode.presses[j] = side;
         }
     }
     return changed;
@@ -2668,11 +2605,11 @@ bool Engine::press_stops() {
 /// What an elastic wall stores when it is left is lost.
 void Engine::press(std::size_t joint, int side) {
     const model::Walls& stops = *problem_.system.joints[joint].stops;
-    const int wall = side != 0 ? side : mode_.presses[joint];
-    const double depth = mechanics_.angle(joint, y_) - stops.at(wall);
+    const int wall = side != 0 ? side : now_.mode.presses[joint];
+    const double depth = mechanics_.angle(joint, now_.y) - stops.at(wall);
     const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
-    history_->add_jump(now_.hi, joint, {.impacts = stored, .kept = -stored});
-    mode_.presses[joint] = side;
+    history_->add_jump(now_.t.hi, joint, {.impacts = stored, .kept = -stored});
+    now_.mode.presses[joint] = side;
     has_jumped_ = true;
     tell(side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(joint));
 }
@@ -2687,8 +2624,8 @@ void Engine::watch_slider(std::size_t slider, Ending& ending) const {
         if (x && *x < ending.x) ending = {*x, By::slider, slider, static_cast<int>(way)};
     };
     Nodes values{};
-    if (mode_.sliders[slider] != Motion::stuck) {
-        const double sign = model::sign_of(mode_.sliders[slider]);
+    if (now_.mode.sliders[slider] != Motion::stuck) {
+        const double sign = model::sign_of(now_.mode.sliders[slider]);
         values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
         for (double& value : values) value *= sign;
         const auto slip_at = [&, joint = joint](double x) {
@@ -2709,18 +2646,18 @@ void Engine::watch_slider(std::size_t slider, Ending& ending) const {
 
 void Engine::let_slide(std::size_t slider, Motion way) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
-    mode_.sliders[slider] = way;
-    if (way != Motion::stuck) y_[own.bend] = model::sign_of(way) * own.limit / own.stiffness;
+    now_.mode.sliders[slider] = way;
+    if (way != Motion::stuck) now_.y[own.bend] = model::sign_of(way) * own.limit / own.stiffness;
     tell(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, static_cast<int>(own.joint));
 }
 
 /// After velocities have jumped: sliders whose slip has turned stick.
 bool Engine::turn_sliders() {
     bool turned = false;
-    for (std::size_t s = 0; s < mode_.sliders.size(); ++s) {
-        const double way = model::sign_of(mode_.sliders[s]);
+    for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
+        const double way = model::sign_of(now_.mode.sliders[s]);
         const std::size_t joint = mechanics_.sliders()[s].joint;
-        if (!(way * slip(joint) < -16 * rounding * mechanics_.speed_scale(joint, y_))) continue;
+        if (!(way * now_.slip(mechanics_, joint) < -16 * rounding * mechanics_.speed_scale(joint, now_.y))) continue;
         let_slide(s, Motion::stuck);
         turned = true;
     }
@@ -2729,13 +2666,13 @@ bool Engine::turn_sliders() {
 
 Engine::Thrown Engine::thrown_along(std::size_t joint) {
     if (!rigid_) {
-        Mode free = mode_;
+        Mode free = now_.mode;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) free.leans[j] = 0, free.rubs[j] = 0;
         rigid_.emplace(problem_.system, free);
     }
     Thrown thrown;
     for (const auto& [group, by] : rigid_->joints[joint]) thrown.lightness += by * by / rigid_->inertia[group];
-    const double speed = mechanics_.velocity(joint, y_);
+    const double speed = mechanics_.velocity(joint, now_.y);
     for (std::size_t i = 0; i < n(); ++i) {
         double share = 0;
         for (const auto& [group, by] : rigid_->bodies[i]) {
@@ -2743,7 +2680,7 @@ Engine::Thrown Engine::thrown_along(std::size_t joint) {
                 if (own_group == group) share += by * turned / rigid_->inertia[group] / thrown.lightness;
             }
         }
-        thrown.velocities.emplace_back(y_[n() + i] - share * speed, share);
+        thrown.velocities.emplace_back(now_.y[n() + i] - share * speed, share);
     }
     return thrown;
 }
@@ -2751,7 +2688,7 @@ Engine::Thrown Engine::thrown_along(std::size_t joint) {
 void Engine::throw_to(const Thrown& thrown, double relative) {
     for (std::size_t i = 0; i < n(); ++i) {
         const auto& [still, share] = thrown.velocities[i];
-        if (share != 0) y_[n() + i] = still + share * relative;
+        if (share != 0) now_.y[n() + i] = still + share * relative;
     }
 }
 
@@ -2765,18 +2702,18 @@ void Engine::catch_freewheels() {
         std::size_t worst = mechanics_.joints();
         double least = 0;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && rubs(j);
-            if (!one_way && mode_.leans[j] == 0) continue;
-            const double v = one_way ? slip(j) : -mode_.leans[j] * mechanics_.velocity(j, y_);
-            if (v < -16 * rounding * mechanics_.speed_scale(j, y_) && v < least) worst = j, least = v;
+            const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && now_.rubs(j);
+            if (!one_way && now_.mode.leans[j] == 0) continue;
+            const double v = one_way ? now_.slip(mechanics_, j) : -now_.mode.leans[j] * mechanics_.velocity(j, now_.y);
+            if (v < -16 * rounding * mechanics_.speed_scale(j, now_.y) && v < least) worst = j, least = v;
         }
         if (worst == mechanics_.joints()) return;
         const Thrown thrown = thrown_along(worst);
         if (!(thrown.lightness > 0)) return;
-        const double before = mechanics_.velocity(worst, y_);
-        const double after = mode_.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.hi, side());
+        const double before = mechanics_.velocity(worst, now_.y);
+        const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
         throw_to(thrown, after);
-        history_->add_jump(now_.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+        history_->add_jump(now_.t.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
     }
 }
 
@@ -2786,18 +2723,18 @@ void Engine::touch_walls() {
         const Joint& joint = problem_.system.joints[j];
         if (!joint.walls) continue;
         for (const int wall : {1, -1}) {
-            if (mechanics_.angle(j, y_) != joint.walls->at(wall)) continue;
+            if (mechanics_.angle(j, now_.y) != joint.walls->at(wall)) continue;
             at_wall_[j] = 1;
-            if (mechanics_.velocity(j, y_) == 0) mode_.leans[j] = wall;
+            if (mechanics_.velocity(j, now_.y) == 0) now_.mode.leans[j] = wall;
         }
     }
 }
 
 /// A body that was thrown, and is soon back, is to be seen on its way.
 void Engine::see_flight() {
-    if (!look({now_.hi, side(), departing()}, mode_, frame(), look_)) return;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), look_)) return;
     for (std::size_t i = 0; i < n(); ++i) {
-        const double v = y_[n() + i], a = look_.accelerations[i];
+        const double v = now_.y[n() + i], a = look_.accelerations[i];
         if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * longest_)) continue;
         h_ = std::min(h_, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_));
     }
@@ -2806,13 +2743,13 @@ void Engine::see_flight() {
 /// How far a watched value goes when what it is made of changes by some ulps.
 double Engine::rounding_of(std::size_t event) const {
     constexpr double ulps = 1 + 4 * rounding;
-    std::vector<double> y = y_;
-    const double own = watched(event, {now_.hi, side(), y});
+    std::vector<double> y = now_.y;
+    const double own = watched(event, {now_.t.hi, now_.side(), y});
     double most = 0;
     for (std::size_t k = 0; k < 2 * n(); ++k) {
-        y[k] = y_[k] * ulps;
-        most = std::max(most, std::fabs(watched(event, {now_.hi, side(), y}) - own));
-        y[k] = y_[k];
+        y[k] = now_.y[k] * ulps;
+        most = std::max(most, std::fabs(watched(event, {now_.t.hi, now_.side(), y}) - own));
+        y[k] = now_.y[k];
     }
     return most;
 }
@@ -2822,16 +2759,16 @@ double Engine::rounding_of(std::size_t event) const {
 bool Engine::passes_on(std::size_t event) {
     constexpr double soon = 1e-4;
     const double step = soon * h_;
-    if (!look({now_.hi, side(), departing()}, mode_, frame(), look_)) return true;
-    std::vector<double> rates(mechanics_.states()), y = y_;
-    mechanics_.rates(here(), rates.data(), &mode_);
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), look_)) return true;
+    std::vector<double> rates(mechanics_.states()), y = now_.y;
+    mechanics_.rates(now_.here(), rates.data(), &now_.mode);
     const auto value = [&](double after) {
         for (std::size_t i = 0; i < n(); ++i) {
-            y[i] = y_[i] + after * y_[n() + i];
-            y[n() + i] = y_[n() + i] + after * look_.accelerations[i];
+            y[i] = now_.y[i] + after * now_.y[n() + i];
+            y[n() + i] = now_.y[n() + i] + after * look_.accelerations[i];
         }
-        for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n() + k] = y_[2 * n() + k] + after * rates[k];
-        return watched(event, {now_.hi + after, Side::at, y});
+        for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n() + k] = now_.y[2 * n() + k] + after * rates[k];
+        return watched(event, {now_.t.hi + after, Side::at, y});
     };
     return came_from_[event] * (value(step) - value(-step)) < -watches_[event].rounded;
 }
@@ -2844,7 +2781,7 @@ void Engine::stand_where_put(const std::vector<double>& before, const std::vecto
     segment_.state(-1, first), segment_.state(1, last);
     for (std::size_t e = 0; e < watches_.size(); ++e) {
         Watch& watch = watches_[e];
-        const double now = watched(e, here());
+        const double now = watched(e, now_.here());
         const double size = std::max({std::fabs(watched(e, {segment_.time(-1), Side::at, first})),
                                       std::fabs(watched(e, {segment_.end, Side::at, last})), std::fabs(now)});
         if (now == before[e]) {
@@ -2874,14 +2811,14 @@ bool Engine::rows_until(double end, bool to_the_end) {
 /// At x of the segment; -2 is the present.
 bool Engine::put_row(double t, double x) {
     std::vector<double>& y = row_;
-    y = y_;
+    y = now_.y;
     if (x > -1) segment_.state(x, y);
     keep_within_walls(y);
-    const Moment at{t, x <= -1 ? side() : Side::at, y};
+    const Moment at{t, x <= -1 ? now_.side() : Side::at, y};
     bool needs_look = !problem_.joined_elsewhere;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || mode_.holds(j);
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || now_.mode.holds(j);
     const auto place = x > -1 ? std::optional(x) : std::nullopt;
-    if (needs_look && !look(at, mode_, frame(), look_, place, Loads::sampled)) return false;
+    if (needs_look && !look(at, now_.mode, frame(), look_, place, Loads::sampled)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -2901,11 +2838,11 @@ bool Engine::put_row(double t, double x) {
     }
     for (std::size_t j = n(); j < told_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
-        double torque = -mechanics_.joint_torque(j, at, mode_, belt);
+        double torque = -mechanics_.joint_torque(j, at, now_.mode, belt);
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
-        if (mode_.holds(j)) torque += look_.holding[j];
-        const bool kept = mode_.rigid[j] != 0;  // to the letter
-        good = put(kept ? rigid_at_[j] : mechanics_.angle(j, y)) && good;
+        if (now_.mode.holds(j)) torque += look_.holding[j];
+        const bool kept = now_.mode.rigid[j] != 0;  // to the letter
+        good = put(kept ? now_.rigid_at[j] : mechanics_.angle(j, y)) && good;
         good = put(kept ? 0 : mechanics_.velocity(j, y)) && good;
         good = put(torque) && good;
         good = put(friction(j, at, look_)) && good;
@@ -2923,11 +2860,11 @@ bool Engine::put_row(double t, double x) {
 /// The torque of a joint's friction on its first body.
 double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
     // The wall carries what presses against it, friction what pulls away from it.
-    if (rubs(joint) && mode_.friction[joint].way == Motion::stuck) {
+    if (now_.rubs(joint) && now_.mode.friction[joint].way == Motion::stuck) {
         const double held = look.holding[joint] - mechanics_.slider_torque(joint, at.y);
-        return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
+        return now_.mode.leans[joint] != 0 && now_.mode.leans[joint] * held <= 0 ? 0.0 : held;
     }
-    return mechanics_.friction(joint, at, mode_, mechanics_.belt(joint, at.t, at.side));
+    return mechanics_.friction(joint, at, now_.mode, mechanics_.belt(joint, at.t, at.side));
 }
 
 }  // namespace
