@@ -17,6 +17,7 @@
 #include "motion/break_search.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/crossing.hpp"
+#include "motion/engine/frames.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/engine/moving.hpp"
 #include "motion/engine/now.hpp"
@@ -55,7 +56,7 @@ constexpr double beside_standstill = 1e-12;    // one that is so near to a stand
 constexpr double at_zero = 1e-12;              // this part of what it was on the stretch stands at zero
 constexpr double huge = 1e100;                 // a function that is no number at such a state says nothing about itself
 constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;  // bounds of a series are so much greater
-constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
+constexpr double part_of_run = 1.0 / 16;
 
 /// How long a polynomial of degree 16 can follow a motion under a law of friction from this speed on, about: along a
 /// line that makes it grow or die out fast, and along a curve until the speed has changed by its scale. `first` is the
@@ -105,9 +106,9 @@ private:
     bool advance();
     bool stands_for_good();
     bool rest();
-    void choose();
-    double longest_under_friction();
-    double until_wall();
+    void choose(const Frame& frame);
+    double longest_under_friction(const Frame& frame);
+    double until_wall(const Frame& frame);
     void again(Collocation::Attempt attempt);
     [[nodiscard]] bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
@@ -122,7 +123,6 @@ private:
     std::vector<Kept::Acting> acting();
     [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
     bool handle(const Ending& ending);
-    const Frame& frame();
 
     // Decisions.
     bool decide(bool told, std::optional<Ending> released = {});
@@ -152,12 +152,12 @@ private:
     bool restart_contacts(Because why, std::size_t at = 0);
 
     // Guards.
-    void watch(Ending& ending);
+    void watch(const Frame& frame, Ending& ending);
     void watch_slip(std::size_t joint, Ending& ending);
     bool take_back_slip(std::size_t joint);
     void settle_at_limit(std::size_t joint);
     bool only_touched(std::size_t joint, Motion way);
-    void watch_release(std::size_t joint, Ending& ending);
+    void watch_release(std::size_t joint, const Frame& frame, Ending& ending);
     void watch_walls(std::size_t joint, const model::Walls& walls, By by, Ending& ending) const;
     void watch_stop(std::size_t joint, Ending& ending) const;
     void watch_slider(std::size_t slider, Ending& ending) const;
@@ -182,7 +182,7 @@ private:
     bool cross(const Ending& ending);
     bool ends_before(double x);
     void decide_conditions(const Moment& at, const Mode& mode);
-    void record_turns(double until);
+    void record_turns(const Frame& frame, double until);
     [[nodiscard]] bool rubs_somewhere(std::size_t body) const;
 
     struct Bounces {
@@ -228,11 +228,9 @@ private:
     Mechanics mechanics_;
     std::shared_ptr<History> history_;
     double inertia_ = 0;  ///< of all bodies
-    double period_ = model::never, pace_ = 1, longest_all_ = 1, longest_ = 1;
+    double period_ = model::never, pace_ = 1, longest_all_ = 1;
     std::optional<Collocation> solver_;
-    std::map<std::pair<std::vector<char>, std::vector<int>>, std::pair<Frame, double>> frames_;
-    const Frame* frame_ = nullptr;
-    std::pair<std::vector<char>, std::vector<int>> frame_of_;  ///< which joints hold, and at which walls
+    std::optional<Frames> frames_;
 
     Now now_;
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
@@ -361,37 +359,14 @@ Engine::Engine(const Request& problem, Run& result)
     period_ = w > 0 ? 2 * std::numbers::pi / w : model::never;
     pace_ = std::min(period_, run);
     longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period_ : part_of_run * run);
-    longest_ = longest_all_;
-    h_ = longest_ / 2;
+    frames_.emplace(mechanics_, problem.longest, longest_all_);
+    h_ = longest_all_ / 2;
     attempts_since_ = now_.t.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
     result_.table = Growing<double>(problem.rows.count(), columns);
-}
-
-const Frame& Engine::frame() {
-    bool same = frame_ != nullptr && frame_of_.second == now_.mode.leans;
-    for (std::size_t j = 0; same && j < mechanics_.joints(); ++j)
-        same = now_.mode.holds(j) == (frame_of_.first[j] != 0);
-    if (same) return *frame_;
-    frame_of_.first.resize(mechanics_.joints());
-    for (std::size_t j = 0; j < frame_of_.first.size(); ++j) frame_of_.first[j] = now_.mode.holds(j) ? 1 : 0;
-    frame_of_.second = now_.mode.leans;
-    auto found = frames_.find(frame_of_);
-    if (found == frames_.end()) {
-        constexpr std::size_t most_frames = 512;
-        if (frames_.size() >= most_frames) frames_.clear();
-        Frame made(problem_.system, now_.mode);
-        const double w = mechanics_.fastest(made);
-        const double longest =
-            w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * std::numbers::pi / w) : longest_all_;
-        found = frames_.emplace(frame_of_, std::pair(std::move(made), longest)).first;
-    }
-    longest_ = found->second.second;
-    frame_ = &found->second.first;
-    return *frame_;
 }
 
 /// How great the torques at its bodies are, as torques on its angle.
@@ -581,9 +556,9 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     }
     entered_ = now_.mode;
     const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
-    if (free && frame().edges.empty()) return true;
+    if (free && frames_->of(now_.mode).edges.empty()) return true;
     project(now_.side());
-    const bool loops = !frame().closing.empty();
+    const bool loops = !frames_->of(now_.mode).closing.empty();
     // One after the other comes to its limit now, or can not go: no sharing holds any longer.
     const bool all_used = loops && last_full_at_ == now_.t.hi;
     if (loops && released) last_full_at_ = now_.t.hi, last_full_ = released->which;
@@ -603,7 +578,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (!decide_together(full)) return false;
             break;
         }
-        const Frame& present = frame();
+        const Frame& present = frames_->of(now_.mode);
         bool grown = false;
         for (std::size_t j = 0; j < joints; ++j) {
             Slipping& how = now_.mode.friction[j];
@@ -668,7 +643,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             } else {
                 slide(worst, way, true);
                 // In a loop others may hold on, while this one gives all that it can.
-                if (moves_as_one(worst, frame())) {
+                if (moves_as_one(worst, frames_->of(now_.mode))) {
                     now_.mode.friction[worst].riding = true, now_.mode.friction[worst].leaving = false;
                 }
             }
@@ -737,7 +712,8 @@ void Engine::settle_at_limit(std::size_t joint) {
     const double before = std::exchange(size_at_stop_, torque_size(joint));
     const bool alone = n() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && now_.mode.leans[joint] == 0;
     if (!alone || own.stiffness == 0) return;
-    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), decided_)) return;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frames_->of(now_.mode), decided_))
+        return;
     constexpr double roundings = 1024 * rounding;
     Motion towards = Motion::stuck;
     const double beyond = excess(joint, decided_, now_.mode, now_.here(), towards);
@@ -791,7 +767,7 @@ struct Engine::Box {
 
 /// Of these joints, which hold in the present mode.
 bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
-    const Frame present = frame();
+    const Frame& present = frames_->of(now_.mode);
     Look found;
     if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, present, found))
         return fail(Outcome::excitation_not_finite);
@@ -870,7 +846,7 @@ bool Engine::decide_together(std::size_t full) {
         }
     }
     for (const std::size_t j : gone) {
-        if (!moves_as_one(j, frame())) continue;
+        if (!moves_as_one(j, frames_->of(now_.mode))) continue;
         now_.mode.friction[j].riding = true, now_.mode.friction[j].leaving = false;
     }
     return true;
@@ -880,7 +856,7 @@ bool Engine::decide_together(std::size_t full) {
 /// do: the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they
 /// have the smallest. A joint at its limit rides along, or slides when the others do not hold.
 bool Engine::share_loops(const std::optional<Ending>& released) {
-    const std::vector<std::size_t> held = frame().sharing_of;
+    const std::vector<std::size_t> held = frames_->of(now_.mode).sharing_of;
     Box box;
     if (!box_of(held, box)) return false;
     Eigen::Index full = -1;  // the joint that came to its limit
@@ -916,7 +892,7 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
 
 /// What is held together has one velocity, to the letter; what leans is at its wall.
 void Engine::project(Side when) {
-    const Frame& present = frame();
+    const Frame& present = frames_->of(now_.mode);
     if (present.edges.empty()) return;
     auto& [belts, offsets, momentum, first] = projected_;
     belts.resize(mechanics_.joints());
@@ -1122,7 +1098,7 @@ void Engine::run() {
         result_.events.insert(later, event);
     }
     if (outcome_ == Outcome::reached_end) {
-        const Frame& present = frame();
+        const Frame& present = frames_->of(now_.mode);
         bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
         for (std::size_t i = 0; i < n(); ++i) {
             still = still && present.bodies[i].empty() && (now_.y[n() + i] == 0 || problem_.joined_elsewhere);
@@ -1173,8 +1149,7 @@ void Engine::forget_chatter() {
     while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
 }
 
-void Engine::choose() {
-    frame();
+void Engine::choose(const Frame& frame) {
     double breaks = std::min(mechanics_.next_break(now_.t.hi), echoes_.empty() ? model::never : echoes_.front().first);
     if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
     for (const model::WantedEvent& event : problem_.drive.events) {
@@ -1188,12 +1163,12 @@ void Engine::choose() {
         const double step_end = problem_.window.start + steps * problem_.step;
         if (step_end < limit - beside) limit = step_end;
     }
-    double h = std::min(
-        {rung(h_, longest_ / 2), mechanics_.view(now_.t.hi, cheb::widest_gap) / 2, shortest_delay_ / 2 * (1 - 1e-12)});
+    double h = std::min({rung(h_, frames_->longest(now_.mode) / 2), mechanics_.view(now_.t.hi, cheb::widest_gap) / 2,
+                         shortest_delay_ / 2 * (1 - 1e-12)});
     if (bad_time_ < model::never) h = std::min(h, now_.t.until(bad_time_) / 4);
-    if (problem_.step == 0) h = std::min(h, longest_under_friction() / 2);
+    if (problem_.step == 0) h = std::min(h, longest_under_friction(frame) / 2);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
-    if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
+    if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(frame), 1e-9 * pace_));
     const double remaining = now_.t.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     segment_.start = now_.t;
@@ -1205,9 +1180,9 @@ void Engine::choose() {
 }
 
 /// How long it takes to the next wall, if all accelerations stay as they are.
-double Engine::until_wall() {
+double Engine::until_wall(const Frame& frame) {
     double first = model::never;
-    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, *frame_, look_)) return first;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame, look_)) return first;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         const model::Walls* walls = joint.any_walls();
@@ -1228,7 +1203,7 @@ double Engine::until_wall() {
 }
 
 /// How long a stretch may be under laws of friction that bend with the speed.
-double Engine::longest_under_friction() {
+double Engine::longest_under_friction(const Frame& frame) {
     double longest = model::never;
     bool looked = false;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -1236,7 +1211,7 @@ double Engine::longest_under_friction() {
         const model::Friction& law = joint.friction.law;
         const Slipping& how = now_.mode.friction[j];
         if (law.ranges() == 0 || how.way == Motion::stuck || how.riding || now_.mode.leans[j] != 0) continue;
-        if (!looked && !look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, *frame_, look_))
+        if (!looked && !look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame, look_))
             return longest;
         looked = true;
         const double sign = model::sign_of(how.way);
@@ -1283,7 +1258,8 @@ void Engine::again(Collocation::Attempt attempt) {
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
-    if (unresolved <= slightly && h_ > short_part * longest_) short_enough_ = h_, limited_for_ = limited_stretches;
+    if (unresolved <= slightly && h_ > short_part * frames_->longest(now_.mode))
+        short_enough_ = h_, limited_for_ = limited_stretches;
 }
 
 bool Engine::a_belt_jumps_at(double t) const {
@@ -1386,7 +1362,7 @@ void Engine::explain_end() {
 
 /// Whether nothing that may still come moves any body.
 bool Engine::stands_for_good() {
-    const Frame& present = frame();
+    const Frame& present = frames_->of(now_.mode);
     if (present.groups() > 0 || !present.closing.empty() || mechanics_.states() > 0 || mechanics_.has_base())
         return false;
     if (mechanics_.has_belts() || !problem_.drive.events.empty()) return false;
@@ -1434,9 +1410,10 @@ bool Engine::rest() {
 bool Engine::advance() {
     if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     if (stands_for_good()) return rest();
-    choose();
+    const Frame& present = frames_->of(now_.mode);
+    const double longest = frames_->longest(now_.mode);
+    choose(present);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
-    const Frame& present = *frame_;
     decide_conditions({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode);
     segment_.low = now_.low, sampled_.clear();
     const auto attempt = solver_->solve(segment_, now_.mode, present, now_.y, now_.departing(problem_.system));
@@ -1456,18 +1433,17 @@ bool Engine::advance() {
         return outcome_ == Outcome::reached_end;
     } else {
         if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
-        const double least = segment_.h < short_part * longest_ ? 2 : 0;
-        const double longer = problem_.step > 0
-                                  ? longest_
-                                  : segment_.h * std::clamp(0.9 * solver_->growth(), least, samples_ ? 2.0 : 8.0);
-        h_ = std::min(longest_ / 2, std::max(h_, longer));
+        const double least = segment_.h < short_part * longest ? 2 : 0;
+        const double longer =
+            problem_.step > 0 ? longest : segment_.h * std::clamp(0.9 * solver_->growth(), least, samples_ ? 2.0 : 8.0);
+        h_ = std::min(longest / 2, std::max(h_, longer));
         if (limited_for_ > 0 && --limited_for_ > 0) h_ = std::min(h_, short_enough_);
     }
     Ending ending;
-    watch(ending);
+    watch(present, ending);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
-    record_turns(ending.x);
+    record_turns(present, ending.x);
     if (!end_at(ending.x)) return false;
     return handle(ending);
 }
@@ -1783,10 +1759,10 @@ Event Engine::event_at(EventKind kind, int where, int user) const {
 
 // ---- guards
 
-void Engine::watch(Ending& ending) {
+void Engine::watch(const Frame& frame, Ending& ending) {
     std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j, ending);
+        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j, frame, ending);
         if (now_.rubs(j) && now_.mode.friction[j].way != Motion::stuck && !now_.mode.friction[j].riding) {
             watch_slip(j, ending);
             watch_corner(j, ending);
@@ -1799,7 +1775,7 @@ void Engine::watch(Ending& ending) {
     }
     for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
         // Where others hold its contact, what is left of the slip is rounding.
-        if (!frame_->keeps(mechanics_.sliders()[s].joint)) watch_slider(s, ending);
+        if (!frame.keeps(mechanics_.sliders()[s].joint)) watch_slider(s, ending);
     }
     watch_relays(ending);
     if (has_pieces_) watch_conditions(ending);
@@ -1895,7 +1871,7 @@ bool Engine::take_back_slip(std::size_t joint) {
 }
 
 /// Where what holds a joint passes what it can hold.
-void Engine::watch_release(std::size_t joint, Ending& ending) {
+void Engine::watch_release(std::size_t joint, const Frame& frame, Ending& ending) {
     Nodes pull{};
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
     const Series series = cheb::fit(pull);
@@ -1934,7 +1910,7 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
             segment_.state(x, y);
             const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
             Look found;
-            if (!look(at, now_.mode, *frame_, found, x)) return false;
+            if (!look(at, now_.mode, frame, found, x)) return false;
             Motion towards = Motion::stuck;
             return excess(joint, found, now_.mode, at, towards) > 0 && towards == side;
         };
@@ -2359,10 +2335,10 @@ bool Engine::rubs_somewhere(std::size_t body) const {
 }
 
 /// Without dry friction nothing happens at a turn, it is only told.
-void Engine::record_turns(double until) {
+void Engine::record_turns(const Frame& frame, double until) {
     const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
     for (std::size_t i = 0; i < n(); ++i) {
-        if (rubs_somewhere(i) || frame_->bodies[i].empty()) continue;
+        if (rubs_somewhere(i) || frame.bodies[i].empty()) continue;
         const Nodes& v = segment_.y[n() + i];
         const double moving = greatest(v);
         const auto exact = [&](double x) { return segment_.at(n() + i, x); };
@@ -2732,10 +2708,11 @@ void Engine::touch_walls() {
 
 /// A body that was thrown, and is soon back, is to be seen on its way.
 void Engine::see_flight() {
-    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), look_)) return;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frames_->of(now_.mode), look_))
+        return;
     for (std::size_t i = 0; i < n(); ++i) {
         const double v = now_.y[n() + i], a = look_.accelerations[i];
-        if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * longest_)) continue;
+        if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * frames_->longest(now_.mode))) continue;
         h_ = std::min(h_, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_));
     }
 }
@@ -2759,7 +2736,8 @@ double Engine::rounding_of(std::size_t event) const {
 bool Engine::passes_on(std::size_t event) {
     constexpr double soon = 1e-4;
     const double step = soon * h_;
-    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frame(), look_)) return true;
+    if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frames_->of(now_.mode), look_))
+        return true;
     std::vector<double> rates(mechanics_.states()), y = now_.y;
     mechanics_.rates(now_.here(), rates.data(), &now_.mode);
     const auto value = [&](double after) {
@@ -2818,7 +2796,7 @@ bool Engine::put_row(double t, double x) {
     bool needs_look = !problem_.joined_elsewhere;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || now_.mode.holds(j);
     const auto place = x > -1 ? std::optional(x) : std::nullopt;
-    if (needs_look && !look(at, now_.mode, frame(), look_, place, Loads::sampled)) return false;
+    if (needs_look && !look(at, now_.mode, frames_->of(now_.mode), look_, place, Loads::sampled)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
