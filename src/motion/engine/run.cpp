@@ -21,6 +21,7 @@
 #include "motion/engine/history.hpp"
 #include "motion/engine/moving.hpp"
 #include "motion/engine/now.hpp"
+#include "motion/engine/torque_sizes.hpp"
 #include "motion/first_below.hpp"
 #include "motion/roughness.hpp"
 #include "motion/witness.hpp"
@@ -126,12 +127,12 @@ private:
 
     // Decisions.
     bool decide(bool told, std::optional<Ending> released = {});
-    void creep(std::size_t joint, Motion way, double pull);
+    void creep(std::size_t joint, Motion way, double pull, double size);
     [[nodiscard]] bool may_creep(std::size_t joint) const;
-    bool share_loops(const std::optional<Ending>& released);
+    bool share_loops(const std::optional<Ending>& released, const TorqueSizes& sizes);
     struct Box;
     bool box_of(const std::vector<std::size_t>& held, Box& box);
-    bool decide_together(std::size_t full);
+    bool decide_together(std::size_t full, const TorqueSizes& sizes);
     void project(Side when);
     [[nodiscard]] double angle_given(std::size_t body, Side when) const;
     [[nodiscard]] double kinetic_energy() const;
@@ -153,11 +154,11 @@ private:
 
     // Guards.
     void watch(const Frame& frame, Ending& ending);
-    void watch_slip(std::size_t joint, Ending& ending);
+    void watch_slip(std::size_t joint, double torques, Ending& ending);
     bool take_back_slip(std::size_t joint);
-    void settle_at_limit(std::size_t joint);
-    bool only_touched(std::size_t joint, Motion way);
-    void watch_release(std::size_t joint, const Frame& frame, Ending& ending);
+    void settle_at_limit(std::size_t joint, double size);
+    bool only_touched(std::size_t joint, Motion way, double size);
+    void watch_release(std::size_t joint, const Frame& frame, double torques, Ending& ending);
     void watch_walls(std::size_t joint, const model::Walls& walls, By by, Ending& ending) const;
     void watch_stop(std::size_t joint, Ending& ending) const;
     void watch_slider(std::size_t slider, Ending& ending) const;
@@ -220,7 +221,8 @@ private:
     /// Those that were asked for: behind them are the joints that move bodies.
     [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
     [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
-    [[nodiscard]] double torque_size(std::size_t joint) const;
+    [[nodiscard]] TorqueSizes torque_sizes() const { return {mechanics_, segment_, now_.here()}; }
+    [[nodiscard]] const Joint& joint_at(std::size_t joint) const { return problem_.system.joints[joint]; }
 
     const Request& problem_;
     Run& result_;
@@ -300,8 +302,6 @@ private:
     std::array<std::vector<double>, 4> projected_;  ///< of project()
     std::vector<char> seen_, alike_;                ///< of project()
     mutable std::vector<double> point_;
-    mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
-    mutable double sizes_at_ = -model::never;
 };
 
 Engine::Engine(const Request& problem, Run& result)
@@ -367,27 +367,6 @@ Engine::Engine(const Request& problem, Run& result)
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
     result_.table = Growing<double>(problem.rows.count(), columns);
-}
-
-/// How great the torques at its bodies are, as torques on its angle.
-double Engine::torque_size(std::size_t joint) const {
-    if (sizes_at_ != now_.t.hi || sizes_.empty()) {
-        sizes_.assign(n(), 0);
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const Joint& own = problem_.system.joints[j];
-            double load = segment_.loads.empty() ? 0 : greatest(segment_.loads[j]);
-            // What depends on the motion may be 0 here, and would be a little later.
-            if (!segment_.loads.empty() && mechanics_.loads()[j].asks_the_motion()) {
-                load = std::max(load, greatest(segment_.driven[j]));
-            }
-            const double size = load + mechanics_.size_of(j, now_.here());
-            for (const auto& [body, by] : own.of) sizes_[body] += std::fabs(by) * size;
-        }
-        sizes_at_ = now_.t.hi;
-    }
-    double size = 0;
-    for (const auto& [body, by] : problem_.system.joints[joint].of) size += sizes_[body] / std::fabs(by);
-    return size;
 }
 
 // ---- decisions
@@ -559,13 +538,14 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     if (free && frames_->of(now_.mode).edges.empty()) return true;
     project(now_.side());
     const bool loops = !frames_->of(now_.mode).closing.empty();
+    const TorqueSizes sizes = torque_sizes();
     // One after the other comes to its limit now, or can not go: no sharing holds any longer.
     const bool all_used = loops && last_full_at_ == now_.t.hi;
     if (loops && released) last_full_at_ = now_.t.hi, last_full_ = released->which;
     const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
-    if (loops && !all_used && !share_loops(released)) return false;
+    if (loops && !all_used && !share_loops(released, sizes)) return false;
     for (std::size_t j = 0; j < joints && told; ++j) {
-        if (asked_[j].slid != Motion::stuck) settle_at_limit(j);
+        if (asked_[j].slid != Motion::stuck) settle_at_limit(j, sizes.on(joint_at(j)));
     }
     Look& found = decided_;
     // What was released is so between two doubles of the time.
@@ -575,7 +555,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     const int most = 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
         if (all_used || i > most) {
-            if (!decide_together(full)) return false;
+            if (!decide_together(full, sizes)) return false;
             break;
         }
         const Frame& present = frames_->of(now_.mode);
@@ -599,7 +579,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             return fail(Outcome::excitation_not_finite);
         for (std::size_t j = 0; j < joints; ++j) {
             if (crept_[j] != 0 && asked_[j].slid != Motion::stuck && now_.mode.holds(j))
-                creep(j, asked_[j].slid, -found.holding[j]);
+                creep(j, asked_[j].slid, -found.holding[j], sizes.on(joint_at(j)));
         }
         constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
         std::size_t worst = joints;
@@ -610,10 +590,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             Motion towards = Motion::stuck;
             const double beyond = excess(j, found, now_.mode, now_.here(), towards);
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
-            const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
+            const double size = n() > 1 ? 8 * rounding * sizes.on(joint_at(j)) : 0;
             const bool own = released && released->which == j;
             if ((own || asked_[j].let_go != Motion::stuck) &&
-                std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred + between) {
+                std::fabs(beyond) <= nearly * sizes.on(joint_at(j)) + 2 * found.blurred + between) {
                 worst = j, most_beyond = model::never,
                 way = own ? static_cast<Motion>(released->side) : asked_[j].let_go;
                 continue;
@@ -657,7 +637,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const Joint& joint = problem_.system.joints[j];
             double rate = joint.sum(found.accelerations);
             const double I = problem_.system.bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
-            const double nothing = 64 * rounding * torque_size(j) + between;
+            const double nothing = 64 * rounding * sizes.on(joint_at(j)) + between;
             goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
             if (mechanics_.has_belt(j)) rate -= now_.belt_slopes[j].rate;
             if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
@@ -670,7 +650,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             changed = true;
         }
         if (changed) continue;
-        if (goes_round && !decide_together(full)) return false;
+        if (goes_round && !decide_together(full, sizes)) return false;
         break;
     }
     project(now_.side());
@@ -697,7 +677,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
                 tell(EventKind::turn, static_cast<int>(j));
             }
         } else if (told && asked_[j].was_held && slides) {
-            if (!only_touched(j, how.way)) tell(EventKind::slip, static_cast<int>(j));
+            if (!only_touched(j, how.way, sizes.on(joint_at(j)))) tell(EventKind::slip, static_cast<int>(j));
         } else if (told && !asked_[j].was_held && !asked_[j].was_creeping && !slides && !take_back_slip(j)) {
             tell(EventKind::stick, static_cast<int>(j));
         }
@@ -707,9 +687,9 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
 }
 
 /// A mass that comes to a stop beyond the limit of sticking by no more than the roundings of its way is at the limit.
-void Engine::settle_at_limit(std::size_t joint) {
+void Engine::settle_at_limit(std::size_t joint, double size) {
     const Joint& own = problem_.system.joints[joint];
-    const double before = std::exchange(size_at_stop_, torque_size(joint));
+    const double before = std::exchange(size_at_stop_, size);
     const bool alone = n() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && now_.mode.leans[joint] == 0;
     if (!alone || own.stiffness == 0) return;
     if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frames_->of(now_.mode), decided_))
@@ -729,14 +709,14 @@ void Engine::settle_at_limit(std::size_t joint) {
 /// Whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld an
 /// impulse below rounding while the pull passed it. Which side of the limit it was on is for rounding to say. Then it
 /// is told no more, or is a turn.
-bool Engine::only_touched(std::size_t joint, Motion way) {
+bool Engine::only_touched(std::size_t joint, Motion way, double size) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
     if (result_.events.empty() || arrivals_[joint].slid == Motion::stuck) return false;
     Event& last = result_.events.back();
     const double part = (now_.t.hi - last.t) / pace_;
     if (last.kind != EventKind::stick || last.where != static_cast<int>(joint) || part > briefly) return false;
     const double impulse = std::fabs(asked_[joint].pull - arrivals_[joint].pull) * (2 * std::numbers::pi * part);
-    if (!(impulse <= withheld * torque_size(joint))) return false;
+    if (!(impulse <= withheld * size)) return false;
     if (way == arrivals_[joint].slid) {
         result_.events.pop_back();
     } else {
@@ -747,9 +727,9 @@ bool Engine::only_touched(std::size_t joint, Motion way) {
 
 /// Whether what has come down to rounding is on its way still, because no more than the friction of sliding balances
 /// its pull, and more would hold it.
-void Engine::creep(std::size_t joint, Motion way, double pull) {
+void Engine::creep(std::size_t joint, Motion way, double pull, double size) {
     Slipping& how = now_.mode.friction[joint];
-    const double level = mechanics_.sliding(joint, {.way = way}, 0, now_.here()), size = torque_size(joint);
+    const double level = mechanics_.sliding(joint, {.way = way}, 0, now_.here());
     if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, now_.here()) > level)) return;
     const double off = std::fabs(model::sign_of(way) * pull - level);
     constexpr double balances = 1024 * rounding;  // of the torques
@@ -801,7 +781,7 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
 /// What all joints at slip 0 do where asking one after the other goes round: the torques that solve the whole problem.
 /// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
 /// that came to its limit, if one did, is short of a little already.
-bool Engine::decide_together(std::size_t full) {
+bool Engine::decide_together(std::size_t full, const TorqueSizes& sizes) {
     now_.mode = entered_;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -811,7 +791,7 @@ bool Engine::decide_together(std::size_t full) {
     if (!box_of(held, box)) return false;
     for (std::size_t k = 0; k < held.size(); ++k) {
         if (held[k] != full) continue;
-        const double room = little_more * torque_size(full);
+        const double room = little_more * sizes.on(joint_at(full));
         box.low(static_cast<Eigen::Index>(k)) += room, box.high(static_cast<Eigen::Index>(k)) -= room;
     }
     std::vector<char> slips(held.size(), 0);
@@ -824,7 +804,8 @@ bool Engine::decide_together(std::size_t full) {
             const std::size_t k = static_cast<std::size_t>(c), j = held[k];
             const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
             if (slips[k] != 0 || !at_limit || !now_.rubs(j) || now_.mode.friction[j].way != Motion::stuck) continue;
-            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * torque_size(j))) continue;  // others hold it, too
+            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * sizes.on(joint_at(j))))
+                continue;  // others hold it, too
             slips[k] = 1, grown = true;
             if (now_.mode.leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, now_.here());
             if (now_.mode.leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, now_.here());
@@ -855,7 +836,7 @@ bool Engine::decide_together(std::size_t full) {
 /// Where joints that hold close loops, their torques are not known from the motion. What they can hold together they
 /// do: the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they
 /// have the smallest. A joint at its limit rides along, or slides when the others do not hold.
-bool Engine::share_loops(const std::optional<Ending>& released) {
+bool Engine::share_loops(const std::optional<Ending>& released, const TorqueSizes& sizes) {
     const std::vector<std::size_t> held = frames_->of(now_.mode).sharing_of;
     Box box;
     if (!box_of(held, box)) return false;
@@ -863,7 +844,7 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
     for (std::size_t c = 0; released && c < held.size(); ++c) {
         if (released->which == held[c]) full = static_cast<Eigen::Index>(c);
     }
-    const double size = full < 0 ? 0 : torque_size(held[static_cast<std::size_t>(full)]);
+    const double size = full < 0 ? 0 : sizes.on(joint_at(held[static_cast<std::size_t>(full)]));
     Eigen::VectorXd torque;
     bool still = false;
     const auto share = [&](double part) {
@@ -1417,7 +1398,6 @@ bool Engine::advance() {
     decide_conditions({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode);
     segment_.low = now_.low, sampled_.clear();
     const auto attempt = solver_->solve(segment_, now_.mode, present, now_.y, now_.departing(problem_.system));
-    sizes_at_ = -model::never;  // they depend on the loads of the stretch
     const double late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
     if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
         return outcome_ == Outcome::reached_end;
@@ -1671,8 +1651,9 @@ bool Engine::handle(const Ending& ending) {
             // What only touched its limit must pass it clearly the next time.
             if (same) {
                 Slipping& how = now_.mode.friction[j];
-                how.blunt = std::max(2 * blunt, 64 * rounding * torque_size(j));
-                if (how.blunt > most_blunt * torque_size(j)) return fail(Outcome::chattering);
+                const double size = torque_sizes().on(joint_at(j));
+                how.blunt = std::max(2 * blunt, 64 * rounding * size);
+                if (how.blunt > most_blunt * size) return fail(Outcome::chattering);
             }
             return !too_often() || fail(Outcome::chattering);
         }
@@ -1760,11 +1741,12 @@ Event Engine::event_at(EventKind kind, int where, int user) const {
 // ---- guards
 
 void Engine::watch(const Frame& frame, Ending& ending) {
+    const TorqueSizes sizes = torque_sizes();
     std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j, frame, ending);
+        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j, frame, sizes.on(joint_at(j)), ending);
         if (now_.rubs(j) && now_.mode.friction[j].way != Motion::stuck && !now_.mode.friction[j].riding) {
-            watch_slip(j, ending);
+            watch_slip(j, sizes.on(joint_at(j)), ending);
             watch_corner(j, ending);
         }
         const auto& [walls, stops] = std::tie(problem_.system.joints[j].walls, problem_.system.joints[j].stops);
@@ -1783,7 +1765,7 @@ void Engine::watch(const Frame& frame, Ending& ending) {
     if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
 }
 
-void Engine::watch_slip(std::size_t joint, Ending& ending) {
+void Engine::watch_slip(std::size_t joint, double torques, Ending& ending) {
     const Joint& own = problem_.system.joints[joint];
     const Slipping& how = now_.mode.friction[joint];
     const double sign = model::sign_of(how.way);
@@ -1800,7 +1782,6 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     }
     series[0] += first;
     double fastest = greatest(belt), inertia = model::never;
-    const double torques = torque_size(joint);
     for (const auto& [body, by] : own.of) {
         fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
         inertia = std::min(inertia, problem_.system.bodies[body].inertia / (by * by));
@@ -1871,12 +1852,11 @@ bool Engine::take_back_slip(std::size_t joint) {
 }
 
 /// Where what holds a joint passes what it can hold.
-void Engine::watch_release(std::size_t joint, const Frame& frame, Ending& ending) {
+void Engine::watch_release(std::size_t joint, const Frame& frame, double torques, Ending& ending) {
     Nodes pull{};
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
     const Series series = cheb::fit(pull);
     const int wall = now_.mode.leans[joint];
-    const double largest = torque_size(joint);
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
         if (wall * sign > 0) continue;
@@ -1901,7 +1881,7 @@ void Engine::watch_release(std::size_t joint, const Frame& frame, Ending& ending
         for (std::size_t j = 0; j < node_count; ++j) values[j] = limit[j] - sign * pull[j] + blunt;
         const Series left = cheb::fit(values);
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
-        const double doubt = 8 * (rounding * (greatest(limit) + largest) + cheb::tail(series) +
+        const double doubt = 8 * (rounding * (greatest(limit) + torques) + cheb::tail(series) +
                                   (mechanics_.varies(joint) ? cheb::tail(cheb::fit(limit)) : 0)) +
                              solver_->blurred_by_belts(segment_) + (1 - known()) * greatest(pull);
         curve.raise_floor(doubt);
@@ -2096,7 +2076,8 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
         standing_[i] = now;
         double& v = y[n() + i];
         if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
-            const double speed = little_later * pace_ * torque_size(i) / problem_.system.bodies[i].inertia;
+            const double speed =
+                little_later * pace_ * torque_sizes().on(joint_at(i)) / problem_.system.bodies[i].inertia;
             v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
         }
     }
@@ -2337,12 +2318,13 @@ bool Engine::rubs_somewhere(std::size_t body) const {
 /// Without dry friction nothing happens at a turn, it is only told.
 void Engine::record_turns(const Frame& frame, double until) {
     const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
+    const TorqueSizes sizes = torque_sizes();
     for (std::size_t i = 0; i < n(); ++i) {
         if (rubs_somewhere(i) || frame.bodies[i].empty()) continue;
         const Nodes& v = segment_.y[n() + i];
         const double moving = greatest(v);
         const auto exact = [&](double x) { return segment_.at(n() + i, x); };
-        const double torques = torque_size(i);
+        const double torques = sizes.on(joint_at(i));
         const double nothing =
             segment_.h / problem_.system.bodies[i].inertia * std::max(100 * rounding * torques, solver_->noise());
         constexpr double underflow = 1e-280;  // numbers so small lose their digits
@@ -2432,7 +2414,7 @@ bool Engine::hit(std::size_t joint, int wall) {
         now_.mode.leans[joint] = wall;
         Slipping& how = now_.mode.friction[joint];
         how.leaving = false;
-        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
+        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_sizes().on(own));  // it went, and did not get away
         if (!decide(true)) return false;
         stands();
         return !too_often() || fail(Outcome::chattering);
