@@ -14,13 +14,14 @@
 
 #include "model/springs/user_spring.hpp"
 #include "model/sticking.hpp"
-#include "motion/break_search.hpp"
+#include "motion/engine/breaks.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/frames.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/engine/moving.hpp"
 #include "motion/engine/now.hpp"
+#include "motion/engine/pace.hpp"
 #include "motion/engine/torque_sizes.hpp"
 #include "motion/first_below.hpp"
 #include "motion/roughness.hpp"
@@ -39,18 +40,12 @@ using model::Outcome;
 // In units of the pace, T0 or all of a run that is shorter.
 constexpr double shortest = 1e-13;     // what cannot be seen in the motion
 constexpr double near_failure = 1e-9;  // how near a run comes to where a function fails
-constexpr double at_once = 1e-9;       // events that follow each other within it, so often, go on for ever
-constexpr int most_at_once = 200, most_short = 400, most_attempts = 20000;
+constexpr int most_attempts = 20000;
 constexpr int most_attempts_sampled = 3000;  // where a function of the motion is asked that may do anything
-constexpr double short_part = 1e-3;          // shorter than this part of the longest stretch is short
-constexpr double slightly = 16;  // times the tolerance: such an error limits the length of the next stretches
-constexpr int limited_stretches = 12;
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double most_blunt = 1e-9;   // of the torques: what passes its limit by more is no rounding
 constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
 constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
-constexpr int most_echoes = 8;
-constexpr std::size_t most_found_breaks = 50;
 constexpr std::size_t most_passages = 200;
 constexpr double one_instant = 64 * rounding;  // passages of user events that are so near to each other are one
 constexpr double beside_standstill = 1e-12;    // one that is so near to a standstill, or a release, is told after it
@@ -118,7 +113,6 @@ private:
     std::string state_driven_back();
     bool end_at(double x);
     bool ask_after_break();
-    void foresee_break();
     void go_to(double x);
     void keep(double length);
     std::vector<Kept::Acting> acting();
@@ -206,8 +200,7 @@ private:
     void tell(EventKind kind, int where, int user = -1);
     void tell_user(std::size_t event);
     [[nodiscard]] Event event_at(EventKind kind, int where, int user) const;
-    bool too_often(int most = most_at_once);
-    void echo(double t, int generation);
+    bool too_often(int most = most_at_once) { return chatter_.too_often(now_.t.hi, most); }
     bool put_row(double t, double x);
     [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Look& look) const;
     bool rows_until(double end, bool to_the_end);
@@ -230,7 +223,9 @@ private:
     Mechanics mechanics_;
     std::shared_ptr<History> history_;
     double inertia_ = 0;  ///< of all bodies
-    double period_ = model::never, pace_ = 1, longest_all_ = 1;
+    Pace pace_;
+    Chatter chatter_;
+    Breaks breaks_;
     std::optional<Collocation> solver_;
     std::optional<Frames> frames_;
 
@@ -283,17 +278,9 @@ private:
     std::vector<double> soon_;   ///< what moves, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
     Segment segment_;
-    std::vector<double> breaks_;  ///< found, and still ahead
-    PassedBreaks passed_breaks_;
-    std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
-    double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
-    double attempts_since_ = 0, last_event_ = -model::never, last_full_at_ = -model::never, born_ = 0;
-    double shortest_delay_ = model::never, longest_delay_ = 0;
+    double last_full_at_ = -model::never;
     std::pair<std::size_t, int> last_hit_{0, 0};  ///< the joint and its wall
-    double short_enough_ = 0;                     ///< half the length that replaced one with a slightly too large error
-    int limited_for_ = 0;                         ///< so many of the next stretches are not longer than that
-    int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
-    std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
+    std::size_t next_row_ = 0, last_full_ = 0;    ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
     Look look_, decided_;
     std::vector<double> row_;                       ///< of put_row()
@@ -309,6 +296,7 @@ Engine::Engine(const Request& problem, Run& result)
       result_(result),
       asking_{.named = problem.system.named, .told = 2 * problem.system.bodies.size() + problem.drive.states.size()},
       mechanics_(problem.system, problem.drive, asking_),
+      breaks_(mechanics_),
       now_{.t = {problem.window.start, 0}} {
     const std::size_t joints = mechanics_.joints();
     now_.y = problem.drive.theta0;
@@ -330,7 +318,7 @@ Engine::Engine(const Request& problem, Run& result)
         now_.mode = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = now_.mode.leans[j] != 0 ? 1 : 0;
         for (std::size_t j = 0; j < joints; ++j) mechanics_.loads()[j].remember(problem.before->controllers[j]);
-        echoes_ = problem.before->echoes;
+        breaks_.go_on_with(problem.before->echoes);
         if (!problem.before->watches.empty()) watches_ = problem.before->watches;
         if (!problem.before->heading.empty()) heading_ = problem.before->heading;
     }
@@ -342,27 +330,22 @@ Engine::Engine(const Request& problem, Run& result)
     }
     history_ = std::make_shared<History>(std::move(weights), n(), now_.y, now_.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
-    mechanics_.for_each_signal([&](const Signal& s) {
-        for (const double by : s.delays()) {
-            shortest_delay_ = std::min(shortest_delay_, by), longest_delay_ = std::max(longest_delay_, by);
-        }
-    });
     for (const model::Body& body : problem.system.bodies) inertia_ += body.inertia;
     mechanics_.for_each_piecewise(now_.t.hi, [this](Piecewise&) { has_pieces_ = true; });
     samples_ = mechanics_.samples_the_motion();
-    born_ = problem.before ? problem.before->born : now_.t.hi;
+    pace_.born = problem.before ? problem.before->born : now_.t.hi;
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
     const double run = problem.window.end - problem.window.start;
     Mode free = now_.mode;
     for (std::size_t j = 0; j < joints; ++j) free.friction[j].way = Motion::forward, free.leans[j] = 0;
     const double w = mechanics_.fastest(Frame(problem.system, free));
-    period_ = w > 0 ? 2 * std::numbers::pi / w : model::never;
-    pace_ = std::min(period_, run);
-    longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period_ : part_of_run * run);
-    frames_.emplace(mechanics_, problem.longest, longest_all_);
-    h_ = longest_all_ / 2;
-    attempts_since_ = now_.t.hi;
-    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
+    pace_.period = w > 0 ? 2 * std::numbers::pi / w : model::never;
+    pace_.unit = std::min(pace_.period, run);
+    pace_.longest = std::min(problem.longest, w > 0 ? longest_in_periods * pace_.period : part_of_run * run);
+    frames_.emplace(mechanics_, problem.longest, pace_.longest);
+    pace_.h = pace_.longest / 2;
+    chatter_ = {now_.t.hi, pace_.unit};
+    solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
                                 mechanics_.states_of_user() - (problem.joined_elsewhere ? n() : 0);
@@ -465,7 +448,7 @@ void Engine::find_belt_slopes(std::optional<double> x) {
         if (!mechanics_.has_belt(j)) continue;
         now_.belt_slopes[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
                                             solver_->blurred_by_belts(segment_) / inertia_}
-                                : mechanics_.belt_slope(j, towards(now_.t.hi, now_.side()), belt_stretch * pace_);
+                                : mechanics_.belt_slope(j, towards(now_.t.hi, now_.side()), belt_stretch * pace_.unit);
     }
 }
 
@@ -713,7 +696,7 @@ bool Engine::only_touched(std::size_t joint, Motion way, double size) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
     if (result_.events.empty() || arrivals_[joint].slid == Motion::stuck) return false;
     Event& last = result_.events.back();
-    const double part = (now_.t.hi - last.t) / pace_;
+    const double part = (now_.t.hi - last.t) / pace_.unit;
     if (last.kind != EventKind::stick || last.where != static_cast<int>(joint) || part > briefly) return false;
     const double impulse = std::fabs(asked_[joint].pull - arrivals_[joint].pull) * (2 * std::numbers::pi * part);
     if (!(impulse <= withheld * size)) return false;
@@ -925,7 +908,7 @@ bool Engine::nothing_presses(std::size_t joint) const {
     // Where the load was found to fall below zero it may still be its rounding.
     if (normal_half_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
     std::vector<double> y = now_.y;
-    const double h = later * pace_;
+    const double h = later * pace_.unit;
     for (std::size_t i = 0; i < n(); ++i) y[i] += h * y[n() + i];
     return mechanics_.pressing(joint, {now_.t.hi + h, Side::at, y}) <= 0;
 }
@@ -1024,7 +1007,7 @@ void Engine::begin() {
         bool good = true;
         mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
         if (!good) fail(Outcome::excitation_not_finite);
-        echo(now_.t.hi, 1);
+        breaks_.echo(now_.t.hi, 1);
         open_and_close();
         press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -1114,8 +1097,9 @@ void Engine::run() {
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
     carry->y = now_.y, carry->low = now_.low, carry->mode = now_.mode, carry->watches = watches_,
-    carry->echoes = echoes_, carry->heading = heading_, carry->born = born_, carry->floor = solver_->floor();
-    if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
+    carry->echoes = breaks_.echoes(), carry->heading = heading_, carry->born = pace_.born,
+    carry->floor = solver_->floor();
+    if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
 }
@@ -1125,14 +1109,13 @@ void Engine::forget_chatter() {
     constexpr double soon = 1e-6;
     std::vector<Event>& events = result_.events;
     const auto follows = [&](const Event& e, const Event& before) {
-        return e.kind <= EventKind::rest && e.t - before.t <= soon * pace_;
+        return e.kind <= EventKind::rest && e.t - before.t <= soon * pace_.unit;
     };
     while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
 }
 
 void Engine::choose(const Frame& frame) {
-    double breaks = std::min(mechanics_.next_break(now_.t.hi), echoes_.empty() ? model::never : echoes_.front().first);
-    if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
+    double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
     for (const model::WantedEvent& event : problem_.drive.events) {
         breaks = std::min(breaks, event.when->next_break(now_.t.hi));
     }
@@ -1144,12 +1127,12 @@ void Engine::choose(const Frame& frame) {
         const double step_end = problem_.window.start + steps * problem_.step;
         if (step_end < limit - beside) limit = step_end;
     }
-    double h = std::min({rung(h_, frames_->longest(now_.mode) / 2), mechanics_.view(now_.t.hi, cheb::widest_gap) / 2,
-                         shortest_delay_ / 2 * (1 - 1e-12)});
-    if (bad_time_ < model::never) h = std::min(h, now_.t.until(bad_time_) / 4);
+    double h = std::min({rung(pace_.h, frames_->longest(now_.mode) / 2),
+                         mechanics_.view(now_.t.hi, cheb::widest_gap) / 2, breaks_.shortest_delay() / 2 * (1 - 1e-12)});
+    if (pace_.bad_time < model::never) h = std::min(h, now_.t.until(pace_.bad_time) / 4);
     if (problem_.step == 0) h = std::min(h, longest_under_friction(frame) / 2);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
-    if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(frame), 1e-9 * pace_));
+    if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(frame), 1e-9 * pace_.unit));
     const double remaining = now_.t.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     segment_.start = now_.t;
@@ -1208,39 +1191,27 @@ double Engine::longest_under_friction(const Frame& frame) {
 
 void Engine::again(Collocation::Attempt attempt) {
     const int most = samples_ ? most_attempts_sampled : most_attempts;
-    if (++attempts_ >= most) {
-        if (now_.t.hi - attempts_since_ < 1e-7 * most * pace_) {
-            fail(samples_ ? Outcome::chattering : Outcome::unresolved);
-            return;
-        }
-        attempts_ = 0, attempts_since_ = now_.t.hi;
+    if (chatter_.too_many_attempts(now_.t.hi, most)) {
+        fail(samples_ ? Outcome::chattering : Outcome::unresolved);
+        return;
     }
     if (attempt == Collocation::Attempt::failed) {
-        bad_time_ = solver_->bad_time();
-        const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.t.hi));
-        if (problem_.step > 0 || now_.t.until(bad_time_) <= near || !mechanics_.may_go_on())
+        pace_.bad_time = solver_->bad_time();
+        const double near = std::max(near_failure * pace_.unit, 64 * rounding * std::fabs(now_.t.hi));
+        if (problem_.step > 0 || now_.t.until(pace_.bad_time) <= near || !mechanics_.may_go_on())
             fail(now_.greatest_of_state() > huge ? Outcome::state_not_finite : Outcome::excitation_not_finite);
-        h_ = segment_.h / 2;
+        pace_.h = segment_.h / 2;
         return;
     }
     if (solver_->found_noise(segment_, now_.mode)) return;
-    const bool searched = searched_from_ == now_.t.hi && segment_.h > 0.1 * searched_h_;
-    if (!searched && breaks_.size() < most_found_breaks) {
-        searched_from_ = now_.t.hi, searched_h_ = segment_.h;
-        if (const auto found = solver_->found_break(segment_); found && *found > now_.t.hi) {
-            const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *found);
-            if (place == breaks_.end() || *place != *found) {
-                breaks_.insert(place, *found);
-                if (a_belt_jumps_at(*found)) mechanics_.jumps_at(*found);
-                return;
-            }
+    if (!breaks_.many() && pace_.may_search(now_.t.hi, segment_.h)) {
+        const auto found = solver_->found_break(segment_);
+        if (found && *found > now_.t.hi && breaks_.add(*found)) {
+            if (a_belt_jumps_at(*found)) mechanics_.jumps_at(*found);
+            return;
         }
     }
-    const double unresolved = solver_->unresolved();
-    const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
-    h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
-    if (unresolved <= slightly && h_ > short_part * frames_->longest(now_.mode))
-        short_enough_ = h_, limited_for_ = limited_stretches;
+    pace_.shorten(segment_.h, solver_->unresolved(), frames_->longest(now_.mode));
 }
 
 bool Engine::a_belt_jumps_at(double t) const {
@@ -1267,9 +1238,7 @@ bool Engine::belt_jump_found() {
         restart_contacts(Because::belt);
         return true;
     }
-    const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *first);
-    if (place != breaks_.end() && *place == *first) return false;
-    breaks_.insert(place, *first);
+    if (!breaks_.add(*first)) return false;
     mechanics_.jumps_at(*first);
     return true;
 }
@@ -1287,18 +1256,18 @@ std::string Engine::state_driven_back() {
         };
         const double own = std::max(std::fabs(rate(0)), std::fabs(rate(near * std::fabs(now_.y[2 * n() + k]))));
         const double d =
-            near * std::max(own * pace_, std::fabs(now_.y[2 * n() + k])) + std::numeric_limits<double>::min();
+            near * std::max(own * pace_.unit, std::fabs(now_.y[2 * n() + k])) + std::numeric_limits<double>::min();
         const double least = std::min(-rate(d), rate(-d));
         y[2 * n() + k] = now_.y[2 * n() + k];
-        if (least * pace_ > steep * d) return problem_.drive.states[k].name;
+        if (least * pace_.unit > steep * d) return problem_.drive.states[k].name;
     }
     return {};
 }
 
 /// The run got nowhere: if something that acts in it is rough on every scale, that is why.
 void Engine::explain_end() {
-    const double most = std::min({pace_, problem_.window.end - now_.t.hi, shortest_delay_});
-    const double from = now_.t.hi, length = std::min(rough_stretch * pace_, most / 8);
+    const double most = std::min({pace_.unit, problem_.window.end - now_.t.hi, breaks_.shortest_delay()});
+    const double from = now_.t.hi, length = std::min(rough_stretch * pace_.unit, most / 8);
     struct Source {
         std::string name;
         std::function<double(double)> value;
@@ -1403,21 +1372,20 @@ bool Engine::advance() {
         return outcome_ == Outcome::reached_end;
     }
     if (attempt == Collocation::Attempt::shorten && !solver_->tells_rests() &&
-        2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
-        if (++too_short_ > most_short) return fail(Outcome::chattering);
+        2 * segment_.h <= std::max(shortest * pace_.unit, 16 * rounding * late)) {
+        if (chatter_.too_many_short()) return fail(Outcome::chattering);
         solver_->pass_over(segment_);
         solver_->find_limits(segment_, now_.mode);
-        h_ = 64 * segment_.h;
+        pace_.h = 64 * segment_.h;
     } else if (attempt != Collocation::Attempt::resolved) {
         again(attempt);
         return outcome_ == Outcome::reached_end;
     } else {
-        if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
+        chatter_.stretch_of(2 * segment_.h);
         const double least = segment_.h < short_part * longest ? 2 : 0;
-        const double longer =
-            problem_.step > 0 ? longest : segment_.h * std::clamp(0.9 * solver_->growth(), least, samples_ ? 2.0 : 8.0);
-        h_ = std::min(longest / 2, std::max(h_, longer));
-        if (limited_for_ > 0 && --limited_for_ > 0) h_ = std::min(h_, short_enough_);
+        const double factor =
+            problem_.step > 0 ? longest / segment_.h : std::clamp(0.9 * solver_->growth(), least, samples_ ? 2.0 : 8.0);
+        pace_.lengthen(segment_.h, factor, longest);
     }
     Ending ending;
     watch(present, ending);
@@ -1444,13 +1412,8 @@ bool Engine::end_at(double x) {
     now_.after_break = whole && segment_.to_break && now_.t.hi < problem_.window.end;
     has_jumped_ = has_jumped_ || (now_.after_break && now_.t.hi != crossing_at_);
     mechanics_.forget_jumps(now_.t.hi);
-    if (bad_time_ <= now_.t.hi) bad_time_ = model::never, mechanics_.forget_failure();
-    const std::size_t ahead = breaks_.size();
-    while (!breaks_.empty() && breaks_.front() <= now_.t.hi) {
-        passed_breaks_.pass(breaks_.front());
-        breaks_.erase(breaks_.begin());
-    }
-    if (ahead > 0 && breaks_.empty()) foresee_break();
+    if (pace_.bad_time <= now_.t.hi) pace_.bad_time = model::never, mechanics_.forget_failure();
+    breaks_.pass(now_.t.hi, problem_.window.end);
     if (length > 0) {
         for (Slipping& how : now_.mode.friction) how.leaving = false;
         if (whole) {
@@ -1459,13 +1422,8 @@ bool Engine::end_at(double x) {
         std::fill(edge_.begin(), edge_.end(), 0);
         std::fill(at_wall_.begin(), at_wall_.end(), 0);
     }
-    int generation = 0;
-    while (!echoes_.empty() && echoes_.front().first <= now_.t.hi) {
-        generation = std::max(generation, echoes_.front().second);
-        echoes_.erase(echoes_.begin());
-    }
-    if (generation > 0) echo(now_.t.hi, generation + 1);
-    if (!whole || (now_.after_break && generation == 0)) echo(now_.t.hi, 1);
+    const bool echoed = breaks_.pass_echoes(now_.t.hi);
+    if (!whole || (now_.after_break && !echoed)) breaks_.echo(now_.t.hi, 1);
     find_belt_slopes(now_.after_break ? std::nullopt : std::optional(x));
     project(now_.after_break ? Side::before : Side::at);
     bool good = true;
@@ -1504,15 +1462,6 @@ double Engine::kinetic_energy() const {
     return sum;
 }
 
-/// Where a function of the time has jumped evenly, its next jump is known before it is met.
-void Engine::foresee_break() {
-    for (const Signal& load : mechanics_.loads()) {
-        if (!load.asks_in_time() || !breaks_.empty()) continue;
-        const auto value = [&](double t) { return load.of_time({t, Side::at, {}}); };
-        if (const auto next = passed_breaks_.next(problem_.window.end, value)) breaks_.push_back(*next);
-    }
-}
-
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
 void Engine::go_to(double x) {
     const std::vector<double> begin = now_.y;
@@ -1531,11 +1480,11 @@ void Engine::go_to(double x) {
 }
 
 void Engine::keep(double length) {
-    if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
+    if (!(length > 0) || (!problem_.limits.dense && breaks_.longest_delay() == 0)) return;
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = now_.y, .series = segment_.series};
     // For the legs of its course.
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting();
-    const double past = longest_delay_ > 0 ? now_.t.hi - 2 * longest_delay_ : model::never;
+    const double past = breaks_.longest_delay() > 0 ? now_.t.hi - 2 * breaks_.longest_delay() : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
 }
 
@@ -1667,7 +1616,7 @@ bool Engine::handle(const Ending& ending) {
                 std::fabs(now_.gap(problem_.system.joints[j], origin_[j])) <= 64 * rounding * std::fabs(origin_[j]);
             at_wall_[j] = ending.side == 0 && there ? 1 : 0;
             press(j, ending.side);
-            echo(now_.t.hi, 1);
+            breaks_.echo(now_.t.hi, 1);
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
         case By::slider:
@@ -1697,22 +1646,6 @@ bool Engine::handle(const Ending& ending) {
             return act_all(ending.users);
     }
     return true;
-}
-
-bool Engine::too_often(int most) {
-    at_once_in_a_row_ = now_.t.hi - last_event_ <= at_once * pace_ ? at_once_in_a_row_ + 1 : 0;
-    last_event_ = now_.t.hi;
-    return at_once_in_a_row_ > most;
-}
-
-void Engine::echo(double t, int generation) {
-    if (generation > most_echoes) return;
-    mechanics_.for_each_signal([&](const Signal& s) {
-        for (const double by : s.delays()) {
-            const std::pair<double, int> back{t + by, generation};
-            echoes_.insert(std::lower_bound(echoes_.begin(), echoes_.end(), back), back);
-        }
-    });
 }
 
 void Engine::tell(EventKind kind, int where, int user) {
@@ -2077,7 +2010,7 @@ void Engine::decide_conditions(const Moment& at, const Mode& mode) {
         double& v = y[n() + i];
         if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
             const double speed =
-                little_later * pace_ * torque_sizes().on(joint_at(i)) / problem_.system.bodies[i].inertia;
+                little_later * pace_.unit * torque_sizes().on(joint_at(i)) / problem_.system.bodies[i].inertia;
             v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
         }
     }
@@ -2207,7 +2140,7 @@ bool Engine::ends_before(double x) {
     if (!samples_ || 1 + x < beside_end || 1 - x < beside_end) return false;
     const double t = segment_.time(x), nothing = 64 * rounding * std::fabs(t);
     if (t - now_.t.hi <= nothing || segment_.end - t <= nothing) return false;
-    breaks_.insert(std::lower_bound(breaks_.begin(), breaks_.end(), t), t);
+    breaks_.add(t);
     crossing_at_ = t;
     return true;
 }
@@ -2222,7 +2155,7 @@ bool Engine::cross(const Ending& ending) {
     for (const auto& [function, condition] : ending.conditions) {
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool back = crossed_last_.function == function && crossed_last_.step == step &&
-                          crossed_last_.from == beyond && now_.t.hi - crossed_last_.t <= soon * pace_;
+                          crossed_last_.from == beyond && now_.t.hi - crossed_last_.t <= soon * pace_.unit;
         to_and_fro_ = back ? to_and_fro_ + 1 : 0;
         crossed_last_ = {function, step, function->decision(step), now_.t.hi, crossed_within_};
         const double before = function->value(now_.here());
@@ -2430,13 +2363,13 @@ bool Engine::hit(std::size_t joint, int wall) {
         const auto bounces = next_bounces(joint, wall, e * before);
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring the run so far tells what is short: not its end, so that one may stop anywhere and go on.
-        const double pace = std::min(period_, now_.t.hi - born_);
+        const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
     const double after = rests ? 0 : e * before;
     history_->add_jump(now_.t.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
-    echo(now_.t.hi, 1);
+    breaks_.echo(now_.t.hi, 1);
     for (std::size_t i = 0; i < n(); ++i) {
         if (thrown.velocities[i].second != 0) heading_[i] = model::motion_of(rests ? 0 : now_.y[n() + i]);
     }
@@ -2511,7 +2444,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
             const double work = energy_at(j, now_.y) - energy_at(j, before);
             if (work != 0 || j == 0) history_->add_jump(now_.t.hi, j, {.acts = work});
         }
-        echo(now_.t.hi, 1);
+        breaks_.echo(now_.t.hi, 1);
         const bool moved =
             !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
@@ -2695,7 +2628,7 @@ void Engine::see_flight() {
     for (std::size_t i = 0; i < n(); ++i) {
         const double v = now_.y[n() + i], a = look_.accelerations[i];
         if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * frames_->longest(now_.mode))) continue;
-        h_ = std::min(h_, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_));
+        pace_.h = std::min(pace_.h, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_.unit));
     }
 }
 
@@ -2717,7 +2650,7 @@ double Engine::rounding_of(std::size_t event) const {
 /// else he threw it back, or stopped it.
 bool Engine::passes_on(std::size_t event) {
     constexpr double soon = 1e-4;
-    const double step = soon * h_;
+    const double step = soon * pace_.h;
     if (!look({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, frames_->of(now_.mode), look_))
         return true;
     std::vector<double> rates(mechanics_.states()), y = now_.y;
