@@ -16,7 +16,9 @@
 #include "model/sticking.hpp"
 #include "motion/engine/breaks.hpp"
 #include "motion/engine/collocation.hpp"
+#include "motion/engine/conditions.hpp"
 #include "motion/engine/crossing.hpp"
+#include "motion/engine/ending.hpp"
 #include "motion/engine/frames.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/engine/moving.hpp"
@@ -47,10 +49,8 @@ constexpr double most_blunt = 1e-9;   // of the torques: what passes its limit b
 constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
 constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
 constexpr std::size_t most_passages = 200;
-constexpr double one_instant = 64 * rounding;  // passages of user events that are so near to each other are one
-constexpr double beside_standstill = 1e-12;    // one that is so near to a standstill, or a release, is told after it
-constexpr double at_zero = 1e-12;              // this part of what it was on the stretch stands at zero
-constexpr double huge = 1e100;                 // a function that is no number at such a state says nothing about itself
+constexpr double at_zero = 1e-12;  // this part of what it was on the stretch stands at zero
+constexpr double huge = 1e100;     // a function that is no number at such a state says nothing about itself
 constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;  // bounds of a series are so much greater
 constexpr double part_of_run = 1.0 / 16;
 
@@ -82,15 +82,6 @@ public:
     void run();
 
 private:
-    enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, stays, condition };
-    struct Ending {
-        double x = 1;
-        By by = By::nobody;
-        std::size_t which = 0;  ///< the joint, or the body of a relay
-        int side = 0;  ///< of a wall, a stop (0: it is left) or a corner, or the way of a release; or which relay
-        std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
-        std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};  ///< of functions that were read
-    };
     /// What an exact look at a moment tells.
     struct Look {
         std::vector<double> loads, torques, accelerations, holding;
@@ -173,10 +164,7 @@ private:
     void watch_bristles(std::size_t joint, Ending& ending);
     void watch_relays(Ending& ending);
     void watch_users(Ending& ending);
-    void watch_conditions(Ending& ending);
-    bool cross(const Ending& ending);
     bool ends_before(double x);
-    void decide_conditions(const Moment& at, const Mode& mode);
     void record_turns(const Frame& frame, double until);
     [[nodiscard]] bool rubs_somewhere(std::size_t body) const;
 
@@ -261,22 +249,8 @@ private:
     std::vector<Watch> watches_;    ///< of the events of the user
     std::vector<Half> came_from_;   ///< the events of the user that were told last
     bool has_walls_ = false;
-    bool has_pieces_ = false;             ///< of a function of the motion whose conditions are known
-    bool samples_ = false;                ///< another function of the motion, which may jump anywhere
-    bool has_jumped_ = true;              ///< all conditions are to be decided anew
-    double crossing_at_ = -model::never;  ///< a break where a condition passes zero, and is not decided by rounding
-    struct {
-        const Piecewise* function = nullptr;
-        std::size_t step = 0;
-        double from = 0, t = -model::never;  ///< the decision that it had until then
-        double within = 0;                   ///< so near to zero it was taken to be
-    } crossed_last_;
-    double crossed_within_ = 0;  ///< of what is about to be crossed
-    int to_and_fro_ = 0;         ///< crossings of one condition, each soon after the one before
-    int small_in_a_row_ = 0;     ///< jumps at conditions
-    double greatest_crossed_ = 0;
-    std::vector<double> soon_;   ///< what moves, where a velocity that leaves 0 has left
-    std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
+    std::optional<Conditions> conditions_;
+    bool samples_ = false;  ///< another function of the motion, which may jump anywhere
     Segment segment_;
     double last_full_at_ = -model::never;
     std::pair<std::size_t, int> last_hit_{0, 0};  ///< the joint and its wall
@@ -331,7 +305,6 @@ Engine::Engine(const Request& problem, Run& result)
     history_ = std::make_shared<History>(std::move(weights), n(), now_.y, now_.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
     for (const model::Body& body : problem.system.bodies) inertia_ += body.inertia;
-    mechanics_.for_each_piecewise(now_.t.hi, [this](Piecewise&) { has_pieces_ = true; });
     samples_ = mechanics_.samples_the_motion();
     pace_.born = problem.before ? problem.before->born : now_.t.hi;
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
@@ -345,6 +318,7 @@ Engine::Engine(const Request& problem, Run& result)
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
     pace_.h = pace_.longest / 2;
     chatter_ = {now_.t.hi, pace_.unit};
+    conditions_.emplace(mechanics_, asking_.told, now_.t.hi, pace_.unit);
     solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
@@ -359,7 +333,7 @@ Engine::Engine(const Request& problem, Run& result)
 bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x,
                   Loads from) {
     const std::size_t joints = mechanics_.joints();
-    if (!x) decide_conditions(at, mode);
+    if (!x) conditions_->decide(at, mode, segment_);
     auto& [belts, rates, offsets, of_group, lacking] = scratch_;
     auto& loads = result.loads;
     belts.assign(joints, 0), rates.assign(joints, 0);
@@ -1085,7 +1059,7 @@ void Engine::run() {
     if (!now_.rubs(0) && now_.mode.leans[0] == 0) result_.motion_at_stop = heading_[0];
     if (now_.mode.friction[0].creeps != Motion::stuck) result_.motion_at_stop = now_.mode.friction[0].creeps;
     result_.outcome = outcome_;
-    result_.located = has_pieces_;
+    result_.located = conditions_->any();
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
     result_.noise = lost ? 0 : solver_->clear_noise();
     if (outcome_ == Outcome::chattering) forget_chatter();
@@ -1364,7 +1338,7 @@ bool Engine::advance() {
     const double longest = frames_->longest(now_.mode);
     choose(present);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
-    decide_conditions({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode);
+    conditions_->decide({now_.t.hi, now_.side(), now_.departing(problem_.system)}, now_.mode, segment_);
     segment_.low = now_.low, sampled_.clear();
     const auto attempt = solver_->solve(segment_, now_.mode, present, now_.y, now_.departing(problem_.system));
     const double late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
@@ -1410,7 +1384,7 @@ bool Engine::end_at(double x) {
     if (x > -1) go_to(x);
     now_.t = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     now_.after_break = whole && segment_.to_break && now_.t.hi < problem_.window.end;
-    has_jumped_ = has_jumped_ || (now_.after_break && now_.t.hi != crossing_at_);
+    if (now_.after_break) conditions_->pass_break(now_.t.hi);
     mechanics_.forget_jumps(now_.t.hi);
     if (pace_.bad_time <= now_.t.hi) pace_.bad_time = model::never, mechanics_.forget_failure();
     breaks_.pass(now_.t.hi, problem_.window.end);
@@ -1447,7 +1421,7 @@ bool Engine::ask_after_break() {
         if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
         history_->add_jump(now_.t.hi, body, {.input = kinetic_energy() - energy});
         heading_[body] = model::motion_of(v);
-        has_jumped_ = true;
+        conditions_->forget();
         tell(EventKind::impact, static_cast<int>(body));
         break;
     }
@@ -1635,8 +1609,12 @@ bool Engine::handle(const Ending& ending) {
             edge_[j] = -ending.side;
             return !too_often() || fail(Outcome::chattering);
         }
-        case By::condition:
-            return cross(ending) && decide(true);
+        case By::condition: {
+            const Conditions::Crossed crossed = conditions_->cross(ending, now_.here(), too_often());
+            result_.jumps += crossed.count;
+            if (crossed.endless && crossed.jumps) return fail(Outcome::chattering);
+            return decide(true);
+        }
         case By::relay:
             mechanics_.loads()[j].toggle(index(ending.side));
             tell(EventKind::switched, static_cast<int>(j));
@@ -1693,7 +1671,7 @@ void Engine::watch(const Frame& frame, Ending& ending) {
         if (!frame.keeps(mechanics_.sliders()[s].joint)) watch_slider(s, ending);
     }
     watch_relays(ending);
-    if (has_pieces_) watch_conditions(ending);
+    if (conditions_->any()) conditions_->watch(segment_, now_.y, now_.t.hi, ending);
     watch_users(ending);
     if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
 }
@@ -1990,149 +1968,6 @@ void Engine::watch_relays(Ending& ending) {
     }
 }
 
-/// A velocity that a contact holds, or that is about to leave 0, is exact: when that begins, conditions of it are
-/// decided by what it is. Other decisions stay, for rounding would turn over what has just passed zero.
-/// One that leaves is taken a little later: a condition may lose the first digits, as floor(10 + velocity) does.
-void Engine::decide_conditions(const Moment& at, const Mode& mode) {
-    if (!has_pieces_) return;
-    constexpr double little_later = 1e-9;
-    std::vector<double>& y = soon_;
-    y.assign(at.y.begin(), at.y.end());
-    std::uint64_t again = has_jumped_ ? ~std::uint64_t{0} : 0;
-    standing_.resize(n());
-    for (std::size_t i = 0; i < n(); ++i) {
-        const Slipping& how = mode.friction[i];
-        const bool leaves = mode.rubs[i] != 0 && how.leaving && mode.leans[i] == 0;
-        const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
-        const std::size_t bit = problem_.system.named ? n() + i : 1;
-        if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
-        standing_[i] = now;
-        double& v = y[n() + i];
-        if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
-            const double speed =
-                little_later * pace_.unit * torque_sizes().on(joint_at(i)) / problem_.system.bodies[i].inertia;
-            v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
-        }
-    }
-    mechanics_.let_laws_act(mode);
-    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide({at.t, at.side, y}, again); });
-    has_jumped_ = false;
-}
-
-/// Where a condition of a function that was read changes.
-void Engine::watch_conditions(Ending& ending) {
-    const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
-    const double before = ending.x - (at_standstill ? beside_standstill : 0);
-    struct Crossing {
-        double x;
-        Piecewise* function;
-        std::size_t condition;
-        double within;
-    };
-    std::vector<Crossing> crossings;
-    double earliest = std::min(1.0, before);
-    std::vector<double> y, margins;
-    struct Part {
-        double first = -1, last = 1;
-        [[nodiscard]] double place(double x) const { return first + (x + 1) * (last - first) / 2; }
-    };
-    const auto is_known = [](double v) { return std::isfinite(v); };
-    // False if it has not a value everywhere in this part.
-    const auto watch = [&](Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
-        const bool whole = part.first == -1 && part.last == 1;
-        const auto exact = [&](double x) {
-            const double at = whole ? x : part.place(x);
-            segment_.state(at, y);
-            function.margins({segment_.time(at), Side::at, y}, margins);
-            return margins[c];
-        };
-        if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
-        if (!std::all_of(values.begin(), values.end(), is_known)) return false;
-        // What M drives back may be on the wrong side already, by no more than rounding.
-        const double within = 64 * rounding * greatest(values), beyond = std::max(within, 16 * rounded);
-        const auto* const clear =
-            std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
-        const bool is_back = values[0] < -rounded && clear != values.end() && *clear < 0;
-        Half half = 1;
-        auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
-        if (x && !whole) x = part.place(*x);
-        if (x && *x < before) {
-            crossings.push_back({*x, &function, c, within});
-            earliest = std::min(earliest, *x);
-        }
-        return true;
-    };
-    struct Unknown {
-        Piecewise* function;
-        std::size_t condition;
-        Nodes values;
-        double rounded;
-    };
-    std::vector<Unknown> not_finite;
-    mechanics_.for_each_piecewise(now_.t.hi, [&](Piecewise& function) {
-        const std::size_t count = function.conditions().size();
-        if (count == 0) return;
-        std::vector<Nodes> values(count);
-        for (std::size_t j = 0; j < node_count; ++j) {
-            function.margins(segment_.moment(j, y), margins);
-            for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
-        }
-        // What some ulps of the motion change in them is rounding.
-        std::vector<double> rounded(count, 0);
-        y = now_.y;
-        for (std::size_t k = 0; k < asking_.told; ++k) {
-            y[k] = now_.y[k] * (1 + 4 * rounding);
-            function.margins({segment_.times[0], segment_.side(0), y}, margins);
-            for (std::size_t c = 0; c < count; ++c) {
-                const double change = std::fabs(margins[c] - values[c][0]);
-                if (is_known(change)) rounded[c] += change;
-            }
-            y[k] = now_.y[k];
-        }
-        // What has just been crossed is as near to zero as it was then, also in a stretch that is shorter.
-        for (std::size_t c = 0; c < count && crossed_last_.function == &function && crossed_last_.t == now_.t.hi; ++c) {
-            if (function.conditions()[c].step == crossed_last_.step)
-                rounded[c] = std::max(rounded[c], crossed_last_.within);
-        }
-        for (std::size_t c = 0; c < count; ++c) {
-            if (!watch(function, c, values[c], rounded[c], {})) {
-                not_finite.push_back({&function, c, values[c], rounded[c]});
-            }
-        }
-    });
-    // The formula of a piece may have no value beyond its ends, as the square root of what was |theta|: such a
-    // condition is watched between the ends of the piece by the others, or as far as it has a value.
-    const double end_of_others = earliest;
-    for (const Unknown& u : not_finite) {
-        constexpr double within = 1e-12;
-        const auto* const begin = u.values.begin() + (is_known(u.values[0]) ? 0 : 1);
-        const auto* const bad = std::find_if_not(begin, u.values.end(), is_known);
-        if (bad == begin) continue;
-        const double first = begin == u.values.begin() ? -1 : -1 + within;
-        const double known = cheb::nodes[static_cast<std::size_t>(bad - u.values.begin()) - 1];
-        const double last = std::min(end_of_others - within, 1.0);
-        if (!(last > first)) continue;
-        if (watch(*u.function, u.condition, u.values, u.rounded, {first, last}) || known >= last) continue;
-        watch(*u.function, u.condition, u.values, u.rounded, {first, known});
-    }
-    if (crossings.empty()) return;
-    ending = {earliest, By::condition};
-    crossed_within_ = 0;
-    // Of a function the first step only: what follows from it, as |v| > 0 from the sign of v, may not change at all.
-    std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
-    for (const auto& [x, function, condition, within] : crossings) {
-        if (x > earliest + one_instant) continue;
-        crossed_within_ = std::max(crossed_within_, within);
-        const auto same =
-            std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });
-        if (same == first.end()) {
-            first.emplace_back(function, condition);
-        } else {
-            same->second = std::min(same->second, condition);
-        }
-    }
-}
-
 /// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is
 /// made again, up to there.
 bool Engine::ends_before(double x) {
@@ -2141,38 +1976,7 @@ bool Engine::ends_before(double x) {
     const double t = segment_.time(x), nothing = 64 * rounding * std::fabs(t);
     if (t - now_.t.hi <= nothing || segment_.end - t <= nothing) return false;
     breaks_.add(t);
-    crossing_at_ = t;
-    return true;
-}
-
-/// Jumps that are next to nothing, one after the other, are digits that somebody has cut off: noise, and no events.
-/// Then the conditions are let go, and M is sampled from there on; so it is beside a kink that rounding turns over.
-bool Engine::cross(const Ending& ending) {
-    constexpr double small = 1e-5, nothing = 1e-13;
-    constexpr int most_small = 30, most_to_and_fro = 200;
-    constexpr double soon = 1e-6;
-    bool all_small = true, jumps = false;
-    for (const auto& [function, condition] : ending.conditions) {
-        const auto [step, beyond, of] = function->conditions()[condition];
-        const bool back = crossed_last_.function == function && crossed_last_.step == step &&
-                          crossed_last_.from == beyond && now_.t.hi - crossed_last_.t <= soon * pace_.unit;
-        to_and_fro_ = back ? to_and_fro_ + 1 : 0;
-        crossed_last_ = {function, step, function->decision(step), now_.t.hi, crossed_within_};
-        const double before = function->value(now_.here());
-        function->cross(condition);
-        const double jump = std::fabs(function->value(now_.here()) - before);
-        greatest_crossed_ = std::max({greatest_crossed_, std::fabs(before), jump});
-        const bool clear = jump > nothing * greatest_crossed_;
-        jumps = jumps || clear;
-        if (clear && !function->is_law()) ++result_.jumps;
-        all_small = all_small && clear && jump < small * greatest_crossed_;
-    }
-    small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
-    const bool endless = too_often() || to_and_fro_ >= most_to_and_fro;
-    if (!endless && small_in_a_row_ < most_small) return true;
-    if (endless && jumps) return fail(Outcome::chattering);
-    mechanics_.for_each_piecewise(now_.t.hi, [](Piecewise& function) { function.let_go(); });
-    has_pieces_ = false;
+    conditions_->crosses_at(t);
     return true;
 }
 
@@ -2182,8 +1986,7 @@ double Engine::watched(std::size_t event, const Moment& at) const {
 
 /// Events of the user, if one of them comes before the end that is known so far.
 void Engine::watch_users(Ending& ending) {
-    const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
-    const double before = ending.x - (at_standstill ? beside_standstill : 0);
+    const double before = ending.before();
     std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
     std::vector<double> y;
     for (std::size_t e = 0; e < watches_.size(); ++e) {
@@ -2356,7 +2159,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     const Thrown thrown = thrown_along(joint);
     const auto velocity = [&](double relative) { throw_to(thrown, relative); };
     velocity(-wall * e * before);
-    has_jumped_ = true;
+    conditions_->forget();
     bool rests = e * before == 0;
     double rest = 0;
     if (!rests) {
@@ -2375,7 +2178,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     }
     if (rests) {
         velocity(0);
-        has_jumped_ = true;
+        conditions_->forget();
         if (rest > 0 && now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end)) {
             std::vector<double> rates(mechanics_.states());
             mechanics_.rates(now_.here(), rates.data(), &now_.mode);
@@ -2437,7 +2240,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         }
         if (!named) now_.y[0] = state.theta, now_.y[1] = state.velocity;
         keep_within_walls(now_.y);
-        has_jumped_ = true;
+        conditions_->forget();
         if (now_.y != before) now_.low.assign(n(), 0);  // what the user was given is what he goes on from
         now_.keep_rigid_places(problem_.system);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -2501,7 +2304,7 @@ void Engine::press(std::size_t joint, int side) {
     const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
     history_->add_jump(now_.t.hi, joint, {.impacts = stored, .kept = -stored});
     now_.mode.presses[joint] = side;
-    has_jumped_ = true;
+    conditions_->forget();
     tell(side != 0 ? EventKind::impact : EventKind::released, static_cast<int>(joint));
 }
 
