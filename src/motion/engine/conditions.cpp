@@ -105,7 +105,7 @@ void ConditionSearch::watch_not_finite() {
 }  // namespace
 
 Conditions::Conditions(Mechanics& mechanics, std::size_t told, double start, double unit)
-    : mechanics_(mechanics), told_(told), unit_(unit) {
+    : mechanics_(mechanics), told_(told), unit_(unit), samples_(mechanics.samples_the_motion()) {
     mechanics.for_each_piecewise(start, [this](Piecewise&) { any_ = true; });
 }
 
@@ -132,7 +132,8 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         standing_[i] = now;
         double& v = y[n + i];
         if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
-            const double size = TorqueSizes(mechanics_, last, at).on(mechanics_.system().joints[i]);
+            sizes_.find(mechanics_, last, at);
+            const double size = sizes_.on(mechanics_.system().joints[i]);
             const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
             v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
         }

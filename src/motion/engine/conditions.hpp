@@ -17,6 +17,8 @@ public:
     Conditions(Mechanics& mechanics, std::size_t told, double start, double unit);
 
     [[nodiscard]] bool any() const { return any_; }
+    /// Returns whether a function of the motion has no pieces that are known: it may jump anywhere.
+    [[nodiscard]] bool samples() const { return samples_; }
     /// All are decided anew the next time: the state has jumped.
     void forget() { forgotten_ = true; }
     /// The same at a break, unless that is where one of them passes zero and is not decided by rounding.
@@ -48,7 +50,7 @@ private:
     Mechanics& mechanics_;
     std::size_t told_;
     double unit_;
-    bool any_ = false, forgotten_ = true;
+    bool any_ = false, samples_, forgotten_ = true;
     double crossing_at_ = -model::never;
     struct {
         const Piecewise* function = nullptr;
@@ -56,10 +58,11 @@ private:
         double from = 0, t = -model::never;  ///< the decision that it had until then
         double within = 0;                   ///< it was taken to be so near to zero
     } last_;
-    double within_ = 0;          ///< the same of those that are about to be crossed
-    int to_and_fro_ = 0;         ///< crossings of one condition, each soon after the one before
-    int small_in_a_row_ = 0;     ///< jumps
-    double greatest_ = 0;        ///< value or jump so far
+    double within_ = 0;       ///< the same of those that are about to be crossed
+    int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
+    int small_in_a_row_ = 0;  ///< jumps
+    double greatest_ = 0;     ///< value or jump so far
+    TorqueSizes sizes_;
     std::vector<double> soon_;   ///< the state, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
 };

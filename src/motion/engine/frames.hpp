@@ -17,20 +17,16 @@ public:
         : mechanics_(mechanics), longest_(longest), otherwise_(otherwise) {}
 
     /// Returns the frame of a mode. The reference is valid until some hundred other frames were made.
-    [[nodiscard]] const Frame& of(const Mode& mode) { return entry(mode).first; }
-    /// Returns the longest stretch in this mode, time units.
-    [[nodiscard]] double longest(const Mode& mode) { return entry(mode).second; }
+    [[nodiscard]] const Frame& of(const Mode& mode);
 
 private:
     using Key = std::pair<std::vector<char>, std::vector<int>>;  ///< the joints that hold, and at which walls
-    using Entry = std::pair<Frame, double>;
-    const Entry& entry(const Mode& mode);
 
     const Mechanics& mechanics_;
     double longest_, otherwise_;
-    std::map<Key, Entry> entries_, older_;
+    std::map<Key, Frame> frames_, older_;
     Key last_key_;
-    const Entry* last_ = nullptr;
+    const Frame* last_ = nullptr;
 };
 
 /// Stretches of a linear system are no longer than this part of its shortest period.

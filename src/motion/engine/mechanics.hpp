@@ -76,6 +76,7 @@ struct Frame {
     std::vector<std::size_t> redundant;   ///< those of them that follow from the others
     Eigen::MatrixXd sharing;              ///< with loops: what each joint that holds takes of the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< its rows
+    double longest = model::never;        ///< stretch that follows the swings of its groups, time units
 
     [[nodiscard]] std::size_t groups() const { return inertia.size(); }
     /// Returns whether the joints that hold keep the angle of this one.

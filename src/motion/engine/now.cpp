@@ -1,6 +1,7 @@
 #include "motion/engine/now.hpp"
 
 #include <limits>
+#include <utility>
 
 namespace dinal::motion::engine {
 
@@ -12,17 +13,17 @@ double Now::greatest_of_state() const {
     return most;
 }
 
-std::vector<double> Now::departing(const model::System& system) const {
-    std::vector<double> leaving = y;
-    const std::size_t bodies = system.bodies.size();
+const std::vector<double>& Now::departing(const model::System& system, std::vector<double>& made) const {
+    bool any = false;
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         if (!mode.friction[j].leaving || mode.leans[j] != 0) continue;
+        if (!std::exchange(any, true)) made = y;
         const model::Weight& first = system.joints[j].of.front();
-        double& v = leaving[bodies + first.body];
+        double& v = made[system.bodies.size() + first.body];
         if (v == 0)
             v = std::copysign(std::numeric_limits<double>::min(), model::sign_of(mode.friction[j].way) * first.by);
     }
-    return leaving;
+    return any ? made : y;
 }
 
 double Now::belt_heading(const Mechanics& mechanics, std::size_t joint) const {

@@ -35,8 +35,8 @@ struct Now {
     }
     [[nodiscard]] double greatest_of_state() const;
     /// Returns the state for functions that jump at slip 0: joints that leave slip 0 have the smallest velocity that
-    /// way.
-    [[nodiscard]] std::vector<double> departing(const model::System& system) const;
+    /// way. That is y if none leaves, and otherwise `made`.
+    const std::vector<double>& departing(const model::System& system, std::vector<double>& made) const;
     /// Returns the velocity of the belt, or, where it passes zero, the smallest velocity in its direction.
     [[nodiscard]] double belt_heading(const Mechanics& mechanics, std::size_t joint) const;
     /// Returns whether the velocity of the belt is zero within the rounding of the time.

@@ -4,8 +4,8 @@
 
 namespace dinal::motion::engine {
 
-TorqueSizes::TorqueSizes(const Mechanics& mechanics, const Segment& last, const Moment& at)
-    : of_bodies_(mechanics.bodies(), 0) {
+void TorqueSizes::find(const Mechanics& mechanics, const Segment& last, const Moment& at) {
+    of_bodies_.assign(mechanics.bodies(), 0);
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
         double load = last.loads.empty() ? 0 : greatest(last.loads[j]);
         // A load that depends on the motion may be 0 here, and not a little later.

@@ -11,7 +11,7 @@ namespace dinal::motion::engine {
 /// The size of the torques on each body at a moment, with the loads of the last stretch.
 class TorqueSizes {
 public:
-    TorqueSizes(const Mechanics& mechanics, const Segment& last, const Moment& at);
+    void find(const Mechanics& mechanics, const Segment& last, const Moment& at);
     /// Returns the size of the torques at the bodies of a joint, as torques on its angle.
     [[nodiscard]] double on(const model::Joint& joint) const {
         double size = 0;
