@@ -25,7 +25,6 @@ constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
 /// In units of the longest stretch: on one shorter than this no pulse can hide.
 constexpr double too_short_to_look = 1e-6;
-const double smallest = std::numeric_limits<double>::min() / rounding;
 
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
 using Integration = Eigen::Matrix<double, node_count, node_count>;
@@ -118,6 +117,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       floor_{std::vector<double>(n_ + m_), std::vector<double>(n_ + m_)},
       stalled_(n_ + m_),
       may_be_rough_(n_ + m_, 1),
+      proofs_(mechanics),
       offset_(n_),
       offset_rate_(n_),
       offset_way_(n_),
@@ -770,7 +770,8 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     s.proven = !stepping || !mechanics_.has_functions();
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
-    if (unresolved_ <= 1 && !hides_nothing(s, mode)) unresolved_ = 2;
+    const Proofs::Beside beside{tolerance_, sizes_, floor_, fastest_belt_, fastest_rate_};
+    if (unresolved_ <= 1 && !proofs_.hides_nothing(s, mode, beside)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
     for (std::size_t k = 0; k < n_ + m_ && unresolved_ <= 1; ++k) {
         if (may_be_rough_[k] != 0) floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
@@ -993,9 +994,9 @@ double Collocation::gap(const Segment& s) const {
 bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame& frame) {
     constexpr double clearly = 64;
     if (2 * s.h <= too_short_to_look * longest_) return true;
-    const bool seen = s.start.until(seen_) > 0 && seen_ < s.end;
+    const bool seen = s.start.until(proofs_.seen()) > 0 && proofs_.seen() < s.end;
     const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(), [&](const Signal& load) {
-        return load.asks_in_time() && (seen || unproven_in_a_row_ > 0 || !load.is_read());
+        return load.asks_in_time() && (seen || proofs_.failed_last() || !load.is_read());
     });
     if (!scripts && !mechanics_.nonlinear()) return true;
     std::vector<Series> loads(mechanics_.joints());
@@ -1004,7 +1005,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
-    if (seen) places.push_back(s.start.until(seen_) / s.h - 1);
+    if (seen) places.push_back(s.start.until(proofs_.seen()) / s.h - 1);
     for (const std::size_t j : looked_into) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
     add_turns(s, places);
     for (const double x : places) {
@@ -1016,7 +1017,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
             const double noise = floor_.noise[mechanics_.system().joints[i].first()];
             const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
-            seen_ = t;
+            proofs_.see(t);
             return false;
         }
         if (!mechanics_.nonlinear()) continue;
@@ -1038,138 +1039,6 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         }
     }
     return true;
-}
-
-/// Functions that are read do nothing between the nodes that their series do not. Whether that is proven is told in the
-/// stretch.
-bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
-    constexpr double clearly = 64, hair = 16, of_last_iteration = 1e-9;
-    constexpr int thorough = 64, tired = 4;
-    const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
-    if (s.h <= 64 * rounding * late) return true;
-    const int budget = unproven_in_a_row_ < tired ? thorough : 1;
-    const bool named = mechanics_.system().named;
-    const std::size_t told = 2 * n_ + mechanics_.states_of_user();
-    const auto whole = [&](std::size_t k) {
-        Series series = s.series[k];
-        series[0] += s.y[k][0];
-        return series;
-    };
-    // A stretch between breaks does not reach them.
-    const auto time = [&](double delay) {
-        Series t{};
-        t[0] = s.start.hi + s.h - delay, t[1] = s.h;
-        if (s.from_break || s.to_break) t[1] -= hair * rounding * late;
-        return t;
-    };
-    const auto give_motion = [&](const model::Formula& formula, const Series* speed = nullptr) {
-        if (formula.takes_motion() && !named) unseen_.give(1, whole(0)), unseen_.give(2, whole(n_));
-        const std::size_t count = formula.state_count(), from = named ? 0 : 2, more = speed != nullptr ? 1 : 0;
-        if (count == 0) return true;
-        if (count != told - from + more) {
-            s.proven = false;
-            return false;
-        }
-        if (speed != nullptr) unseen_.give(formula.first_state(), *speed);
-        for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, whole(k));
-        return true;
-    };
-    const auto found = [&](const Unseen::Found& what) {
-        s.proven = s.proven && what.proven;
-        if (what.place) seen_ = s.time(*what.place);
-        return what.place.has_value();
-    };
-    bool good = true;
-    /// `size` is what it acts beside, `allowed` how much of that, or of what it is itself, need not be known.
-    const auto look = [&](double size, double allowed, double part) {
-        if (unseen_.is_told(allowed, part)) return;
-        std::optional<std::size_t> last;
-        const auto* piece = unseen_.piece();
-        for (std::size_t k = 0; piece != nullptr && k < piece->conditions.size() && good; ++k) {
-            const std::size_t step = piece->conditions[k].step;
-            if (std::exchange(last, step) == step) continue;
-            const auto close = [&](const Series& series) { return of_last_iteration * cheb::size(series) + smallest; };
-            good = !found(unseen_.search(step, budget, close));
-        }
-        if (!good) return;
-        good = !found(unseen_.search({}, budget, [&](const Series& series) {
-            return std::max(allowed, part * cheb::size(series)) + clearly * lost_in_time(series, late, s.h, size);
-        }));
-    };
-    constexpr double always = clearly * 4 * rounding;
-    const auto part_of = [&](const model::Formula& formula) {
-        return std::max(clearly * tolerance_ + always, formula.takes_motion() ? of_last_iteration : 0);
-    };
-    const auto look_at_signal = [&](const Signal& signal, double size, double noise) {
-        signal.for_each_read(s.time(0),
-                             [&](model::Formula& formula, const model::terms::Piece* piece, double delay, double gain) {
-                                 if (!good) return;
-                                 unseen_.begin(formula, piece);
-                                 unseen_.give(0, time(delay));
-                                 if (!give_motion(formula)) return;
-                                 const double own = size / std::fabs(gain);
-                                 look(own, part_of(formula) * own + (clearly * noise + smallest) / std::fabs(gain), 0);
-                             });
-    };
-    /// The function is given the motion and, before all states, a speed.
-    const auto begin = [&](const Mechanics::Asked& asked, const Series& first, const Series* speed) {
-        model::Formula* formula = good && asked.function != nullptr ? asked.function->read() : nullptr;
-        if (formula == nullptr) return false;
-        unseen_.begin(*formula, asked.piece);
-        unseen_.give(0, first);
-        return give_motion(*formula, speed);
-    };
-    // Beside the other torques, and what the body has in its motion.
-    const auto beside = [&](std::size_t i) {
-        return sizes_[i] + mechanics_.system().bodies[i].inertia * greatest(s.y[n_ + i]) / s.h;
-    };
-    // When a motion has died out, only the rounding of what has acted is left.
-    const auto rough = [&](std::size_t k) { return std::max(floor_.noise[k], rounding * floor_.greatest[k]); };
-    double slowest = model::never;
-    for (std::size_t i = 0; i < n_; ++i) {
-        slowest = std::min(slowest, beside(i) / mechanics_.system().bodies[i].inertia);
-    }
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const model::Weight& first = mechanics_.system().joints[j].of.front();
-        look_at_signal(mechanics_.loads()[j], beside(first.body) / std::fabs(first.by), rough(first.body));
-    }
-    look_at_signal(mechanics_.base_signal(), slowest, 0);
-    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
-        if (!begin(mechanics_.asked_rate(k), time(0), nullptr)) continue;
-        const double size = std::max({greatest(s.y[2 * n_ + k]) / s.h, greatest(s.f[2 * n_ + k]), fastest_rate_[k]});
-        look(size, of_last_iteration * size + clearly * rough(n_ + k) + smallest, 0);
-    }
-    for (std::size_t e = 0; e < mechanics_.events(); ++e) {
-        if (begin(mechanics_.asked_when(e), time(0), nullptr)) look(0, smallest, of_last_iteration);
-    }
-    for (std::size_t j = 0; j < mechanics_.joints() && good; ++j) {
-        const model::Joint& joint = mechanics_.system().joints[j];
-        const std::size_t body = joint.first();
-        const auto between = [&](std::size_t from) {
-            Series sum{};
-            for (const auto& [of, by] : joint.of) add(sum, whole(from + of), by);
-            return sum;
-        };
-        const double size = beside(body);
-        if (mechanics_.has_belt(j)) {
-            look_at_signal(mechanics_.belt_signal(j), std::max(fastest_belt_[j], greatest(s.y[n_ + body])), 0);
-        }
-        mechanics_.for_each_friction(j, mode, s.moment(node_count / 2, points_[0]),
-                                     [&](const Signal& signal, double torque) {
-                                         look_at_signal(signal, torque > 0 ? size / torque : model::never, 0);
-                                     });
-        const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
-        if (begin(mechanics_.asked_spring(j), between(0), nullptr)) look(size, allowed, 0);
-        const Slipping& how = mode.friction[j];
-        const Mechanics::Asked law = mechanics_.asked_law(j);
-        if (law.function == nullptr || how.way == model::Motion::stuck || mode.leans[j] != 0 || how.riding) continue;
-        Series speed = difference(between(n_), cheb::fit(s.belts[j]));
-        for (double& c : speed) c *= model::sign_of(how.way);
-        const bool alone = joint.friction.function == nullptr;
-        if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
-    }
-    if (good) unproven_in_a_row_ = s.proven ? 0 : unproven_in_a_row_ + 1;
-    return good;
 }
 
 bool Collocation::found_noise(const Segment& s, const Mode& mode) {

@@ -14,6 +14,7 @@ using Nodes = cheb::Samples;
 using Series = cheb::Series<cheb::points>;
 inline constexpr std::size_t node_count = cheb::points;
 inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+inline constexpr double smallest = std::numeric_limits<double>::min() / rounding;  ///< its rounding is a number still
 
 inline double greatest(const Nodes& values) {
     double most = 0;
