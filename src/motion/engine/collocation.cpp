@@ -13,69 +13,14 @@ namespace dinal::motion::engine {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int many_iterations = 4;         // slopes that need so many no longer serve, and are asked anew
-constexpr double most_left_over = 1e-6;    // of the equation; a stiff rate multiplies the rounding of its steps
-constexpr double clear_of_noise = 1e4;     // differences over so much motion tell a slope
-constexpr double of_tail = 8;              // noise at single nodes is up to so many times its last coefficients
-constexpr double most_noise_of_rate = 64;  // times the tolerance; of what is noisier than that the run says so
-constexpr double gross = 1e3;              // not resolved by more than this factor: it may be a break
-constexpr std::size_t most_factors = 24;
-constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
+constexpr int many_iterations = 4;       // slopes that need so many no longer serve, and are asked anew
+constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
+constexpr double of_tail = 8;            // noise at single nodes is up to so many times its last coefficients
+constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
 /// The widest gaps between nodes, by the node before. Users' functions are asked in the middle of these, too.
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
 /// In units of the longest stretch: on one shorter than this no pulse can hide.
 constexpr double too_short_to_look = 1e-6;
-
-/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
-using Integration = Eigen::Matrix<double, node_count, node_count>;
-const Integration& integration() {
-    static const Integration weights = [] {
-        Integration rows = Integration::Zero();
-        for (std::size_t j = 0; j < node_count; ++j) {
-            Nodes unit{};
-            unit[j] = 1;
-            const auto F = cheb::integral(cheb::fit(unit), 0.0);
-            for (std::size_t i = 1; i < node_count; ++i) {
-                rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = cheb::value(F, cheb::nodes[i]);
-            }
-        }
-        return rows;
-    }();
-    return weights;
-}
-
-/// The eigenvalues of the matrix that integrates values at the nodes but the first, one of each conjugate pair, and the
-/// change to the basis of its eigenvectors and back. There each eigenvalue has a coefficient; real and imaginary parts
-/// of the complex ones stand next to each other.
-struct IntegrationModes {
-    using Matrix = Eigen::Matrix<double, node_count - 1, node_count - 1>;
-    std::vector<std::complex<double>> values{};
-    std::vector<std::pair<int, int>> places{};  ///< of both parts of a coefficient; the second is -1 where it is real
-    Matrix from_nodes, to_nodes;
-};
-const IntegrationModes& integration_modes() {
-    static const IntegrationModes modes = [] {
-        IntegrationModes made;
-        const IntegrationModes::Matrix once = integration().bottomRightCorner<node_count - 1, node_count - 1>();
-        const algebra::Eigenpairs pairs = algebra::eigenpairs(once);
-        int column = 0;
-        for (int i = 0; i < once.rows(); ++i) {
-            const std::complex<double> value = pairs.values(i);
-            if (value.imag() < 0) continue;
-            made.values.push_back(value);
-            made.places.emplace_back(column, value.imag() > 0 ? column + 1 : -1);
-            made.to_nodes.col(column++) = pairs.vectors.col(i).real();
-            if (value.imag() > 0) made.to_nodes.col(column++) = -pairs.vectors.col(i).imag();
-        }
-        made.from_nodes = algebra::inverse(Eigen::MatrixXd(made.to_nodes));
-        return made;
-    }();
-    return modes;
-}
-
-}  // namespace
-
-namespace {
 
 /// Returns the weighted sum of what the groups have that move a body.
 template <class Value>
@@ -87,23 +32,6 @@ double sum_of_groups(const Frame::Shape& shape, const Value& value) {
 
 }  // namespace
 
-/// A matrix of `inner` rows, column after column, times a vector.
-void Collocation::multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
-    using Column = Eigen::Matrix<double, inner, 1>;
-    Column sums = Column::Zero();
-    for (std::size_t j = 0; j < columns; ++j) sums += vector[j] * Eigen::Map<const Column>(matrix + j * inner);
-    Eigen::Map<Column> result(product);
-    result = sums;
-}
-
-/// The integral from the first node to each, of what has these values.
-void Collocation::integrate(const Nodes& values, double h, Nodes& sums) {
-    static const Eigen::Matrix<double, inner, node_count> rows = integration().bottomRows<inner>();
-    multiply(rows.data(), values.data(), node_count, sums.data() + 1);
-    sums[0] = 0;
-    for (double& sum : sums) sum *= h;
-}
-
 Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest, double step)
     : mechanics_(mechanics),
       tolerance_(tolerance),
@@ -114,24 +42,14 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       fastest_belt_(mechanics.joints()),
       fastest_rate_(m_),
       allowed_(n_),
-      floor_{std::vector<double>(n_ + m_), std::vector<double>(n_ + m_)},
-      stalled_(n_ + m_),
-      may_be_rough_(n_ + m_, 1),
+      noise_(mechanics),
+      newton_(mechanics),
       proofs_(mechanics),
       offset_(n_),
       offset_rate_(n_),
       offset_way_(n_),
       rate_(m_) {
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
-    may_be_rough_.assign(n_ + m_, 0);
-    std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n_), may_be_rough_.end(), 1);
-    for (std::size_t j = 0; j < mechanics.joints(); ++j) {
-        const model::Joint& joint = mechanics.system().joints[j];
-        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.function == nullptr &&
-            !joint.friction.law.depends_on_speed())
-            continue;
-        for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;
-    }
 }
 
 void Collocation::make_room(Segment& s) const {
@@ -368,193 +286,6 @@ void Collocation::place(Segment& s, const Frame& frame) {
     }
 }
 
-/// How accelerations of the groups and rates depend on angles and velocities of the groups and on states.
-bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& frame, std::size_t node) {
-    const std::size_t groups = frame.groups(), rows = groups + m_, columns = 2 * groups + m_;
-    slopes_.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    factors_.clear(), last_factors_ = nullptr;
-    slopes_known_ = true;
-    if (!mechanics_.nonlinear()) {
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const model::Joint& joint = mechanics_.system().joints[j];
-            for (const auto& [on, by] : frame.joints[j]) {
-                const auto row = static_cast<Eigen::Index>(on);
-                const double I = frame.inertia[on];
-                for (const auto& [group, turned] : frame.joints[j]) {
-                    const auto c = static_cast<Eigen::Index>(group);
-                    slopes_(row, c) -= by * turned * joint.stiffness / I;
-                    slopes_(row, static_cast<Eigen::Index>(groups) + c) -= by * turned * joint.damping / I;
-                }
-            }
-        }
-        return true;
-    }
-    std::vector<double> y(s.y.size());
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][node];
-    const auto torques = [&](std::vector<double>& out) {
-        std::vector<double> belts(mechanics_.joints()), loads(mechanics_.joints()), of_bodies;
-        for (std::size_t joint = 0; joint < belts.size(); ++joint) {
-            belts[joint] = s.belts[joint][node], loads[joint] = s.loads[joint][node];
-        }
-        const Moment at{s.times[node], s.side(node), y};
-        mechanics_.torques(at, mode, belts, loads, of_bodies);
-        out.assign(rows, 0);
-        for (std::size_t i = 0; i < n_; ++i) {
-            for (const auto& [group, by] : frame.bodies[i]) out[group] += by * of_bodies[i];
-        }
-        for (std::size_t g = 0; g < groups; ++g) out[g] /= frame.inertia[g];
-        mechanics_.rates(at, out.data() + groups, &mode);
-        return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
-    };
-    std::vector<double> above, below;
-    for (std::size_t c = 0; c < columns; ++c) {
-        // Which of y go together, and how widely they move on the segment.
-        std::vector<std::pair<std::size_t, double>> moved;
-        if (c < 2 * groups) {
-            const std::size_t from = c < groups ? 0 : n_;
-            for (std::size_t i = 0; i < n_; ++i) {
-                for (const auto& [group, by] : frame.bodies[i]) {
-                    if (group == c % groups) moved.emplace_back(from + i, by);
-                }
-            }
-        } else {
-            moved.emplace_back(2 * n_ + (c - 2 * groups), 1);
-        }
-        double spread = 0;
-        for (const auto& [k, by] : moved) {
-            const double rate = k < n_ ? s.y[n_ + k][node] : s.f[k][node];
-            spread = std::max(spread, (std::fabs(y[k]) + s.h * std::fabs(rate)) / std::fabs(by));
-        }
-        const double rough =
-            c < 2 * groups ? s.h * noise() / frame.inertia[c % groups] : s.h * floor_.noise[n_ + (c - 2 * groups)];
-        const double d =
-            spread > 0 ? std::max(1e-4 * spread, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
-        const std::vector<double> kept = y;
-        for (const auto& [k, by] : moved) y[k] = kept[k] + by * d;
-        if (!torques(above)) return false;
-        for (const auto& [k, by] : moved) y[k] = kept[k] - by * d;
-        if (!torques(below)) return false;
-        y = kept;
-        for (std::size_t r = 0; r < rows; ++r) {
-            slopes_(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = (above[r] - below[r]) / (2 * d);
-        }
-    }
-    return true;
-}
-
-void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
-    left.resize(right.size());
-    if (inverse.rows() == static_cast<Eigen::Index>(inner)) {
-        multiply(inverse.data(), right.data(), inner, left.data());
-        return;
-    }
-    if (inverse.size() > 0) {
-        left.noalias() = inverse * right;
-        return;
-    }
-    if (sparse != nullptr) {
-        sparse->solve(right, left);
-        return;
-    }
-    const IntegrationModes& each = integration_modes();
-    constexpr auto size = static_cast<Eigen::Index>(inner);
-    const Eigen::Index rows = right.size() / size;
-    for (Eigen::Index r = 0; r < rows; ++r) {
-        multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
-    }
-    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(rows);
-    for (std::size_t i = 0; i < each.values.size(); ++i) {
-        const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
-        for (Eigen::Index r = 0; r < rows; ++r) {
-            of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
-        }
-        const std::complex<double>* matrix = of_modes.data() + static_cast<Eigen::Index>(i) * rows * rows;
-        for (Eigen::Index r = 0; r < rows; ++r) {
-            std::complex<double> sum = 0;
-            for (Eigen::Index c = 0; c < rows; ++c) sum += matrix[c * rows + r] * of_mode(c);
-            left(r * size + real) = sum.real();
-            if (imaginary >= 0) left(r * size + imaginary) = sum.imag();
-        }
-    }
-    for (Eigen::Index r = 0; r < rows; ++r) {
-        multiply(each.to_nodes.data(), left.data() + r * size, inner, left.data() + r * size);
-    }
-}
-
-const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& frame) {
-    constexpr Eigen::Index few = 3;
-    constexpr int often = 4;
-    const bool linear = slopes_.rows() <= few && !mechanics_.nonlinear();
-    const auto serves = [h, linear](std::pair<const double, Factors>& of) {
-        if (std::fabs(of.first - h) > 1e-6 * h) return false;
-        return !linear || of.second.inverse.size() > 0 || ++of.second.asked < often;
-    };
-    if (last_factors_ != nullptr && serves(*last_factors_)) return last_factors_->second;
-    auto found = factors_.lower_bound(h * (1 - 1e-6));
-    if (found != factors_.end() && serves(*found)) {
-        last_factors_ = &*found;
-        return found->second;
-    }
-    using Inner = Eigen::Matrix<double, inner, inner>;
-    static const Inner once = integration().bottomRightCorner<inner, inner>(), twice = once * once;
-    const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
-               groups = static_cast<Eigen::Index>(frame.groups());
-    const auto block = [&](Eigen::Index r, Eigen::Index c) {
-        Inner own = Inner::Zero();
-        if (c < groups) own -= h * h * slopes_(r, c) * twice;
-        own -= h * slopes_(r, groups + c) * once;
-        if (r == c) own += Inner::Identity();
-        return own;
-    };
-    const auto empty = [&](Eigen::Index r, Eigen::Index c) {
-        return r != c && (c >= groups || slopes_(r, c) == 0) && slopes_(r, groups + c) == 0;
-    };
-    const bool known = found != factors_.end() && std::fabs(found->first - h) <= 1e-6 * h;
-    if (!known) {
-        if (factors_.size() >= most_factors) factors_.clear();
-        found = factors_.try_emplace(h).first;
-    }
-    Factors& made = found->second;
-    last_factors_ = &*found;
-    if (linear && known) {
-        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
-        for (Eigen::Index r = 0; r < rows; ++r) {
-            for (Eigen::Index c = 0; c < rows; ++c) {
-                if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
-            }
-        }
-        made.inverse = algebra::inverse(A);
-        return made;
-    }
-    if (rows < many_unknowns) {
-        made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
-        for (const std::complex<double>& value : integration_modes().values) {
-            const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
-            if (rows == 1 && groups == 1) {
-                made.of_modes.push_back(1.0 / (1.0 - once_by * slopes_(0, 1) - twice_by * slopes_(0, 0)));
-                continue;
-            }
-            Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
-            A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
-            const Eigen::MatrixXcd inverse = algebra::inverse(A);
-            made.of_modes.insert(made.of_modes.end(), inverse.data(), inverse.data() + rows * rows);
-        }
-        return made;
-    }
-    std::vector<algebra::Entry> entries;
-    for (Eigen::Index r = 0; r < rows; ++r) {
-        for (Eigen::Index c = 0; c < rows; ++c) {
-            if (empty(r, c)) continue;
-            const Inner own = block(r, c);
-            for (Eigen::Index i = 0; i < size; ++i) {
-                for (Eigen::Index k = 0; k < size; ++k) entries.push_back({r * size + i, c * size + k, own(i, k)});
-            }
-        }
-    }
-    made.sparse = algebra::factored_sparse(size * rows, entries);
-    return made;
-}
-
 double Collocation::size_at(std::size_t joint) const {
     double size = 0;
     for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
@@ -582,10 +313,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     const std::size_t groups = frame.groups(), count = groups + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    if (slopes_of_ != frame.bodies || slopes_pressed_ != mode.presses || slopes_sliding_ != mode.sliders) {
-        slopes_known_ = false, slopes_of_ = frame.bodies, slopes_pressed_ = mode.presses,
-        slopes_sliding_ = mode.sliders;
-    }
+    newton_.begin(mode, frame);
     enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
@@ -603,12 +331,13 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
         double before = std::numeric_limits<double>::infinity();
         for (int i = 0; i < most_iterations; ++i) {
             if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
-                slopes_known_ = false;  // they may be those of a state far away
+                newton_.forget();  // they may be those of a state far away
                 return Attempt::failed;
             }
             if (count == 0) return Attempt::resolved;
-            if (slopes != Slopes::none && !slopes_known_ && !find_slopes(s, mode, frame, node_count / 2)) {
-                slopes_known_ = false;
+            if (slopes != Slopes::none && !newton_.known() &&
+                !newton_.find(s, mode, frame, node_count / 2, noise_.floor())) {
+                newton_.forget();
                 return Attempt::failed;
             }
             double left = 0, stalls = 1e-12;
@@ -629,7 +358,8 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
                 }
                 scales_[k] = moves + smallest;
-                const double rough = k < groups ? noise() / frame.inertia[k] : floor_.noise[n_ + (k - groups)];
+                const double rough =
+                    k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)];
                 stalls = std::max(stalls, of_tail * s.h * rough / scales_[k]);
                 for (std::size_t j = 1; j < node_count; ++j) {
                     const double rest = found_[k][j] - unknown_[k][j];
@@ -642,7 +372,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
             if (slopes == Slopes::none) {
                 step_ = residual_;
             } else {
-                newton_matrix(s.h, frame).solve(residual_, step_);
+                newton_.solve(s.h, frame, residual_, step_);
             }
             double change = 0;
             for (std::size_t k = 0; k < count; ++k) {
@@ -660,16 +390,16 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                    (i >= 2 && change <= stalls && rate > 0.3);
             if (converged && left <= std::max(most_left_over, stalls)) {
-                if (i >= many_iterations) slopes_known_ = false;
+                if (i >= many_iterations) newton_.forget();
                 return Attempt::resolved;
             }
             if (i >= 3 && rate > 0.7) break;
             before = change;
         }
-        if (slopes == Slopes::known && !find_slopes(s, mode, frame, 0)) break;
+        if (slopes == Slopes::known && !newton_.find(s, mode, frame, 0, noise_.floor())) break;
         if (!mechanics_.nonlinear() && slopes == Slopes::here) break;
     }
-    slopes_known_ = false;
+    newton_.forget();
     return Attempt::shorten;
 }
 
@@ -770,12 +500,10 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     s.proven = !stepping || !mechanics_.has_functions();
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
-    const Proofs::Beside beside{tolerance_, sizes_, floor_, fastest_belt_, fastest_rate_};
+    const Proofs::Beside beside{tolerance_, sizes_, noise_.floor(), fastest_belt_, fastest_rate_};
     if (unresolved_ <= 1 && !proofs_.hides_nothing(s, mode, beside)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
-    for (std::size_t k = 0; k < n_ + m_ && unresolved_ <= 1; ++k) {
-        if (may_be_rough_[k] != 0) floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
-    }
+    if (unresolved_ <= 1) noise_.pass(s);
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
@@ -835,15 +563,17 @@ double longer_by(const Series& series, double allowed) {
 /// Nothing where there is no noise.
 std::vector<double> Collocation::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
-    const bool known = slopes_of_ == frame.bodies && slopes_.rows() == static_cast<Eigen::Index>(count);
-    if (!known || std::all_of(floor_.noise.begin(), floor_.noise.end(), [](double x) { return x == 0; })) return {};
+    const Eigen::MatrixXd* const slopes = newton_.slopes(frame);
+    if (slopes == nullptr ||
+        std::all_of(noise_.floor().noise.begin(), noise_.floor().noise.end(), [](double x) { return x == 0; }))
+        return {};
     std::vector<double> rough(count);
     Eigen::VectorXd off(static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
         off(static_cast<Eigen::Index>(k)) =
-            s.h * (k < groups ? noise() / frame.inertia[k] : floor_.noise[n_ + (k - groups)]);
+            s.h * (k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)]);
     }
-    const Eigen::MatrixXd by = slopes_.rightCols(static_cast<Eigen::Index>(count)).cwiseAbs();
+    const Eigen::MatrixXd by = slopes->rightCols(static_cast<Eigen::Index>(count)).cwiseAbs();
     const Eigen::VectorXd once = by * off, twice = once + s.h * (by * once);
     for (std::size_t k = 0; k < count; ++k) rough[k] = s.h * twice(static_cast<Eigen::Index>(k));
     return rough;
@@ -887,12 +617,12 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
-            allowed += per_torque * noise() + others;
+            allowed += per_torque * noise_.of_torques() + others;
             note(series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
             const Series series = cheb::fit(s.torques[i]);
-            double allowed = (tolerance_ + 16 * rounding) * torques + noise() + smallest;
+            double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost();
             note(series, 1, allowed);
         }
@@ -906,7 +636,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
             const Series series = cheb::fit(s.holding[joint]);
             const double torques = std::max(size_at(joint), held),
-                         lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise();
+                         lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise_.of_torques();
             note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
@@ -925,7 +655,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     }
     double rough = 0;  // what noise in M may be of what it moves
     for (std::size_t i = 0; i < n_; ++i) {
-        rough = std::max(rough, floor_.noise[i] / (std::max(sizes_[i], floor_.greatest[i]) + smallest));
+        rough = std::max(rough, noise_.floor().noise[i] / (std::max(sizes_[i], noise_.floor().greatest[i]) + smallest));
     }
     for (std::size_t k = 0; k < m_; ++k) {
         Series series = s.rates[2 * n_ + k];
@@ -934,7 +664,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
             64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]) +
-            h * floor_.noise[n_ + k] + from_others(frame.groups() + k);
+            h * noise_.floor().noise[n_ + k] + from_others(frame.groups() + k);
         note(series, 1, allowed + smallest);
     }
 }
@@ -1014,7 +744,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         for (std::size_t i = 0; i < loads.size(); ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
             const double size = size_at(i), lost = lost_in_time(loads[i], std::fabs(s.end), s.h, size);
-            const double noise = floor_.noise[mechanics_.system().joints[i].first()];
+            const double noise = noise_.floor().noise[mechanics_.system().joints[i].first()];
             const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             proofs_.see(t);
@@ -1039,55 +769,6 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         }
     }
     return true;
-}
-
-bool Collocation::found_noise(const Segment& s, const Mode& mode) {
-    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
-    bool found = false;
-    std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m_);
-    for (std::size_t i = 0; i < n_ + m_; ++i) {
-        if (may_be_rough_[i] == 0) continue;
-        const double of_all = cheb::tail(cheb::fit(acting(s, i)));
-        const bool of_time = i < n_ && mechanics_.loads()[i].asks_functions() &&
-                             !mechanics_.loads()[i].asks_the_motion() &&
-                             2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
-        const Nodes& values = of_time ? s.driven[i] : acting(s, i);
-        const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
-        const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
-        const double size = i < n_ ? sizes_[i] : greatest(values);
-        // A motion dies out, but the rounding of the terms that make its torques does not.
-        const double ever = std::max(greatest(values), floor_.greatest[i]);
-        const double most = of_time  ? most_noise * size
-                            : i < n_ ? most_noise_of_motion * ever
-                                     : most_noise_of_rate * tolerance_ * ever;
-        double& noise = floor_.noise[i];
-        if (!(tail > tolerance_ * size) || !(tail <= most)) continue;
-        if (noise > 0 && tail <= varies * noise) {
-            found = found || 2 * tail > noise;
-            noise = std::max(noise, 2 * tail);
-            continue;
-        }
-        if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
-        const auto here = [&](double t) {
-            s.state(s.start.until(t) / s.h - 1, y);
-            const Moment at{t, Side::at, y};
-            if (i >= n_) {
-                mechanics_.rates(at, rates.data(), &mode);
-                return rates[i - n_];
-            }
-            mechanics_.loads_of_time(t, Side::at, loads);
-            if (of_time) return loads[i];
-            for (std::size_t joint = 0; joint < belts.size(); ++joint)
-                belts[joint] = mechanics_.belt(joint, t, Side::at);
-            mechanics_.torques(at, mode, belts, loads, torques);
-            return torques[i];
-        };
-        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
-        if (!(rough.usual > alike * tail)) continue;
-        noise = above * std::max(tail, rough.most);
-        found = true;
-    }
-    return found;
 }
 
 std::optional<double> Collocation::found_break(const Segment& s) const {

@@ -4,15 +4,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <complex>
-#include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "algebra/decompositions.hpp"
 #include "motion/engine/mechanics.hpp"
+#include "motion/engine/newton.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/engine/noise.hpp"
 #include "motion/engine/segment.hpp"
 #include "motion/engine/unseen.hpp"
 
@@ -33,30 +31,16 @@ public:
     [[nodiscard]] double unresolved() const { return unresolved_; }
     /// The factor by which the next stretch may be longer than the last one, which was resolved.
     [[nodiscard]] double growth() const { return growth_; }
-    /// The last one was not resolved, nor a longer one, and what acts on a body, or the rate of a state, is as rough on
-    /// far shorter stretches, at one place as at another. From now on it need not be smoother than that.
-    bool found_noise(const Segment& segment, const Mode& mode);
+    /// The last one was not resolved because of noise, which need not be smoother from now on.
+    bool found_noise(const Segment& segment, const Mode& mode) {
+        return noise_.found(segment, mode, tolerance_, sizes_);
+    }
     /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
     [[nodiscard]] bool tells_rests() const {
         return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
-    /// That of the body where it is greatest, torque.
-    [[nodiscard]] double noise() const {
-        return *std::max_element(floor_.noise.begin(), floor_.noise.begin() + static_cast<std::ptrdiff_t>(n_));
-    }
-    /// noise(), where it is more than the tolerance would allow beside what has acted.
-    [[nodiscard]] double clear_noise() const {
-        double most = 0;
-        for (std::size_t i = 0; i < n_; ++i) {
-            if (floor_.noise[i] > tolerance_ * floor_.greatest[i]) most = std::max(most, floor_.noise[i]);
-        }
-        return most;
-    }
-    [[nodiscard]] const Floor& floor() const { return floor_; }
-    /// What an earlier run of the same system has found.
-    void know(const Floor& floor) {
-        if (floor.noise.size() == floor_.noise.size()) floor_ = floor;
-    }
+    [[nodiscard]] const Noise& noise() const { return noise_; }
+    void know(const Floor& floor) { noise_.know(floor); }
     /// What the velocity of a body may be off by on a stretch that was resolved.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
@@ -81,9 +65,6 @@ public:
     void find_limits(Segment& segment, const Mode& mode) const;
 
 private:
-    static constexpr std::size_t inner = node_count - 1;
-    static void multiply(const double* matrix, const double* vector, std::size_t columns, double* product);
-    static void integrate(const Nodes& values, double h, Nodes& sums);
     void make_room(Segment& segment) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
@@ -93,18 +74,6 @@ private:
     bool go_on(const Segment& segment, const Frame& frame);
     void remember_end(const Segment& segment, const Frame& frame);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
-    bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
-    /// Newton's matrix for a length. Of a few linear groups it is inverted where it serves many stretches. Of many it
-    /// is sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
-    /// integration, of two conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
-    struct Factors {
-        int asked = 0;  ///< so often
-        Eigen::MatrixXd inverse;
-        std::unique_ptr<const algebra::Factored> sparse;
-        std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
-        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
-    };
-    const Factors& newton_matrix(double h, const Frame& frame);
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
@@ -114,10 +83,6 @@ private:
     void find_sizes(const Segment& segment);
     /// Returns how great the torques on the angle of a joint are, from those on its bodies.
     [[nodiscard]] double size_at(std::size_t joint) const;
-    /// What acts on a body, or the rate of a state.
-    [[nodiscard]] const Nodes& acting(const Segment& segment, std::size_t of) const {
-        return of < n_ ? segment.torques[of] : segment.f[n_ + of];
-    }
     [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
 
     const Mechanics& mechanics_;
@@ -128,12 +93,8 @@ private:
     double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration
-    Floor floor_;
-    struct Stalled {
-        double from = -model::never, h = 0, tail = 0;
-    };
-    std::vector<Stalled> stalled_;    ///< of each body and state: the last stretch that it made too long
-    std::vector<char> may_be_rough_;  ///< of the same: a function acts
+    Noise noise_;
+    Newton newton_;
     Proofs proofs_;
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
@@ -147,13 +108,6 @@ private:
     } end_;
     std::vector<double> torque_, load_, belt_, rate_, scales_;
     std::vector<char> placed_;
-    Eigen::MatrixXd slopes_;
-    std::vector<Frame::Shape> slopes_of_;  ///< the shapes of bodies for which slopes_ was computed
-    std::vector<int> slopes_pressed_;      ///< which elastic walls were pressed then
-    std::vector<model::Motion> slopes_sliding_;
-    bool slopes_known_ = false;
-    std::map<double, Factors> factors_;
-    std::pair<const double, Factors>* last_factors_ = nullptr;
     std::vector<double> sizes_, sizes_at_start_;  ///< of each body: how great the torques on it are
     Eigen::VectorXd residual_, step_;
 };

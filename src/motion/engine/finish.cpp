@@ -32,7 +32,7 @@ void Engine::finish() {
     result_.outcome = outcome_;
     result_.located = conditions_->any();
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
-    result_.noise = lost ? 0 : solver_->clear_noise();
+    result_.noise = lost ? 0 : solver_->noise().clear(problem_.tolerance);
     if (outcome_ == Outcome::chattering) recorder_->forget_chatter(pace_.unit);
     Walls::keep_within(problem_.system, now_.y);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
@@ -43,7 +43,7 @@ void Engine::finish() {
     auto carry = std::make_shared<Carry>();
     carry->y = now_.y, carry->low = now_.low, carry->mode = now_.mode, carry->watches = users_.watches(),
     carry->echoes = breaks_.echoes(), carry->heading = recorder_->heading(), carry->born = pace_.born,
-    carry->floor = solver_->floor();
+    carry->floor = solver_->noise().floor();
     if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = recorder_->history();
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);

@@ -23,6 +23,10 @@ constexpr std::size_t index(int place) {
 struct Floor {
     std::vector<double> noise;     ///< how rough it was found to be
     std::vector<double> greatest;  ///< so far; no more than a small part of it is taken for noise
+    /// Returns the greatest noise of torques on the first n, the bodies.
+    [[nodiscard]] double noise_of_torques(std::size_t n) const {
+        return *std::max_element(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(n));
+    }
 };
 
 /// How the friction of a joint acts.

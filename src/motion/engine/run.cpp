@@ -192,7 +192,8 @@ bool Engine::advance() {
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
     SampledLoads sampled(mechanics_, segment_);
-    recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_, solver_->noise());
+    recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
+                            solver_->noise().of_torques());
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
