@@ -39,16 +39,12 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       step_length_(step),
       n_(mechanics.bodies()),
       m_(mechanics.states()),
-      fastest_belt_(mechanics.joints()),
-      fastest_rate_(m_),
       allowed_(n_),
       noise_(mechanics),
       newton_(mechanics),
-      proofs_(mechanics),
-      offset_(n_),
-      offset_rate_(n_),
-      offset_way_(n_),
-      rate_(m_) {
+      proofs_(mechanics) {
+    fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
+    for (auto of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
 }
 
@@ -70,7 +66,7 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
         s.rests[j] = s.h * (1 + cheb::nodes[j]) - s.start.until(s.times[j]);
     }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
-    for (std::size_t i = 0; i < n_; ++i) offset_[i] = {}, offset_rate_[i] = {}, offset_way_[i] = {};
+    for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i] = {}, offsets_.rates[i] = {}, offsets_.ways[i] = {};
     mechanics_.sample_loads(s, s.loads);
     std::size_t good = node_count;
     for (const Nodes& load : s.loads) {
@@ -94,7 +90,7 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
             bad_time_ = s.times[j];
             return false;
         }
-        fastest_belt_[joint] = std::max(fastest_belt_[joint], greatest(s.belts[joint]));
+        fastest_.belts[joint] = std::max(fastest_.belts[joint], greatest(s.belts[joint]));
         // On a segment so short its values tell no slope any more.
         constexpr double too_short_for_slopes = 1e-7, stretch = 1e-4;
         if (2 * s.h < too_short_for_slopes * longest_) {
@@ -106,16 +102,16 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
         for (std::size_t j = 0; j < node_count; ++j) s.belt_rates[joint][j] = cheb::value(slope, cheb::nodes[j]) / s.h;
     }
     if (frame.edges.empty()) return true;
-    belt_.resize(joints);
+    room_.belt.resize(joints);
     for (std::size_t j = 0; j < node_count; ++j) {
-        for (std::size_t joint = 0; joint < joints; ++joint) belt_[joint] = s.belts[joint][j];
-        frame.offsets(belt_, mode, torque_);
-        for (std::size_t i = 0; i < n_; ++i) offset_[i][j] = torque_[i];
-        for (std::size_t joint = 0; joint < joints; ++joint) belt_[joint] = s.belt_rates[joint][j];
-        frame.offsets(belt_, mode, torque_);
-        for (std::size_t i = 0; i < n_; ++i) offset_rate_[i][j] = torque_[i];
+        for (std::size_t joint = 0; joint < joints; ++joint) room_.belt[joint] = s.belts[joint][j];
+        frame.offsets(room_.belt, mode, room_.torque);
+        for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i][j] = room_.torque[i];
+        for (std::size_t joint = 0; joint < joints; ++joint) room_.belt[joint] = s.belt_rates[joint][j];
+        frame.offsets(room_.belt, mode, room_.torque);
+        for (std::size_t i = 0; i < n_; ++i) offsets_.rates[i][j] = room_.torque[i];
     }
-    for (std::size_t i = 0; i < n_; ++i) integrate(offset_[i], s.h, offset_way_[i]);
+    for (std::size_t i = 0; i < n_; ++i) integrate(offsets_.velocities[i], s.h, offsets_.ways[i]);
     return true;
 }
 
@@ -127,11 +123,11 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
     bool placed = false;
     const auto each_node = [&](auto&& at_node) {
         for (std::size_t j = first; j < end && !placed; ++j) {
-            points_[j].resize(s.y.size());
-            for (std::size_t k = 0; k < s.y.size(); ++k) points_[j][k] = departing ? (*departing)[k] : s.y[k][j];
+            room_.points[j].resize(s.y.size());
+            for (std::size_t k = 0; k < s.y.size(); ++k) room_.points[j][k] = departing ? (*departing)[k] : s.y[k][j];
         }
         placed = true;
-        for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
+        for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), room_.points[j]});
     };
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         std::copy(s.loads[i].data() + first, s.loads[i].data() + end, s.driven[i].data() + first);
@@ -175,15 +171,15 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         for (const auto& [group, by] : frame.bodies[i]) {
             Nodes& found = found_[group];
             const double share = by / frame.inertia[group];
-            for (std::size_t j = first; j < end; ++j) found[j] += share * (torque[j] - inertia * offset_rate_[i][j]);
+            for (std::size_t j = first; j < end; ++j) found[j] += share * (torque[j] - inertia * offsets_.rates[i][j]);
         }
     }
     if (m_ > 0) {
         each_node([&](std::size_t j, const Moment& at) {
-            mechanics_.rates(at, rate_.data(), &mode);
+            mechanics_.rates(at, room_.rate.data(), &mode);
             for (std::size_t k = 0; k < m_; ++k) {
-                found_[frame.groups() + k][j] = rate_[k];
-                good = good && std::isfinite(rate_[k]);
+                found_[frame.groups() + k][j] = room_.rate[k];
+                good = good && std::isfinite(room_.rate[k]);
             }
         });
     }
@@ -203,7 +199,7 @@ void Collocation::guess(Segment& s, const Frame& frame) {
     for (std::size_t i = 0; i < n_; ++i) {
         const Frame::Shape& shape = frame.bodies[i];
         Nodes &way = s.moved[i], &p = s.y[i], &v = s.y[n_ + i];
-        const Nodes &offset = offset_[i], &offset_way = offset_way_[i];
+        const Nodes &offset = offsets_.velocities[i], &offset_way = offsets_.ways[i];
         const double v0 = shape.empty() ? 0 : v[0] - offset[0], p0 = p[0];
         const double a = sum_of_groups(shape, [this](std::size_t g) { return unknown_[g][0]; });
         for (std::size_t j = 1; j < node_count; ++j) {
@@ -256,26 +252,26 @@ void Collocation::remember_end(const Segment& s, const Frame& frame) {
 /// Velocities and angles from the accelerations of the groups, states from their rates.
 void Collocation::place(Segment& s, const Frame& frame) {
     Nodes velocity{}, way{};
-    of_groups_.resize(frame.groups());
-    for (std::size_t g = 0; g < frame.groups(); ++g) integrate(unknown_[g], s.h, of_groups_[g]);
-    placed_.assign(n_, 0);
+    room_.of_groups.resize(frame.groups());
+    for (std::size_t g = 0; g < frame.groups(); ++g) integrate(unknown_[g], s.h, room_.of_groups[g]);
+    room_.placed.assign(n_, 0);
     for (std::size_t i = 0; i < n_; ++i) {
-        if (placed_[i] != 0) continue;
+        if (room_.placed[i] != 0) continue;
         const Frame::Shape& shape = frame.bodies[i];
         velocity = {}, way = {};
-        for (const auto& [group, by] : shape) add(velocity, of_groups_[group], by);
+        for (const auto& [group, by] : shape) add(velocity, room_.of_groups[group], by);
         if (!shape.empty()) {
-            const double first = s.y[n_ + i][0] - offset_[i][0];
+            const double first = s.y[n_ + i][0] - offsets_.velocities[i][0];
             for (double& v : velocity) v += first;
             integrate(velocity, s.h, way);
         }
         for (std::size_t b = i; b < n_; ++b) {
             if (frame.bodies[b] != shape) continue;
-            placed_[b] = 1;
+            room_.placed[b] = 1;
             for (std::size_t j = 1; j < node_count; ++j) {
-                s.moved[b][j] = way[j] + offset_way_[b][j];
+                s.moved[b][j] = way[j] + offsets_.ways[b][j];
                 s.y[b][j] = s.y[b][0] + s.moved[b][j];
-                s.y[n_ + b][j] = velocity[j] + offset_[b][j];
+                s.y[n_ + b][j] = velocity[j] + offsets_.velocities[b][j];
             }
         }
     }
@@ -289,118 +285,143 @@ void Collocation::place(Segment& s, const Frame& frame) {
 double Collocation::size_at(std::size_t joint) const {
     double size = 0;
     for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
-        size = std::max(size, sizes_[body] / std::fabs(by));
+        size = std::max(size, sizes_.all[body] / std::fabs(by));
     }
     return size;
 }
 
 void Collocation::find_sizes(const Segment& s) {
-    for (std::size_t i = 0; i < n_; ++i) sizes_[i] = sizes_at_start_[i] + greatest(s.torques[i]);
+    for (std::size_t i = 0; i < n_; ++i) sizes_.all[i] = sizes_.at_start[i] + greatest(s.torques[i]);
 }
 
 void Collocation::find_sizes_at_start(const Segment& s, const std::vector<double>& begin) {
-    sizes_at_start_.resize(n_), sizes_.resize(n_);
-    for (std::size_t i = 0; i < n_; ++i) sizes_at_start_[i] = greatest(s.loads[i]);
+    sizes_.at_start.resize(n_), sizes_.all.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) sizes_.at_start[i] = greatest(s.loads[i]);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin}) + (j < n_ ? 0 : greatest(s.loads[j]));
-        for (const auto& [body, by] : joint.of) sizes_at_start_[body] += std::fabs(by) * size;
+        for (const auto& [body, by] : joint.of) sizes_.at_start[body] += std::fabs(by) * size;
     }
 }
 
 Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame,
                                           const std::vector<double>& departing) {
-    const std::size_t groups = frame.groups(), count = groups + m_;
+    const std::size_t count = frame.groups() + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
     newton_.begin(mode, frame);
-    enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
-        for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
-        for (std::size_t i = 0; i < n_; ++i) {
-            s.f[n_ + i].fill(sum_of_groups(frame.bodies[i], [this](std::size_t g) { return unknown_[g][0]; }));
-        }
-        for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
+        begin_at_first_node(s, frame);
         if (slopes == Slopes::known && mechanics_.nonlinear() && go_on(s, frame)) {
             place(s, frame);
         } else {
             guess(s, frame);
         }
-        double before = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < most_iterations; ++i) {
-            if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
-                newton_.forget();  // they may be those of a state far away
-                return Attempt::failed;
-            }
-            if (count == 0) return Attempt::resolved;
-            if (slopes != Slopes::none && !newton_.known() &&
-                !newton_.find(s, mode, frame, node_count / 2, noise_.floor())) {
-                newton_.forget();
-                return Attempt::failed;
-            }
-            double left = 0, stalls = 1e-12;
-            find_sizes(s);
-            scales_.resize(count);
-            for (std::size_t k = 0; k < count; ++k) {
-                double moves = 0, most = 0;
-                if (k < groups) {
-                    for (std::size_t b = 0; b < n_; ++b) {
-                        for (const auto& [group, by] : frame.bodies[b]) {
-                            if (group != k) continue;
-                            const double share = std::fabs(by);
-                            moves = std::max(
-                                moves, greatest(s.y[n_ + b]) / share + s.h * share / frame.inertia[k] * sizes_[b]);
-                        }
-                    }
-                } else {
-                    moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
-                }
-                scales_[k] = moves + smallest;
-                const double rough =
-                    k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)];
-                stalls = std::max(stalls, of_tail * s.h * rough / scales_[k]);
-                for (std::size_t j = 1; j < node_count; ++j) {
-                    const double rest = found_[k][j] - unknown_[k][j];
-                    residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
-                    most = std::max(most, std::fabs(rest));
-                }
-                left = std::max(left, s.h * most / scales_[k]);
-            }
-            if (i > 0 && left <= 4 * rounding) return Attempt::resolved;
-            if (slopes == Slopes::none) {
-                step_ = residual_;
-            } else {
-                newton_.solve(s.h, frame, residual_, step_);
-            }
-            double change = 0;
-            for (std::size_t k = 0; k < count; ++k) {
-                double most = 0;
-                for (std::size_t j = 1; j < node_count; ++j) {
-                    const double step = step_(static_cast<Eigen::Index>(k * inner + j - 1));
-                    unknown_[k][j] += step;
-                    most = std::max(most, std::fabs(step));
-                }
-                change = std::max(change, s.h * most / scales_[k]);
-            }
-            place(s, frame);
-            if (!std::isfinite(change + left)) break;
-            const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
-            const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
-                                   (i >= 2 && change <= stalls && rate > 0.3);
-            if (converged && left <= std::max(most_left_over, stalls)) {
-                if (i >= many_iterations) newton_.forget();
-                return Attempt::resolved;
-            }
-            if (i >= 3 && rate > 0.7) break;
-            before = change;
-        }
+        const Attempt attempt = iterate(s, mode, frame, slopes);
+        if (attempt != Attempt::shorten) return attempt;
         if (slopes == Slopes::known && !newton_.find(s, mode, frame, 0, noise_.floor())) break;
         if (!mechanics_.nonlinear() && slopes == Slopes::here) break;
     }
     newton_.forget();
     return Attempt::shorten;
+}
+
+/// All accelerations and rates are what they are at the first node.
+void Collocation::begin_at_first_node(Segment& s, const Frame& frame) {
+    for (std::size_t k = 0; k < unknown_.size(); ++k) unknown_[k].fill(found_[k][0]);
+    for (std::size_t i = 0; i < n_; ++i) {
+        s.f[n_ + i].fill(sum_of_groups(frame.bodies[i], [this](std::size_t g) { return unknown_[g][0]; }));
+    }
+    for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[frame.groups() + k][0]);
+}
+
+/// Newton's iteration with these slopes. Returns shorten if it does not converge.
+Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame, Slopes slopes) {
+    const std::size_t count = unknown_.size();
+    double before = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < most_iterations; ++i) {
+        if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
+            newton_.forget();  // they may be those of a state far away
+            return Attempt::failed;
+        }
+        if (count == 0) return Attempt::resolved;
+        if (slopes != Slopes::none && !newton_.known() &&
+            !newton_.find(s, mode, frame, node_count / 2, noise_.floor())) {
+            newton_.forget();
+            return Attempt::failed;
+        }
+        const auto [left, stalls] = find_residual(s, frame);
+        if (i > 0 && left <= 4 * rounding) return Attempt::resolved;
+        if (slopes == Slopes::none) {
+            step_ = residual_;
+        } else {
+            newton_.solve(s.h, frame, residual_, step_);
+        }
+        const double change = take_step(s.h);
+        place(s, frame);
+        if (!std::isfinite(change + left)) return Attempt::shorten;
+        const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
+        const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
+                               (i >= 2 && change <= stalls && rate > 0.3);
+        if (converged && left <= std::max(most_left_over, stalls)) {
+            if (i >= many_iterations) newton_.forget();
+            return Attempt::resolved;
+        }
+        if (i >= 3 && rate > 0.7) return Attempt::shorten;
+        before = change;
+    }
+    return Attempt::shorten;
+}
+
+/// How wide the motion of each group and state is, and what is left over of its equation, beside that.
+Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& frame) {
+    const std::size_t groups = frame.groups(), count = unknown_.size();
+    Residual found;
+    find_sizes(s);
+    scales_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        double moves = 0, most = 0;
+        if (k < groups) {
+            for (std::size_t b = 0; b < n_; ++b) {
+                for (const auto& [group, by] : frame.bodies[b]) {
+                    if (group != k) continue;
+                    const double share = std::fabs(by);
+                    moves =
+                        std::max(moves, greatest(s.y[n_ + b]) / share + s.h * share / frame.inertia[k] * sizes_.all[b]);
+                }
+            }
+        } else {
+            moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
+        }
+        scales_[k] = moves + smallest;
+        const double rough =
+            k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)];
+        found.stalls = std::max(found.stalls, of_tail * s.h * rough / scales_[k]);
+        for (std::size_t j = 1; j < node_count; ++j) {
+            const double rest = found_[k][j] - unknown_[k][j];
+            residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
+            most = std::max(most, std::fabs(rest));
+        }
+        found.left = std::max(found.left, s.h * most / scales_[k]);
+    }
+    return found;
+}
+
+/// Returns the change, beside the width of the motion.
+double Collocation::take_step(double h) {
+    double change = 0;
+    for (std::size_t k = 0; k < unknown_.size(); ++k) {
+        double most = 0;
+        for (std::size_t j = 1; j < node_count; ++j) {
+            const double step = step_(static_cast<Eigen::Index>(k * inner + j - 1));
+            unknown_[k][j] += step;
+            most = std::max(most, std::fabs(step));
+        }
+        change = std::max(change, h * most / scales_[k]);
+    }
+    return change;
 }
 
 /// One step for the groups and states. In between, angles are a polynomial that has the angles, velocities and
@@ -414,24 +435,25 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
     const std::vector<double> none(size, 0);
     std::vector<double> speeds(groups, 0);  // of the groups, at the start
     for (std::size_t i = 0; i < n_; ++i) {
-        const double v = s.y[n_ + i][0] - offset_[i][0], momentum = mechanics_.system().bodies[i].inertia * v;
+        const double v = s.y[n_ + i][0] - offsets_.velocities[i][0],
+                     momentum = mechanics_.system().bodies[i].inertia * v;
         for (const auto& [group, by] : frame.bodies[i]) speeds[group] += by * momentum / frame.inertia[group];
     }
     for (std::size_t i = 0; i < n_; ++i) {
         const Frame::Shape& shape = frame.bodies[i];
-        if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offset_[i][0]) / shape[0].by;
+        if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offsets_.velocities[i][0]) / shape[0].by;
     }
     /// Of groups the way and the change of velocity, of states the change.
     const auto rates = [&](std::size_t node, const std::vector<double>& change, const std::vector<double>* asked,
                            std::vector<double>& out) {
         for (std::size_t i = 0; i < n_; ++i) {
             const Frame::Shape& shape = frame.bodies[i];
-            const double first = shape.empty() ? 0 : s.y[n_ + i][0] - offset_[i][0];
-            s.moved[i][node] = offset_way_[i][node] + sum_of_groups(shape, [&](std::size_t g) { return change[g]; });
+            const double first = shape.empty() ? 0 : s.y[n_ + i][0] - offsets_.velocities[i][0];
+            s.moved[i][node] = offsets_.ways[i][node] + sum_of_groups(shape, [&](std::size_t g) { return change[g]; });
             s.y[i][node] = s.y[i][0] + s.moved[i][node];
             if (node == 0) continue;
-            s.y[n_ + i][node] =
-                offset_[i][node] + (first + sum_of_groups(shape, [&](std::size_t g) { return change[groups + g]; }));
+            s.y[n_ + i][node] = offsets_.velocities[i][node] +
+                                (first + sum_of_groups(shape, [&](std::size_t g) { return change[groups + g]; }));
         }
         for (std::size_t k = 0; k < m_; ++k) s.y[2 * n_ + k][node] = s.y[2 * n_ + k][0] + change[2 * groups + k];
         if (!evaluate(s, mode, frame, node, node + 1, asked)) return false;
@@ -486,7 +508,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     for (std::size_t i = 0; i < n_; ++i) {
         for (std::size_t j = 0; j < node_count; ++j) {
             s.f[n_ + i][j] =
-                sum_of_groups(frame.bodies[i], [&](std::size_t g) { return unknown_[g][j]; }) + offset_rate_[i][j];
+                sum_of_groups(frame.bodies[i], [&](std::size_t g) { return unknown_[g][j]; }) + offsets_.rates[i][j];
         }
     }
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
@@ -500,7 +522,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     s.proven = !stepping || !mechanics_.has_functions();
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
-    const Proofs::Beside beside{tolerance_, sizes_, noise_.floor(), fastest_belt_, fastest_rate_};
+    const Proofs::Beside beside{tolerance_, sizes_.all, noise_.floor(), fastest_.belts, fastest_.rates};
     if (unresolved_ <= 1 && !proofs_.hides_nothing(s, mode, beside)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
     if (unresolved_ <= 1) noise_.pass(s);
@@ -557,6 +579,15 @@ double longer_by(const Series& series, double allowed) {
     return std::max(by_decay, std::pow(allowed / tail, 1.0 / cheb::degree));
 }
 
+/// Returns the time of a stretch that is farthest from 0.
+double late(const Segment& s) {
+    return std::max(std::fabs(s.start.hi), std::fabs(s.end));
+}
+
+double of_others(const std::vector<double>& by_others, std::size_t k) {
+    return by_others.empty() ? 0 : by_others[k];
+}
+
 }  // namespace
 
 /// The noise of what moves a value makes all rough that this value acts on: of each group and state, how much by h.
@@ -582,51 +613,62 @@ std::vector<double> Collocation::passed_on(const Segment& s, const Frame& frame)
 /// The last coefficients of what drives each value, against what that value is and how it changes.
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     unresolved_ = 0, growth_ = model::never;
-    const auto note = [this](const Series& series, double scale, double allowed) {
-        unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
-        growth_ = std::min(growth_, longer_by(series, allowed / scale));
-    };
     allowed_.assign(n_, 0);
     find_sizes(s);
-    const std::vector<double> by_others = passed_on(s, frame);
-    const auto from_others = [&](std::size_t k) { return by_others.empty() ? 0 : by_others[k]; };
-    const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
-    lost_by_belts_ = 0;
+    fastest_.lost_by_belts = 0;
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (!mechanics_.has_belt(joint)) continue;
-        const double lost = lost_in_time(cheb::fit(s.belts[joint]), late, h, fastest_belt_[joint]);
-        lost_by_belts_ = std::max(lost_by_belts_, lost);
+        const double lost = lost_in_time(cheb::fit(s.belts[joint]), late(s), s.h, fastest_.belts[joint]);
+        fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost);
     }
+    const std::vector<double> by_others = passed_on(s, frame);
+    judge_bodies(s, frame, by_others);
+    judge_joints(s, mode);
+    judge_states(s, frame, by_others);
+}
+
+void Collocation::note(const Series& series, double scale, double allowed) {
+    unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
+    growth_ = std::min(growth_, longer_by(series, allowed / scale));
+}
+
+/// Returns what the loads of a body may be off by because times far from t = 0 are rounded.
+double Collocation::lost_of_loads(const Segment& s, std::size_t body) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
+        const bool acts = j == body || (!mechanics_.loads()[j].none() && mechanics_.system().joints[j].is_on(body));
+        if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late(s), s.h, sizes_.all[body]);
+    }
+    return sum;
+}
+
+void Collocation::judge_bodies(const Segment& s, const Frame& frame, const std::vector<double>& by_others) {
+    const double h = s.h;
     for (std::size_t i = 0; i < n_; ++i) {
-        const double torques = sizes_[i];
-        const auto lost = [&] {
-            double sum = 0;
-            for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
-                const bool acts = j == i || (!mechanics_.loads()[j].none() && mechanics_.system().joints[j].is_on(i));
-                if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late, h, torques);
-            }
-            return sum;
-        };
+        const double torques = sizes_.all[i];
         if (const Frame::Shape& shape = frame.bodies[i]; !shape.empty()) {
             double per_torque = 0, others = 0;
             for (const auto& [group, by] : shape) {
-                per_torque += h * by * by / frame.inertia[group], others += std::fabs(by) * from_others(group);
+                per_torque += h * by * by / frame.inertia[group], others += std::fabs(by) * of_others(by_others, group);
             }
             const Series& series = s.rates[n_ + i];
             const double size = h * cheb::size(series), tail = h * cheb::tail(series);
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
-            if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
+            if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_loads(s, i);
             allowed += per_torque * noise_.of_torques() + others;
             note(series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
-            if (cheb::tail(series) > allowed) allowed += lost();
+            if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
             note(series, 1, allowed);
         }
     }
+}
+
+void Collocation::judge_joints(const Segment& s, const Mode& mode) {
     double held = 0;  // what rigid joints pass on
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
@@ -636,35 +678,40 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
             const Series series = cheb::fit(s.holding[joint]);
             const double torques = std::max(size_at(joint), held),
-                         lost = (tells_rests_ ? 0 : lost_in_time(series, late, h, torques)) + noise_.of_torques();
+                         lost = (tells_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
             note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
-                    (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late, h, most) + smallest;
+                    (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
                 note(limit, 1, allowed);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
         const Series belt = cheb::fit(s.belts[joint]);
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
-                               16 * rounding * fastest_belt_[joint] +
-                               lost_in_time(belt, late, h, fastest_belt_[joint]) + smallest;
+                               16 * rounding * fastest_.belts[joint] +
+                               lost_in_time(belt, late(s), s.h, fastest_.belts[joint]) + smallest;
         note(belt, 1, allowed);
     }
+}
+
+void Collocation::judge_states(const Segment& s, const Frame& frame, const std::vector<double>& by_others) {
+    const double h = s.h;
     double rough = 0;  // what noise in M may be of what it moves
     for (std::size_t i = 0; i < n_; ++i) {
-        rough = std::max(rough, noise_.floor().noise[i] / (std::max(sizes_[i], noise_.floor().greatest[i]) + smallest));
+        rough =
+            std::max(rough, noise_.floor().noise[i] / (std::max(sizes_.all[i], noise_.floor().greatest[i]) + smallest));
     }
     for (std::size_t k = 0; k < m_; ++k) {
         Series series = s.rates[2 * n_ + k];
         for (double& c : series) c *= h;
-        fastest_rate_[k] = std::max(fastest_rate_[k], greatest(s.f[2 * n_ + k]));
+        fastest_.rates[k] = std::max(fastest_.rates[k], greatest(s.f[2 * n_ + k]));
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
-            64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]) +
-            h * noise_.floor().noise[n_ + k] + from_others(frame.groups() + k);
+            64 * rounding * h * fastest_.rates[k] + lost_in_time(series, late(s), h, h * fastest_.rates[k]) +
+            h * noise_.floor().noise[n_ + k] + of_others(by_others, frame.groups() + k);
         note(series, 1, allowed + smallest);
     }
 }
@@ -685,9 +732,9 @@ void Collocation::find_limits(Segment& s, const Mode& mode) const {
 double Collocation::blurred_by_belts(const Segment& s) const {
     if (!mechanics_.has_belts()) return 0;
     double fastest = 0, inertia = 0;
-    for (const double belt : fastest_belt_) fastest = std::max(fastest, belt);
+    for (const double belt : fastest_.belts) fastest = std::max(fastest, belt);
     for (const model::Body& body : mechanics_.system().bodies) inertia += body.inertia;
-    return inertia * (256 * rounding * fastest + lost_by_belts_) / s.h;
+    return inertia * (256 * rounding * fastest + fastest_.lost_by_belts) / s.h;
 }
 
 /// Right before a body turns, where it is farthest: a spring or a law of friction may act there for a short while.
@@ -740,20 +787,20 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     add_turns(s, places);
     for (const double x : places) {
         const double t = s.time(x);
-        mechanics_.loads_of_time(t, Side::at, load_);
+        mechanics_.loads_of_time(t, Side::at, room_.load);
         for (std::size_t i = 0; i < loads.size(); ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
             const double size = size_at(i), lost = lost_in_time(loads[i], std::fabs(s.end), s.h, size);
             const double noise = noise_.floor().noise[mechanics_.system().joints[i].first()];
             const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
-            if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
+            if (std::fabs(room_.load[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             proofs_.see(t);
             return false;
         }
         if (!mechanics_.nonlinear()) continue;
         for (std::size_t joint = 0; joint < belts.size(); ++joint) belts[joint] = mechanics_.belt(joint, t, Side::at);
         s.state(x, y);
-        mechanics_.torques({t, Side::at, y}, mode, belts, load_, torques);
+        mechanics_.torques({t, Side::at, y}, mode, belts, room_.load, torques);
         for (std::size_t g = 0; g < frame.groups(); ++g) {
             double torque = 0, found = 0, allowed = 0;
             for (std::size_t i = 0; i < n_; ++i) {
@@ -826,14 +873,14 @@ bool Collocation::belt_jumps(const Segment& s, std::size_t joint, double t) cons
     constexpr double clearly = 1e-6;
     const double before = mechanics_.belt(joint, towards(t, Side::before), Side::at);
     const double jump = std::fabs(mechanics_.belt(joint, towards(t, Side::after), Side::at) - before);
-    return jump > clearly * std::max(fastest_belt_[joint], greatest(s.belts[joint]));
+    return jump > clearly * std::max(fastest_.belts[joint], greatest(s.belts[joint]));
 }
 
 std::optional<double> Collocation::jump_of_belt(const Segment& s, std::size_t joint) const {
     if (!mechanics_.has_belt(joint)) return {};
     constexpr double clearly = 1e-6, near = 1e-3;
     const Nodes& belts = s.belts[joint];
-    const double seen = clearly * std::max(fastest_belt_[joint], greatest(belts));
+    const double seen = clearly * std::max(fastest_.belts[joint], greatest(belts));
     const auto [least, most] = std::minmax_element(belts.begin(), belts.end());
     const double change = *most - *least;
     std::size_t first = 1;  // of the greatest differences

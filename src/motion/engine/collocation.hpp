@@ -33,7 +33,7 @@ public:
     [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved because of noise, which need not be smoother from now on.
     bool found_noise(const Segment& segment, const Mode& mode) {
-        return noise_.found(segment, mode, tolerance_, sizes_);
+        return noise_.found(segment, mode, tolerance_, sizes_.all);
     }
     /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
     [[nodiscard]] bool tells_rests() const {
@@ -75,8 +75,22 @@ private:
     void remember_end(const Segment& segment, const Frame& frame);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
+    enum class Slopes { known, here, none };
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
+    Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, Slopes slopes);
+    void begin_at_first_node(Segment& segment, const Frame& frame);
+    struct Residual {
+        double left = 0;        ///< over of the equations
+        double stalls = 1e-12;  ///< a change so small is noise
+    };
+    Residual find_residual(const Segment& segment, const Frame& frame);
+    double take_step(double h);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
+    void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
+    void judge_joints(const Segment& segment, const Mode& mode);
+    void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
+    void note(const Series& series, double scale, double allowed);
+    [[nodiscard]] double lost_of_loads(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
@@ -90,25 +104,35 @@ private:
     std::size_t n_, m_;
     bool tells_rests_ = true;  ///< the loads
     double bad_time_ = 0, unresolved_ = 0, growth_ = 1;
-    double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
-    std::vector<double> fastest_belt_, fastest_rate_;
+    struct {
+        std::vector<double> belts, rates;  ///< so far
+        double lost_by_belts = 0;          ///< of the velocities of belts on the last stretch, because t is rounded
+    } fastest_;
     std::vector<double> allowed_;  ///< of each body's acceleration
     Noise noise_;
     Newton newton_;
     Proofs proofs_;
-    std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
-    std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
-    std::vector<Nodes> of_groups_;                          ///< what the velocities of the groups change by
-    std::array<std::vector<double>, node_count> points_;    ///< all of y at a node
+    struct {
+        std::vector<Nodes> velocities, rates, ways;
+    } offsets_;                           ///< of each body against its group
+    std::vector<Nodes> unknown_, found_;  ///< accelerations of the groups and rates, and new ones
     /// Of the last stretch: its end, and there each of the unknowns with its first three derivatives.
     struct {
         double t = -model::never, h = 0;
         std::vector<Frame::Shape> groups{};
         std::vector<std::array<double, 4>> unknowns{};
     } end_;
-    std::vector<double> torque_, load_, belt_, rate_, scales_;
-    std::vector<char> placed_;
-    std::vector<double> sizes_, sizes_at_start_;  ///< of each body: how great the torques on it are
+    struct {
+        std::vector<double> all, at_start;
+    } sizes_;                     ///< of the torques on each body
+    std::vector<double> scales_;  ///< the width of the motion of each group and state
+    /// Room, so that a stretch need not allocate it.
+    struct {
+        std::vector<double> torque, load, belt, rate;
+        std::vector<char> placed;
+        std::vector<Nodes> of_groups;                        ///< the changes of the groups' velocities
+        std::array<std::vector<double>, node_count> points;  ///< all of y at a node
+    } room_;
     Eigen::VectorXd residual_, step_;
 };
 
