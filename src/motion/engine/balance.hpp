@@ -33,7 +33,7 @@ private:
 class Balances {
 public:
     Balances(const Mechanics& mechanics, Conditions& conditions, const Collocation& solver);
-    /// Of all bodies.
+    /// Returns the inertia of all bodies.
     [[nodiscard]] double inertia() const { return inertia_; }
 
     /// At the present, as contacts are about to move. Returns false if something is not finite; so do the others.

@@ -71,7 +71,7 @@ bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, do
     };
     if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
     if (!std::all_of(values.begin(), values.end(), is_known)) return false;
-    // What M drives back may be on the wrong side already, by no more than rounding.
+    // A condition that M drives back may be on the wrong side already, by no more than rounding.
     const double within = 64 * rounding * greatest(values), beyond = std::max(within, 16 * rounded);
     const auto* const clear =
         std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
@@ -154,7 +154,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             function.margins(segment.moment(j, y), margins);
             for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
         }
-        // What some ulps of the motion change in them is rounding.
+        // Their change by some ulps of the motion is rounding.
         std::vector<double> rounded(count, 0);
         y = begin;
         for (std::size_t k = 0; k < told_; ++k) {
@@ -166,7 +166,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             }
             y[k] = begin[k];
         }
-        // What has just been crossed is as near to zero as it was then, also in a stretch that is shorter.
+        // A condition that was just crossed is as near to zero as it was then, also in a stretch that is shorter.
         for (std::size_t c = 0; c < count && last_.function == &function && last_.t == now; ++c) {
             if (function.conditions()[c].step == last_.step) rounded[c] = std::max(rounded[c], last_.within);
         }
@@ -176,7 +176,8 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     if (search.crossings().empty()) return;
     ending = {search.earliest(), By::condition};
     within_ = 0;
-    // Of a function the first step only: what follows from it, as |v| > 0 from the sign of v, may not change at all.
+    // Each function crosses its first step only: later ones follow from it, as |v| > 0 from the sign of v, and may not
+    // change at all.
     std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
     for (const auto& [x, function, condition, within] : search.crossings()) {
         if (x > ending.x + one_instant) continue;

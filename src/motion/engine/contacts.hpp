@@ -9,7 +9,7 @@ namespace dinal::motion::engine {
 
 /// A value, as Now is. Their modes are in Now.
 struct Contacts {
-    /// How a joint came to stick, the last time: which way it slid, and what pulled it then.
+    /// The last time that a joint came to stick: the way in which it slid, and the pull.
     struct Arrival {
         model::Motion slid = model::Motion::stuck;
         double pull = 0;

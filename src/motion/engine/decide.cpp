@@ -169,7 +169,7 @@ bool Decider::settle(bool all_used) {
     }
 }
 
-/// What others hold together stands at slip 0 with them. Returns whether a joint that slid was found to do so.
+/// Lets joints that others hold together stand at slip 0 with them. Returns whether one of them slid.
 bool Decider::ride_along(const Frame& frame) {
     bool grown = false;
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -339,7 +339,7 @@ void Decider::settle_at_limit(std::size_t joint) {
     now().y[0] = place, now().low[0] = 0;
 }
 
-/// What has come down to rounding may be on its way still: no more than the friction of sliding balances its pull, and
+/// A slip that has come down to rounding may go on: no more than the friction of sliding balances its pull, and
 /// more would hold it.
 void Decider::creep(std::size_t joint, Motion way, double pull) {
     Slipping& how = mode().friction[joint];
@@ -392,7 +392,7 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
 }
 
 /// Decides all joints at slip 0 by the torques that solve the whole problem, if asking one after the other goes round.
-/// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
+/// A joint that slips at the limit of holding has the torque of sliding, and the problem is solved again. The joint
 /// that came to its limit, if one did, is short of a little already.
 bool Decider::decide_together() {
     mode() = by_.room.entered;
@@ -432,7 +432,7 @@ bool Decider::decide_together() {
         if (mode().leans[j] != 0) mode().leans[j] = 0, memory().of[j].leaves_wall = true;
         if (!now().rubs(j)) continue;
         if (mode().friction[j].way == Motion::stuck) {
-            // What can hold nothing is at both of its limits.
+            // A joint that can hold nothing is at both of its limits.
             slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
             gone.push_back(j);
         } else if (belt(j) == 0) {
@@ -469,7 +469,7 @@ bool Decider::share_loops() {
         if (full >= 0 && torque(full) <= lower(full)) torque(full) = box.low(full);
         if (full >= 0 && torque(full) >= higher(full)) torque(full) = box.high(full);
     };
-    // What comes to its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
+    // The joint at its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
     // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
     share(little_more);
     if (!still) share(64 * rounding);

@@ -15,7 +15,7 @@ namespace dinal::motion::engine {
 
 /// Room for decisions, so that each need not allocate it.
 struct DecisionRoom {
-    /// What a decision knows of a joint.
+    /// The knowledge of a decision about a joint.
     struct Asked {
         bool asked = false;  ///< it is at slip 0
         bool taken_back = false, was_held = false, was_creeping = false;
@@ -30,7 +30,7 @@ struct DecisionRoom {
     Balance balance;
 };
 
-/// What a decision evaluates. Nothing of it changes the motion.
+/// The parts of a run that a decision evaluates. None of them changes the motion.
 struct Evaluation {
     const Mechanics& mechanics;
     Frames& frames;

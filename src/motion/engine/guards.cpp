@@ -27,7 +27,7 @@ Ending Guards::first() {
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j);
     }
     for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
-        // Where others hold its contact, what is left of the slip is rounding.
+        // The slip of a contact that others hold is rounding.
         if (!frame_.keeps(mechanics_.sliders()[s].joint)) watch_slider(s);
     }
     watch_relays();
@@ -89,7 +89,7 @@ void Guards::watch_slip(std::size_t joint) {
         zero = cheb::first_below(curve, -1, start, always);
     }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
-    // What only touches zero does so where it is lowest.
+    // A slip that only touches zero does so at its lowest place.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
     }
@@ -100,12 +100,13 @@ void Guards::watch_slip(std::size_t joint) {
     stay_.push_back(joint);
 }
 
-/// It has no belt, and nothing asks for its motion: what it is under is known as well as the rounding.
+/// Returns whether the torques at a joint are known as well as their rounding: it has no belt, and no function of its
+/// motion acts.
 bool Guards::may_creep(std::size_t joint) const {
     return mechanics_.all_linear() && !mechanics_.has_belt(joint) && now_.mode.leans[joint] == 0;
 }
 
-/// Where what holds a joint passes what it can hold.
+/// The torque that holds a joint passes its limit.
 void Guards::watch_release(std::size_t joint) {
     Nodes pull{};
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
@@ -185,7 +186,7 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
         const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
         for (double& way : change) way *= -wall;
-        // What begins at the wall is known as well as its way from there.
+        // The gap of a motion that begins at the wall is known as well as its way from there.
         const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
         const double far =
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
@@ -259,7 +260,7 @@ void Guards::watch_slider(std::size_t slider) {
     }
 }
 
-/// Where a law of friction goes on with another formula.
+/// A law of friction goes on with another formula.
 void Guards::watch_corner(std::size_t joint) {
     const Joint& own = mechanics_.system().joints[joint];
     const model::Friction& law = own.friction.law;

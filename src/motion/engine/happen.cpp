@@ -54,7 +54,7 @@ bool Engine::handle(const Ending& ending) {
 /// The slip of a joint has come to 0, or has passed it as its belt jumped.
 bool Engine::come_to_a_stop(std::size_t j) {
     const double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.y[n()]);
-    // What passed zero because the belt jumped has not come to a standstill.
+    // A slip that passed zero because the belt jumped has not come to a standstill.
     constexpr double clearly = 1e-6;
     if (mechanics_.has_belt(j) && std::fabs(now_.slip(mechanics_, j)) > clearly * fastest && now_.mode.leans[j] == 0) {
         return restart_contacts(Because::belt) && goes_on();
@@ -86,7 +86,7 @@ bool Engine::release(const Ending& ending) {
                now_.mode.friction[i].riding == before.friction[i].riding &&
                now_.mode.friction[i].creeps == before.friction[i].creeps;
     }
-    // What only touched its limit must pass it clearly the next time.
+    // A joint that only touched its limit must pass it clearly the next time.
     if (same) {
         Slipping& how = now_.mode.friction[j];
         const double size = torque_size(j);
@@ -113,7 +113,7 @@ bool Engine::meet_stop(const Ending& ending) {
 bool Engine::turn_slider(const Ending& ending) {
     const std::size_t j = ending.which;
     if (static_cast<Motion>(ending.side) == Motion::stuck) {
-        // What its slip has left, and its spring beyond its limit, is rounding: it would slide again at once.
+        // The rest of its slip, and of its spring beyond its limit, is rounding: it would slide again at once.
         const Mechanics::Slider& own = mechanics_.sliders()[j];
         const model::Weight& first = problem_.system.joints[own.joint].of.front();
         now_.y[n() + first.body] -= now_.slip(mechanics_, own.joint) / first.by;
@@ -136,7 +136,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
 /// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
 bool Engine::nothing_presses(std::size_t joint) const {
     constexpr double later = 1e-9;
-    // Where the load was found to fall below zero it may still be its rounding.
+    // At the zero of the load its value may still be rounding.
     if (normal_halves_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
     std::vector<double> y = now_.y;
     const double h = later * pace_.unit;
@@ -221,7 +221,7 @@ double Engine::rounding_of_slip(std::size_t j, Because why) const {
     const double known = weighted ? mechanics_.speed_scale(j, now_.y) : std::fabs(mechanics_.velocity(j, now_.y));
     double corner = 4 * rounding * (known + std::fabs(belt));
     if (why == Because::belt && mechanics_.has_belt(j)) {
-        // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
+        // If the belt only turns a corner, its values differ by rounding, and by its change in a hair of time.
         double rate = std::fabs(now_.belt_slopes[j].rate);
         if (!segment_.belt_rates.empty()) rate = std::max(rate, std::fabs(segment_.belt_rates[j][node_count - 1]));
         corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.t.hi);
@@ -256,7 +256,7 @@ bool Engine::press_stops() {
     return changed;
 }
 
-/// What an elastic wall stores when it is left is lost.
+/// The energy that an elastic wall stores when it is left is lost.
 void Engine::press(std::size_t joint, int side) {
     const model::Walls& stops = *problem_.system.joints[joint].stops;
     const int wall = side != 0 ? side : now_.mode.presses[joint];
@@ -313,7 +313,7 @@ void Engine::catch_freewheels() {
     }
 }
 
-/// What stands at a wall, and does not move away from it, leans there.
+/// A joint that stands at a wall, and does not move away from it, leans there.
 void Engine::touch_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];

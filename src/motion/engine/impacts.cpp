@@ -19,7 +19,7 @@ constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 
 }  // namespace
 
-/// How long the next bounces take that begin with this speed, under torques that stay as they are. None when one of
+/// Returns the duration of the next bounces from this speed, under torques that stay as they are; none if one of
 /// these is no number.
 std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall, double speed) {
     const Joint& own = problem_.system.joints[joint];
@@ -116,7 +116,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
 }
 
-/// What leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
+/// A joint that leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
 void Engine::leave_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const double v = mechanics_.velocity(j, now_.y);
@@ -129,7 +129,8 @@ void Engine::leave_walls() {
 bool Engine::act_all(const std::vector<std::size_t>& told) {
     users_.pass(told);
     if (!std::all_of(told.begin(), told.end(), [&](std::size_t event) { return act(event, told); })) return false;
-    // What comes at the same instant is told before one of them stops the run: it would not be told when that goes on.
+    // Events of the same instant are reported before one of them stops the run: a run that goes on would not report
+    // them.
     const bool stops =
         std::any_of(told.begin(), told.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
     return !stops || fail(Outcome::stopped);
@@ -184,7 +185,7 @@ void Engine::see_flight() {
     }
 }
 
-/// What a joint stores, with its body's kinetic energy where it is that of a body with the ground.
+/// Returns the energy that a joint stores, with the kinetic energy of its body if it is a body's joint with the ground.
 double Engine::energy_at(std::size_t joint, const std::vector<double>& y) const {
     const Joint& own = problem_.system.joints[joint];
     const double q = mechanics_.angle(joint, y);

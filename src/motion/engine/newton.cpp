@@ -111,7 +111,7 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
     };
     std::vector<double> above, below;
     for (std::size_t c = 0; c < columns; ++c) {
-        // Which of y go together, and how widely they move on the segment.
+        // The values of y that go together, and how widely they move on the segment.
         std::vector<std::pair<std::size_t, double>> moved;
         if (c < 2 * groups) {
             const std::size_t from = c < groups ? 0 : n;

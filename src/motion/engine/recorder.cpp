@@ -53,9 +53,9 @@ bool Recorder::take_back_slip(std::size_t joint, double t) {
     return true;
 }
 
-/// Whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld an
-/// impulse below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is
-/// no longer an event, or is a turn.
+/// Returns whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld
+/// an impulse below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is no
+/// longer an event, or is a turn.
 bool Recorder::only_touched(const Told& slip, double unit) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
     if (result_.events.empty() || slip.slid == Motion::stuck) return false;
@@ -242,12 +242,12 @@ void Recorder::keep(const Now& now, const Segment& segment, double length, doubl
     history_->add(std::move(kept), problem_.limits.dense, past);
 }
 
-/// What acts at each joint on the stretch.
+/// Returns the torques that act at each joint on the stretch.
 std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segment) {
     std::vector<Kept::Acting> all(mechanics_.joints());
     for (std::size_t j = 0; j < all.size(); ++j) {
         all[j].M = segment.driven[j];
-        // What depends on the motion was evaluated before the last step of the iteration.
+        // Functions of the motion were evaluated before the last step of the iteration.
         for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].asks_the_motion(); ++node) {
             all[j].M[node] = segment.loads[j][node] + mechanics_.loads()[j].of_motion(segment.moment(node, point_));
         }

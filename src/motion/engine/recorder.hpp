@@ -41,7 +41,7 @@ public:
     /// Takes back the slip that was reported at the present, of a joint that did not leave. Returns whether there was
     /// one.
     bool take_back_slip(std::size_t joint, double t);
-    /// Of stops and slips that follow each other at once, and lead nowhere, only the first one is an event.
+    /// Keeps only the first of stops and slips that follow each other at once and lead nowhere.
     void forget_chatter(double unit);
     /// The run has ended as it should: what creeps still sticks.
     void tell_crept(const Mode& mode);

@@ -32,9 +32,9 @@ constexpr int most_attempts_sampled = 3000;  // where a function of the motion i
 constexpr double huge = 1e100;               // a function that is no number at such a state says nothing about itself
 constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;  // bounds of a series are so much greater
 
-/// How long a polynomial of degree 16 can follow a motion under a law of friction from this speed on, about: along a
-/// line that makes it grow or die out fast, and along a curve until the speed has changed by its scale. `first` is the
-/// change of the speed by time, `second` the size of what that changes by.
+/// Returns about how long a polynomial of degree 16 can follow a motion under a law of friction from this speed on:
+/// along a line that makes it grow or die out fast, and along a curve until the speed has changed by its scale. `first`
+/// is the change of the speed by time, `second` the size of what that changes by.
 double longest_step(const model::Friction& law, const model::SpeedRange& range, double speed, double first,
                     double second, double C, double I) {
     constexpr double any = std::numeric_limits<double>::infinity();
@@ -257,7 +257,7 @@ void Engine::choose(const Frame& frame) {
     segment_.to_the_end = to_limit && (segment_.to_break || limit == problem_.window.end || problem_.step == 0);
 }
 
-/// How long it takes to the next wall, if all accelerations stay as they are.
+/// Returns the time to the next wall, if all accelerations stay as they are.
 double Engine::until_wall(const Frame& frame) {
     double first = model::never;
     if (!balances_->at_present(now_, frame, segment_, balance_)) return first;
@@ -280,7 +280,7 @@ double Engine::until_wall(const Frame& frame) {
     return first;
 }
 
-/// How long a stretch may be under laws of friction that bend with the speed.
+/// Returns the length of a stretch under laws of friction that bend with the speed.
 double Engine::longest_under_friction(const Frame& frame) {
     double longest = model::never;
     bool looked = false;
@@ -356,7 +356,7 @@ bool Engine::belt_jump_found() {
     return true;
 }
 
-/// Whether nothing that may still come moves any body.
+/// Returns whether nothing that may still come moves any body.
 bool Engine::stands_for_good(const Frame& present) {
     if (present.groups() > 0 || !present.closing.empty() || mechanics_.states() > 0 || mechanics_.has_base())
         return false;
@@ -489,7 +489,7 @@ bool Engine::arrive(double x, bool whole) {
 /// Loads, limits and belts may have jumped: what holds is asked again.
 bool Engine::ask_after_break() {
     if (!mechanics_.has_belts()) return decide(true);
-    // What is moved with a new velocity at once throws all that is rigidly linked to it.
+    // A body that is moved with a new velocity at once throws all that is rigidly linked to it.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
     if (problem_.hidden > 0) project(now_.side());

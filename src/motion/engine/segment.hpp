@@ -10,7 +10,7 @@
 
 namespace dinal::motion::engine {
 
-/// What a stepper yields, and all else reads: angles, velocities and states over a stretch without a jump.
+/// The result of a stepper, which all else reads: angles, velocities and states over a stretch without a jump.
 struct Segment : NodeTimes {
     Clock start;
     double end = 0;                ///< exactly
@@ -27,7 +27,7 @@ struct Segment : NodeTimes {
     std::vector<Nodes> torques{};  ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
-    /// Of each joint that sticks and whose limits change: what holds it at most, backward and forward.
+    /// The most that holds each joint that sticks and whose limits change, backward and forward.
     std::vector<std::array<Nodes, 2>> limits{};
 
     [[nodiscard]] double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }

@@ -27,8 +27,7 @@ struct Walls {
 /// Impulses along joints: they conserve momentum, and what is linked rigidly takes its part.
 class Impulses {
 public:
-    /// What an impulse leaves of each velocity where the joint turns no more, and how much of a relative velocity each
-    /// body takes.
+    /// For each body, its velocity if the joint turned no more, and its share of a relative velocity.
     struct Thrown {
         double lightness = 0;
         std::vector<std::pair<double, double>> velocities = {};
