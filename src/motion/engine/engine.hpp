@@ -57,7 +57,7 @@ private:
     void explain_end();
     std::string state_driven_back();
 
-    // Contacts (happen.cpp). Those that return bool return false if the run is over.
+    // The events that end stretches (events.cpp). Functions that return bool return false if the run is over.
     bool handle(const Ending& ending);
     bool come_to_a_stop(std::size_t joint);
     bool release(const Ending& ending);
@@ -83,9 +83,6 @@ private:
     };
     [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
     bool hit(std::size_t joint, int wall);
-    bool lean_again(std::size_t joint, int wall);
-    void lean(std::size_t joint, int wall, double rest);
-    void tell_leaning(std::size_t joint, int wall);
     void leave_walls();
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t event, const std::vector<std::size_t>& told);
@@ -113,12 +110,15 @@ private:
     }
     [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return problem_.system.joints[joint]; }
 
+    // The motion.
     const Request& problem_;
     Run& result_;
     Asking asking_;
     Mechanics mechanics_;
     Now now_;
     Contacts contacts_;
+    Segment segment_;  ///< the last stretch
+    // The owners.
     Walls walls_;
     Pace pace_;
     Chatter chatter_;
@@ -126,13 +126,13 @@ private:
     Projection projection_;
     Impulses impulses_;
     UserEvents users_;
-    std::vector<Half> normal_halves_;
+    std::vector<Half> normal_halves_;  ///< of each joint, for the guards
     std::optional<Frames> frames_;
     std::optional<Collocation> solver_;
     std::optional<Conditions> conditions_;
     std::optional<Balances> balances_;
     std::optional<Recorder> recorder_;
-    Segment segment_;
+    // Room, so that a stretch need not allocate it.
     Balance balance_;
     DecisionRoom room_;
     TorqueSizes sizes_;
