@@ -23,6 +23,10 @@ constexpr std::size_t index(int place) {
 struct Floor {
     std::vector<double> noise;     ///< detected roughness
     std::vector<double> greatest;  ///< greatest value so far; only a small part of it is accepted as noise
+    /// Returns the greatest noise of torques on the first n, the bodies.
+    [[nodiscard]] double noise_of_torques(std::size_t n) const {
+        return *std::max_element(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(n));
+    }
 };
 
 /// The friction state of a joint.
@@ -76,6 +80,7 @@ struct Frame {
     std::vector<std::size_t> redundant;   ///< those of them that follow from the others
     Eigen::MatrixXd sharing;              ///< with loops: share of each holding joint in the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< the joints of its rows
+    double longest = model::never;        ///< stretch that follows the swings of its groups, time units
 
     [[nodiscard]] std::size_t groups() const { return inertia.size(); }
     /// Returns whether the holding joints fix the angle of this one.

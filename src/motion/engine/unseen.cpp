@@ -1,7 +1,9 @@
 #include "motion/engine/unseen.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <queue>
+#include <utility>
 
 namespace dinal::motion::engine {
 
@@ -137,6 +139,206 @@ Unseen::Found Unseen::search(double allowed, int budget) {
     }
     found.proven = open.empty() && !found.place;
     return found;
+}
+
+namespace {
+
+constexpr double clearly = 64, of_last_iteration = 1e-9;
+
+/// The proofs for one stretch.
+class StretchProof {
+public:
+    StretchProof(const Mechanics& mechanics, Unseen& unseen, Segment& s, const Mode& mode, const Proofs::Beside& beside,
+                 int budget)
+        : mechanics_(mechanics),
+          unseen_(unseen),
+          s_(s),
+          mode_(mode),
+          beside_(beside),
+          n_(mechanics.bodies()),
+          budget_(budget),
+          late_(std::max(std::fabs(s.start.hi), std::fabs(s.end))) {}
+
+    void loads();
+    void rates();
+    void events();
+    void contact(std::size_t joint, const Moment& middle);
+    /// Returns false as soon as a function was found to do something else.
+    [[nodiscard]] bool good() const { return !place_; }
+    [[nodiscard]] std::optional<double> place() const { return place_; }
+
+private:
+    [[nodiscard]] Series whole(std::size_t k) const {
+        Series series = s_.series[k];
+        series[0] += s_.y[k][0];
+        return series;
+    }
+    [[nodiscard]] Series time(double delay) const;
+    bool give_motion(const model::Formula& formula, const Series* speed = nullptr);
+    bool begin(const Mechanics::Asked& asked, const Series& first, const Series* speed = nullptr);
+    void look(double size, double allowed, double part);
+    void look_at(const Signal& signal, double size, double noise);
+    [[nodiscard]] bool found(const Unseen::Found& what);
+    /// The size of what acts on a body: the torques, and what the body has in its motion.
+    [[nodiscard]] double size_on(std::size_t body) const {
+        return beside_.torques[body] + inertia(body) * greatest(s_.y[n_ + body]) / s_.h;
+    }
+    [[nodiscard]] double inertia(std::size_t body) const { return mechanics_.system().bodies[body].inertia; }
+    /// When a motion has died out, only the rounding of what has acted is left.
+    [[nodiscard]] double rough(std::size_t k) const {
+        return std::max(beside_.floor.noise[k], rounding * beside_.floor.greatest[k]);
+    }
+
+    const Mechanics& mechanics_;
+    Unseen& unseen_;
+    Segment& s_;
+    const Mode& mode_;
+    const Proofs::Beside& beside_;
+    std::size_t n_;
+    int budget_;
+    double late_;
+    std::optional<double> place_;
+};
+
+/// A stretch between breaks does not reach them.
+Series StretchProof::time(double delay) const {
+    constexpr double hair = 16;
+    Series t{};
+    t[0] = s_.start.hi + s_.h - delay, t[1] = s_.h;
+    if (s_.from_break || s_.to_break) t[1] -= hair * rounding * late_;
+    return t;
+}
+
+/// Gives a formula the motion and, before all states, a speed. Returns false if it wants other states.
+bool StretchProof::give_motion(const model::Formula& formula, const Series* speed) {
+    const bool named = mechanics_.system().named;
+    const std::size_t told = 2 * n_ + mechanics_.states_of_user();
+    if (formula.takes_motion() && !named) unseen_.give(1, whole(0)), unseen_.give(2, whole(n_));
+    const std::size_t count = formula.state_count(), from = named ? 0 : 2, more = speed != nullptr ? 1 : 0;
+    if (count == 0) return true;
+    if (count != told - from + more) {
+        s_.proven = false;
+        return false;
+    }
+    if (speed != nullptr) unseen_.give(formula.first_state(), *speed);
+    for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, whole(k));
+    return true;
+}
+
+/// Begins with a function, if it is read. `first` is its first argument.
+bool StretchProof::begin(const Mechanics::Asked& asked, const Series& first, const Series* speed) {
+    model::Formula* formula = good() && asked.function != nullptr ? asked.function->read() : nullptr;
+    if (formula == nullptr) return false;
+    unseen_.begin(*formula, asked.piece);
+    unseen_.give(0, first);
+    return give_motion(*formula, speed);
+}
+
+bool StretchProof::found(const Unseen::Found& what) {
+    s_.proven = s_.proven && what.proven;
+    if (what.place) place_ = what.place;
+    return what.place.has_value();
+}
+
+/// `size` is the size of what the function acts beside, `allowed` how much of that, or `part` of itself, is allowed.
+void StretchProof::look(double size, double allowed, double part) {
+    if (unseen_.is_told(allowed, part)) return;
+    std::optional<std::size_t> last;
+    const auto* piece = unseen_.piece();
+    for (std::size_t k = 0; piece != nullptr && k < piece->conditions.size() && good(); ++k) {
+        const std::size_t step = piece->conditions[k].step;
+        if (std::exchange(last, step) == step) continue;
+        const auto close = [&](const Series& series) { return of_last_iteration * cheb::size(series) + smallest; };
+        if (found(unseen_.search(step, budget_, close))) return;
+    }
+    (void)found(unseen_.search({}, budget_, [&](const Series& series) {
+        return std::max(allowed, part * cheb::size(series)) + clearly * lost_in_time(series, late_, s_.h, size);
+    }));
+}
+
+void StretchProof::look_at(const Signal& signal, double size, double noise) {
+    constexpr double always = clearly * 4 * rounding;
+    signal.for_each_read(
+        s_.time(0), [&](model::Formula& formula, const model::terms::Piece* piece, double delay, double gain) {
+            if (!good()) return;
+            unseen_.begin(formula, piece);
+            unseen_.give(0, time(delay));
+            if (!give_motion(formula)) return;
+            const double own = size / std::fabs(gain);
+            const double part =
+                std::max(clearly * beside_.tolerance + always, formula.takes_motion() ? of_last_iteration : 0);
+            look(own, part * own + (clearly * noise + smallest) / std::fabs(gain), 0);
+        });
+}
+
+void StretchProof::loads() {
+    double slowest = model::never;
+    for (std::size_t i = 0; i < n_; ++i) slowest = std::min(slowest, size_on(i) / inertia(i));
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Weight& first = mechanics_.system().joints[j].of.front();
+        look_at(mechanics_.loads()[j], size_on(first.body) / std::fabs(first.by), rough(first.body));
+    }
+    look_at(mechanics_.base_signal(), slowest, 0);
+}
+
+void StretchProof::rates() {
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        if (!begin(mechanics_.asked_rate(k), time(0))) continue;
+        const double size =
+            std::max({greatest(s_.y[2 * n_ + k]) / s_.h, greatest(s_.f[2 * n_ + k]), beside_.fastest_rate[k]});
+        look(size, of_last_iteration * size + clearly * rough(n_ + k) + smallest, 0);
+    }
+}
+
+void StretchProof::events() {
+    for (std::size_t e = 0; e < mechanics_.events(); ++e) {
+        if (begin(mechanics_.asked_when(e), time(0))) look(0, smallest, of_last_iteration);
+    }
+}
+
+/// The belt, the friction and the spring of a joint.
+void StretchProof::contact(std::size_t j, const Moment& middle) {
+    const model::Joint& joint = mechanics_.system().joints[j];
+    const std::size_t body = joint.first();
+    const auto between = [&](std::size_t from) {
+        Series sum{};
+        for (const auto& [of, by] : joint.of) add(sum, whole(from + of), by);
+        return sum;
+    };
+    const double size = size_on(body);
+    if (mechanics_.has_belt(j)) {
+        look_at(mechanics_.belt_signal(j), std::max(beside_.fastest_belt[j], greatest(s_.y[n_ + body])), 0);
+    }
+    mechanics_.for_each_friction(j, mode_, middle, [&](const Signal& signal, double torque) {
+        look_at(signal, torque > 0 ? size / torque : model::never, 0);
+    });
+    const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
+    if (begin(mechanics_.asked_spring(j), between(0))) look(size, allowed, 0);
+    const Slipping& how = mode_.friction[j];
+    const Mechanics::Asked law = mechanics_.asked_law(j);
+    if (law.function == nullptr || how.way == model::Motion::stuck || mode_.leans[j] != 0 || how.riding) return;
+    Series speed = difference(between(n_), cheb::fit(s_.belts[j]));
+    for (double& c : speed) c *= model::sign_of(how.way);
+    const bool alone = joint.friction.function == nullptr;
+    if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
+}
+
+}  // namespace
+
+bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside) {
+    constexpr int thorough = 64, tired = 4;
+    const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
+    if (!any_ || s.h <= 64 * rounding * late) return true;
+    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < tired ? thorough : 1);
+    proof.loads();
+    proof.rates();
+    proof.events();
+    for (std::size_t j = 0; j < mechanics_.joints() && proof.good(); ++j) {
+        proof.contact(j, s.moment(node_count / 2, point_));
+    }
+    if (proof.place()) seen_ = s.time(*proof.place());
+    if (proof.good()) failed_in_a_row_ = s.proven ? 0 : failed_in_a_row_ + 1;
+    return proof.good();
 }
 
 }  // namespace dinal::motion::engine

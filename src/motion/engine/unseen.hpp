@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "model/bounds.hpp"
+#include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/engine/segment.hpp"
 
 namespace dinal::motion::engine {
 
@@ -60,6 +62,36 @@ private:
     std::vector<Input> inputs_ = {};
     Series series_{};
     model::bounds::Walk walk_ = {};
+};
+
+/// Proves for stretch after stretch that functions that are read do nothing between its nodes that their series do not.
+/// It changes nothing of the motion.
+class Proofs {
+public:
+    /// The sizes beside which functions act.
+    struct Beside {
+        double tolerance;
+        const std::vector<double>& torques;  ///< on each body
+        const Floor& floor;
+        const std::vector<double>&fastest_belt, &fastest_rate;  ///< of each joint, and of each state, so far
+    };
+    explicit Proofs(const Mechanics& mechanics) : mechanics_(mechanics), any_(mechanics.has_functions()) {}
+
+    /// Returns false if one does something else, at seen(). The stretch is marked if that could not be proven.
+    bool hides_nothing(Segment& segment, const Mode& mode, const Beside& beside);
+    /// The time at which a load did what its series does not: it is looked at until it is behind.
+    [[nodiscard]] double seen() const { return seen_; }
+    void see(double t) { seen_ = t; }
+    /// Returns whether nothing could be proven for the last stretch.
+    [[nodiscard]] bool failed_last() const { return failed_in_a_row_ > 0; }
+
+private:
+    const Mechanics& mechanics_;
+    bool any_;  ///< function
+    Unseen unseen_;
+    double seen_ = -model::never;
+    int failed_in_a_row_ = 0;
+    std::vector<double> point_;
 };
 
 }  // namespace dinal::motion::engine

@@ -1,0 +1,109 @@
+#include "motion/engine/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/sticking.hpp"
+
+namespace dinal::motion::engine {
+
+using model::Motion;
+
+std::optional<double> SampledLoads::at(std::size_t body, double x) {
+    if (!(x > -1) || !mechanics_.loads()[body].is_sampled() || mechanics_.has_base()) return {};
+    if (series_.empty()) {
+        for (const Nodes& load : segment_.loads) series_.push_back(cheb::fit(load));
+    }
+    return cheb::value(series_[body], x);
+}
+
+Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Collocation& solver)
+    : mechanics_(mechanics), conditions_(conditions), solver_(solver) {
+    for (const model::Body& body : mechanics.system().bodies) inertia_ += body.inertia;
+}
+
+bool Balances::at_present(const Moment& at, const Now& now, const Mode& mode, const Frame& frame, const Segment& last,
+                          Balance& result) {
+    conditions_.decide(at, mode, last);
+    result.blurred = 0;
+    const auto rate = [&](std::size_t j) {
+        const BeltSlope slope = now.belt_slopes[j];
+        result.blurred = std::max(result.blurred, inertia_ * slope.doubt);
+        return slope.rate;
+    };
+    return find(
+        at, mode, frame, rate, [](std::size_t) { return std::optional<double>(); }, result);
+}
+
+bool Balances::on_stretch(const Segment& segment, double x, const Moment& at, const Mode& mode, const Frame& frame,
+                          Balance& result, SampledLoads* sampled) {
+    result.blurred = mechanics_.has_belts() ? solver_.blurred_by_belts(segment) : 0;
+    const auto rate = [&](std::size_t j) { return cheb::value(cheb::fit(segment.belt_rates[j]), x); };
+    const auto known = [&](std::size_t i) { return sampled != nullptr ? sampled->at(i, x) : std::nullopt; };
+    return find(at, mode, frame, rate, known, result);
+}
+
+template <class Rate, class Known>
+bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, const Rate& rate, const Known& known,
+                    Balance& result) {
+    const std::size_t joints = mechanics_.joints(), n = mechanics_.bodies();
+    belts_.assign(joints, 0), rates_.assign(joints, 0);
+    for (std::size_t j = 0; j < joints; ++j) {
+        belts_[j] = mechanics_.belt(j, at.t, at.side);
+        if (mechanics_.has_belt(j)) rates_[j] = rate(j);
+    }
+    mechanics_.loads_of_time(at.t, at.side, result.loads, known);
+    mechanics_.torques(at, mode, belts_, result.loads, result.torques);
+    frame.offsets(rates_, mode, offsets_);
+    of_group_.assign(frame.groups(), 0), lacking_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double own = mechanics_.system().bodies[i].inertia * offsets_[i];
+        for (const auto& [group, by] : frame.bodies[i]) of_group_[group] += by * (result.torques[i] - own);
+    }
+    result.accelerations.resize(n);
+    bool good = true;
+    for (std::size_t i = 0; i < n; ++i) {
+        result.accelerations[i] = offsets_[i];
+        for (const auto& [group, by] : frame.bodies[i]) {
+            result.accelerations[i] += by * (of_group_[group] / frame.inertia[group]);
+        }
+        lacking_[i] = mechanics_.system().bodies[i].inertia * result.accelerations[i] - result.torques[i];
+        good = good && std::isfinite(lacking_[i]);
+    }
+    result.holding.assign(joints, 0);
+    frame.multipliers(lacking_, result.holding);
+    return good;
+}
+
+double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,
+              Motion& towards) {
+    if (mode.rigid[joint] != 0) return -model::never;
+    const double pull = -balance.holding[joint] * known_part(mechanics);
+    if (const int wall = mode.leans[joint]; wall != 0) {
+        towards = wall > 0 ? Motion::backward : Motion::forward;
+        const bool sticks = mode.rubs[joint] != 0 && mode.friction[joint].way == Motion::stuck;
+        return -wall * pull - (sticks ? mechanics.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
+    }
+    if (const Slipping& how = mode.friction[joint]; how.creeps != Motion::stuck) {
+        const double off = pull - model::sign_of(how.creeps) * mechanics.sliding(joint, {.way = how.creeps}, 0, at);
+        towards = off > 0 ? Motion::forward : Motion::backward;
+        return std::fabs(off) - how.apart;
+    }
+    towards = pull > 0 ? Motion::forward : Motion::backward;
+    const double holding = mechanics.holding(joint, towards, at) + mode.friction[joint].blunt;
+    if (std::isinf(holding)) return -model::never;  // a freewheel, backward
+    if (mechanics.bodies() > 1 || !mechanics.is_native(joint) || mechanics.has_belts() || mechanics.states() > 0 ||
+        mode.presses[joint] != 0) {
+        return std::fabs(pull) - balance.blurred - holding;
+    }
+    // The limit is a razor's edge. The angle stands for all that are within half a unit of its last place.
+    const model::Joint& own = mechanics.system().joints[joint];
+    const double theta = at.y[0], spring = own.spring.torque(theta);
+    const double beyond =
+        model::excess_over(holding, own.stiffness, balance.loads[0] - spring, theta, model::sign_of(towards));
+    constexpr double few = 8;  // roundings that a formula of the user makes
+    const double grace = rounding / 2 * (std::fabs(own.stiffness * theta) + few * std::fabs(spring));
+    return beyond < grace ? std::min(beyond, 0.0) : beyond;
+}
+
+}  // namespace dinal::motion::engine

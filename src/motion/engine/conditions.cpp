@@ -1,0 +1,223 @@
+#include "motion/engine/conditions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/engine/crossing.hpp"
+
+namespace dinal::motion::engine {
+
+namespace {
+
+bool is_known(double v) {
+    return std::isfinite(v);
+}
+
+/// Searches one stretch for the conditions that change in it.
+class ConditionSearch {
+public:
+    struct Crossing {
+        double x;
+        Piecewise* function;
+        std::size_t condition;
+        double within;
+    };
+    ConditionSearch(const Segment& segment, double before)
+        : segment_(segment), before_(before), earliest_(std::min(1.0, before)) {}
+
+    /// Watches the conditions of a function. `rounded`: a change of each that is rounding.
+    void watch(Piecewise& function, const std::vector<Nodes>& values, const std::vector<double>& rounded) {
+        for (std::size_t c = 0; c < values.size(); ++c) {
+            if (!watch(function, c, values[c], rounded[c], {})) {
+                not_finite_.push_back({&function, c, values[c], rounded[c]});
+            }
+        }
+    }
+    /// The formula of a piece may have no value beyond its ends, as the square root of what was |theta|: such a
+    /// condition is watched between the ends of the piece by the others, or as far as it has a value.
+    void watch_not_finite();
+    [[nodiscard]] const std::vector<Crossing>& crossings() const { return crossings_; }
+    [[nodiscard]] double earliest() const { return earliest_; }
+
+private:
+    struct Part {
+        double first = -1, last = 1;
+        [[nodiscard]] double place(double x) const { return first + (x + 1) * (last - first) / 2; }
+    };
+    struct Unknown {
+        Piecewise* function;
+        std::size_t condition;
+        Nodes values;
+        double rounded;
+    };
+    bool watch(Piecewise& function, std::size_t c, Nodes values, double rounded, Part part);
+
+    const Segment& segment_;
+    double before_, earliest_;
+    std::vector<Crossing> crossings_;
+    std::vector<Unknown> not_finite_;
+    std::vector<double> y_, margins_;
+};
+
+/// Returns false if the condition has not a value everywhere in this part.
+bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
+    const bool whole = part.first == -1 && part.last == 1;
+    const auto exact = [&](double x) {
+        const double at = whole ? x : part.place(x);
+        segment_.state(at, y_);
+        function.margins({segment_.time(at), Side::at, y_}, margins_);
+        return margins_[c];
+    };
+    if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
+    if (!std::all_of(values.begin(), values.end(), is_known)) return false;
+    // A condition that M drives back may be on the wrong side already, by no more than rounding.
+    const double within = 64 * rounding * greatest(values), beyond = std::max(within, 16 * rounded);
+    const auto* const clear =
+        std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
+    const bool is_back = values[0] < -rounded && clear != values.end() && *clear < 0;
+    Half half = 1;
+    auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
+    if (x && !whole) x = part.place(*x);
+    if (x && *x < before_) {
+        crossings_.push_back({*x, &function, c, within});
+        earliest_ = std::min(earliest_, *x);
+    }
+    return true;
+}
+
+void ConditionSearch::watch_not_finite() {
+    const double end_of_others = earliest_;
+    for (const Unknown& u : not_finite_) {
+        constexpr double within = 1e-12;
+        const auto* const begin = u.values.begin() + (is_known(u.values[0]) ? 0 : 1);
+        const auto* const bad = std::find_if_not(begin, u.values.end(), is_known);
+        if (bad == begin) continue;
+        const double first = begin == u.values.begin() ? -1 : -1 + within;
+        const double known = cheb::nodes[static_cast<std::size_t>(bad - u.values.begin()) - 1];
+        const double last = std::min(end_of_others - within, 1.0);
+        if (!(last > first)) continue;
+        if (watch(*u.function, u.condition, u.values, u.rounded, {first, last}) || known >= last) continue;
+        watch(*u.function, u.condition, u.values, u.rounded, {first, known});
+    }
+}
+
+}  // namespace
+
+Conditions::Conditions(Mechanics& mechanics, std::size_t told, double start, double unit)
+    : mechanics_(mechanics), told_(told), unit_(unit), samples_(mechanics.samples_the_motion()) {
+    mechanics.for_each_piecewise(start, [this](Piecewise&) { any_ = true; });
+}
+
+void Conditions::let_go(double t) {
+    mechanics_.for_each_piecewise(t, [](Piecewise& function) { function.let_go(); });
+    any_ = false;
+}
+
+void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
+    if (!any_) return;
+    // A velocity that leaves 0 is taken a little later: a condition may lose the first digits, as floor(10 + velocity).
+    constexpr double little_later = 1e-9;
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double>& y = soon_;
+    y.assign(at.y.begin(), at.y.end());
+    std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0;
+    standing_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Slipping& how = mode.friction[i];
+        const bool leaves = mode.rubs[i] != 0 && how.leaving && mode.leans[i] == 0;
+        const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
+        const std::size_t bit = mechanics_.system().named ? n + i : 1;
+        if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
+        standing_[i] = now;
+        double& v = y[n + i];
+        if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
+            sizes_.find(mechanics_, last, at);
+            const double size = sizes_.on(mechanics_.system().joints[i]);
+            const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
+            v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
+        }
+    }
+    mechanics_.let_laws_act(mode);
+    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide({at.t, at.side, y}, again); });
+    forgotten_ = false;
+}
+
+void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
+    ConditionSearch search(segment, ending.before());
+    std::vector<double> y, margins;
+    mechanics_.for_each_piecewise(now, [&](Piecewise& function) {
+        const std::size_t count = function.conditions().size();
+        if (count == 0) return;
+        std::vector<Nodes> values(count);
+        for (std::size_t j = 0; j < node_count; ++j) {
+            function.margins(segment.moment(j, y), margins);
+            for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
+        }
+        // Their change by some ulps of the motion is rounding.
+        std::vector<double> rounded(count, 0);
+        y = begin;
+        for (std::size_t k = 0; k < told_; ++k) {
+            y[k] = begin[k] * (1 + 4 * rounding);
+            function.margins({segment.times[0], segment.side(0), y}, margins);
+            for (std::size_t c = 0; c < count; ++c) {
+                const double change = std::fabs(margins[c] - values[c][0]);
+                if (is_known(change)) rounded[c] += change;
+            }
+            y[k] = begin[k];
+        }
+        // A condition that was just crossed is as near to zero as it was then, also in a stretch that is shorter.
+        for (std::size_t c = 0; c < count && last_.function == &function && last_.t == now; ++c) {
+            if (function.conditions()[c].step == last_.step) rounded[c] = std::max(rounded[c], last_.within);
+        }
+        search.watch(function, values, rounded);
+    });
+    search.watch_not_finite();
+    if (search.crossings().empty()) return;
+    ending = {search.earliest(), By::condition};
+    within_ = 0;
+    // Each function crosses its first step only: later ones follow from it, as |v| > 0 from the sign of v, and may not
+    // change at all.
+    std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
+    for (const auto& [x, function, condition, within] : search.crossings()) {
+        if (x > ending.x + one_instant) continue;
+        within_ = std::max(within_, within);
+        const auto same =
+            std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });
+        if (same == first.end()) {
+            first.emplace_back(function, condition);
+        } else {
+            same->second = std::min(same->second, condition);
+        }
+    }
+}
+
+Conditions::Crossed Conditions::cross(const Ending& ending, const Moment& here, bool often) {
+    constexpr double small = 1e-5, nothing = 1e-13;
+    constexpr int most_small = 30, most_to_and_fro = 200;
+    constexpr double soon = 1e-6;
+    Crossed crossed;
+    bool all_small = true;
+    for (const auto& [function, condition] : ending.conditions) {
+        const auto [step, beyond, of] = function->conditions()[condition];
+        const bool back = last_.function == function && last_.step == step && last_.from == beyond &&
+                          here.t - last_.t <= soon * unit_;
+        to_and_fro_ = back ? to_and_fro_ + 1 : 0;
+        last_ = {function, step, function->decision(step), here.t, within_};
+        const double before = function->value(here);
+        function->cross(condition);
+        const double jump = std::fabs(function->value(here) - before);
+        greatest_ = std::max({greatest_, std::fabs(before), jump});
+        const bool clear = jump > nothing * greatest_;
+        crossed.jumps = crossed.jumps || clear;
+        if (clear && !function->is_law()) ++crossed.count;
+        all_small = all_small && clear && jump < small * greatest_;
+    }
+    small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
+    crossed.endless = often || to_and_fro_ >= most_to_and_fro;
+    const bool noise = crossed.endless ? !crossed.jumps : small_in_a_row_ >= most_small;
+    if (noise) let_go(here.t);
+    return crossed;
+}
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,507 @@
+#include "motion/engine/decide.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/sticking.hpp"
+
+namespace dinal::motion::engine {
+
+namespace {
+
+using model::EventKind;
+using model::Joint;
+using model::Motion;
+
+constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
+constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
+
+/// One decision in progress.
+class Decider {
+public:
+    /// `made` begins with the present.
+    Decider(const Evaluation& by, const Cause& cause, Decision& made)
+        : by_(by),
+          mechanics_(by.mechanics),
+          released_(cause.released),
+          told_(cause.told),
+          made_(made),
+          asked_(by.room.asked),
+          found_(by.room.balance) {}
+    /// Returns false if something is not finite.
+    bool decide();
+
+private:
+    using Asked = DecisionRoom::Asked;
+    struct Worst {
+        std::size_t joint;
+        Motion way;
+    };
+    enum class Ways { right, changed, round };
+    struct Box;
+
+    void ask();
+    bool settle(bool all_used);
+    bool ride_along(const Frame& frame);
+    std::optional<Worst> farthest_beyond();
+    void let_go(const Worst& worst);
+    Ways take_back();
+    void settle_at_limit(std::size_t joint);
+    void creep(std::size_t joint, Motion way, double pull);
+    bool box_of(const std::vector<std::size_t>& held, Box& box);
+    bool decide_together();
+    bool share_loops();
+    [[nodiscard]] bool moves_as_one(std::size_t joint, const Frame& frame) const;
+    void report();
+    void report(std::size_t joint);
+
+    [[nodiscard]] std::size_t joints() const { return mechanics_.joints(); }
+    [[nodiscard]] const Joint& joint_at(std::size_t j) const { return mechanics_.system().joints[j]; }
+    [[nodiscard]] const Frame& frame() { return by_.frames.of(mode()); }
+    [[nodiscard]] Now& now() { return made_.now; }
+    [[nodiscard]] const Now& now() const { return made_.now; }
+    [[nodiscard]] Mode& mode() { return made_.now.mode; }
+    [[nodiscard]] const Mode& mode() const { return made_.now.mode; }
+    [[nodiscard]] Contacts& memory() { return made_.contacts; }
+    [[nodiscard]] double size(std::size_t joint) const { return by_.room.sizes.on(joint_at(joint)); }
+    [[nodiscard]] double belt(std::size_t joint) const { return mechanics_.belt(joint, now().t.hi, now().side()); }
+    void slide(std::size_t joint, Motion way, bool leaving) { memory().slide(mechanics_, now(), joint, way, leaving); }
+    void project(const Frame& frame) { by_.projection.apply(now(), frame, now().side()); }
+    void tell(EventKind kind, std::size_t joint) {
+        made_.told.push_back({.event = event_at(mechanics_, now(), kind, joint)});
+    }
+
+    const Evaluation& by_;
+    const Mechanics& mechanics_;
+    std::optional<Cause::Released> released_;
+    bool told_;
+    Decision& made_;
+    std::vector<Asked>& asked_;
+    Balance& found_;
+    std::size_t full_ = 0;  ///< the joint of a loop that came to its limit
+    double between_ = 0;    ///< the torque of what was released, between two doubles of the time
+};
+
+bool Decider::decide() {
+    ask();
+    by_.room.entered = mode();
+    found_.holding.assign(joints(), 0);
+    const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
+    const Frame& all_hold = frame();
+    if (free && all_hold.edges.empty()) return true;
+    project(all_hold);
+    by_.room.sizes.find(mechanics_, by_.last, now().here());
+    const bool loops = !all_hold.closing.empty();
+    // One after the other comes to its limit now, or can not go: no sharing holds any longer.
+    const bool all_used = loops && memory().last_full_at == now().t.hi;
+    if (loops && released_) memory().last_full_at = now().t.hi, memory().last_full = released_->joint;
+    full_ = released_ ? released_->joint : all_used ? memory().last_full : joints();
+    if (loops && !all_used && !share_loops()) return false;
+    for (std::size_t j = 0; j < joints() && told_; ++j) {
+        if (asked_[j].slid != Motion::stuck) settle_at_limit(j);
+    }
+    if (released_) {
+        const Series series = cheb::fit(by_.last.holding[released_->joint]);
+        between_ = lost_in_time(series, std::fabs(now().t.hi), by_.last.h, model::never);
+    }
+    if (!settle(all_used)) return false;
+    project(frame());
+    report();
+    return true;
+}
+
+/// Finds the joints at slip 0. All of them hold at first.
+void Decider::ask() {
+    asked_.assign(joints(), {});
+    for (std::size_t j = 0; j < joints(); ++j) {
+        asked_[j].leant = mode().leans[j];
+        if (!now().rubs(j)) continue;
+        Slipping& how = mode().friction[j];
+        Motion& arrived_as = memory().of[j].arrived;
+        if (mode().leans[j] != 0 && how.leaving) continue;
+        if (const double heading = now().belt_heading(mechanics_, j); mode().leans[j] != 0 && heading != 0) {
+            const Motion way = model::motion_of(-heading);
+            if (how.way != way) slide(j, way, false);
+            continue;
+        }
+        if (mode().leans[j] != 0) {  // wall and friction hold it together
+            how.way = Motion::stuck, how.riding = false;
+            arrived_as = Motion::stuck;
+            continue;
+        }
+        const bool arrived = arrived_as != Motion::stuck;
+        if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
+        asked_[j] = {.asked = true,
+                     .was_held = !arrived && !(how.leaving && !how.riding),
+                     .was_creeping = how.creeps != Motion::stuck,
+                     .slid = arrived ? arrived_as : Motion::stuck,
+                     .let_go = released_ && how.leaving && !how.riding && !arrived ? how.way : Motion::stuck};
+        how.way = Motion::stuck, how.riding = how.leaving = false;
+    }
+}
+
+/// Asks again and again, until each joint does what its torques let it do. Returns false if something is not finite.
+bool Decider::settle(bool all_used) {
+    const int most = 8 * static_cast<int>(joints()) + 16;
+    for (int i = 0;; ++i) {
+        if (all_used || i > most) return decide_together();
+        const Frame& present = frame();
+        if (ride_along(present)) {
+            project(frame());
+            continue;
+        }
+        if (!by_.balances.at_present(now(), present, by_.last, found_)) return false;
+        for (std::size_t j = 0; j < joints(); ++j) {
+            if (memory().of[j].crept && asked_[j].slid != Motion::stuck && mode().holds(j))
+                creep(j, asked_[j].slid, -found_.holding[j]);
+        }
+        const std::optional<Worst> worst = farthest_beyond();
+        if (!made_.good) return false;
+        if (worst) {
+            let_go(*worst);
+            continue;
+        }
+        const Ways ways = take_back();
+        if (ways == Ways::right) return true;
+        if (ways == Ways::round) return decide_together();
+    }
+}
+
+/// Lets joints that others hold together stand at slip 0 with them. Returns whether one of them slid.
+bool Decider::ride_along(const Frame& frame) {
+    bool grown = false;
+    for (std::size_t j = 0; j < joints(); ++j) {
+        Slipping& how = mode().friction[j];
+        const bool together = moves_as_one(j, frame);
+        if (how.riding && !together) slide(j, how.way, true);
+        const bool slides = now().rubs(j) && how.way != Motion::stuck && !how.riding && mode().leans[j] == 0;
+        if (slides && together && how.leaving) how.riding = true, how.leaving = false;
+        if (!slides || !together || how.riding || belt(j) != 0) continue;
+        asked_[j].slid = how.way, asked_[j].asked = true, grown = true;
+        how.way = Motion::stuck;
+    }
+    return grown;
+}
+
+/// Returns the joint that is farthest beyond its limit; what came to its limit right now is.
+std::optional<Decider::Worst> Decider::farthest_beyond() {
+    constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
+    std::optional<Worst> worst;
+    double most_beyond = 0;
+    for (std::size_t j = 0; j < joints(); ++j) {
+        if (!mode().holds(j)) continue;
+        Motion towards = Motion::stuck;
+        const double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
+        if (std::isnan(beyond)) {
+            made_.good = false;
+            return {};
+        }
+        const double rounded = mechanics_.bodies() > 1 ? 8 * rounding * size(j) : 0;
+        const bool own = released_ && released_->joint == j;
+        if ((own || asked_[j].let_go != Motion::stuck) &&
+            std::fabs(beyond) <= nearly * size(j) + 2 * found_.blurred + between_) {
+            worst = {j, own ? released_->way : asked_[j].let_go}, most_beyond = model::never;
+            continue;
+        }
+        if (!(beyond > rounded)) continue;
+        const double part = beyond / (mechanics_.size_of(j, now().here()) + std::numeric_limits<double>::min());
+        if (!worst || part > most_beyond) worst = {j, towards}, most_beyond = part;
+    }
+    return worst;
+}
+
+void Decider::let_go(const Worst& worst) {
+    const auto [j, way] = worst;
+    if (released_ && released_->joint == j) released_.reset();
+    asked_[j].pull = -found_.holding[j];
+    asked_[j].let_go = Motion::stuck;
+    Slipping& how = mode().friction[j];
+    if (how.creeps != Motion::stuck && way != how.creeps) {
+        how.creeps = Motion::stuck;
+        if (told_) tell(EventKind::stick, j);
+        return;
+    }
+    if (how.creeps != Motion::stuck) asked_[j].was_held = false;
+    if (mode().leans[j] == 0) {
+        slide(j, way, true);
+        // In a loop others may hold on, while this one gives all that it can.
+        if (moves_as_one(j, frame())) how.riding = true, how.leaving = false;
+        return;
+    }
+    mode().leans[j] = 0, memory().of[j].leaves_wall = true;
+    if (now().rubs(j) && how.way == Motion::stuck) {
+        slide(j, way, true);
+    } else if (now().rubs(j) && now().belt_sets_off(mechanics_, j)) {
+        how.way = Motion::stuck;  // it may go with the belt
+    }
+}
+
+/// Takes back the first joint that was let go and would not go that way.
+Decider::Ways Decider::take_back() {
+    bool goes_round = false;
+    for (std::size_t j = 0; j < joints(); ++j) {
+        Slipping& how = mode().friction[j];
+        const bool lifted = asked_[j].leant != 0 && mode().leans[j] == 0;
+        if (!how.leaving && !lifted) continue;
+        const Joint& joint = joint_at(j);
+        double rate = joint.sum(found_.accelerations);
+        const double I = mechanics_.system().bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
+        const double nothing = 64 * rounding * size(j) + between_;
+        goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
+        if (mechanics_.has_belt(j)) rate -= now().belt_slopes[j].rate;
+        if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
+        if (asked_[j].taken_back) {
+            goes_round = true;
+            continue;
+        }
+        asked_[j].taken_back = true;
+        how.way = Motion::stuck, how.leaving = false;
+        return Ways::changed;
+    }
+    return goes_round ? Ways::round : Ways::right;
+}
+
+void Decider::report() {
+    for (std::size_t j = 0; j < joints(); ++j) {
+        if (asked_[j].leant != 0 || mode().leans[j] != 0) {
+            if (told_ && memory().of[j].leaned && mode().leans[j] == 0) tell(EventKind::slip, j);
+            if (mode().leans[j] == 0) memory().of[j].leaned = false;
+            memory().of[j].arrived = Motion::stuck;
+        } else if (asked_[j].asked) {
+            memory().of[j].crept = false;
+            if (told_ && mode().friction[j].creeps == Motion::stuck) report(j);
+            memory().of[j].arrived = Motion::stuck;
+        }
+    }
+}
+
+/// Reports what a joint at slip 0 does now, if it did something else.
+void Decider::report(std::size_t j) {
+    const Slipping& how = mode().friction[j];
+    const bool slides = how.way != Motion::stuck && !how.riding;
+    Contacts::Arrival& arrival = memory().of[j].arrival;
+    if (asked_[j].slid != Motion::stuck) {
+        if (!slides) {
+            tell(EventKind::stick, j);
+            arrival = {asked_[j].slid, -found_.holding[j]};
+        } else if (how.way != asked_[j].slid) {
+            tell(EventKind::turn, j);
+        }
+    } else if (asked_[j].was_held && slides) {
+        tell(EventKind::slip, j);
+        Told& slip = made_.told.back();
+        slip.unless = Told::Unless::touched, slip.slid = arrival.slid, slip.turns = how.way != arrival.slid;
+        slip.off = std::fabs(asked_[j].pull - arrival.pull), slip.size = size(j);
+    } else if (!asked_[j].was_held && !asked_[j].was_creeping && !slides) {
+        tell(EventKind::stick, j);
+        made_.told.back().unless = Told::Unless::taken_back;
+    }
+}
+
+/// Others hold its bodies together, so that it does not slip, and will not. Two that are held by belts of different
+/// velocities slip.
+bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
+    const Joint& own = joint_at(joint);
+    if (!frame.keeps(joint)) return false;
+    if (!mechanics_.has_belts()) return true;
+    const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
+        std::vector<double> offsets;
+        frame.offsets(of_joints, mode(), offsets);
+        double size = 0;
+        for (const auto& [body, by] : own.of) size += std::fabs(by * offsets[body]);
+        return std::fabs(own.sum(offsets) - of_joints[joint]) <= nearly * size;
+    };
+    std::vector<double> belts(joints()), rates(joints());
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = belt(j), rates[j] = now().belt_slopes[j].rate;
+    constexpr double of_slopes = 1e-6;  // which are differences
+    return alike(belts, 64 * rounding) && alike(rates, of_slopes);
+}
+
+/// A mass that comes to a stop beyond the limit of sticking by no more than the roundings of its way is at the limit.
+void Decider::settle_at_limit(std::size_t joint) {
+    const Joint& own = joint_at(joint);
+    const double before = std::exchange(memory().size_at_stop, size(joint));
+    const bool alone =
+        mechanics_.bodies() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && mode().leans[joint] == 0;
+    if (!alone || own.stiffness == 0) return;
+    if (!by_.balances.at_present(now(), frame(), by_.last, found_)) return;
+    constexpr double roundings = 1024 * rounding;
+    Motion towards = Motion::stuck;
+    const double beyond = excess(mechanics_, joint, found_, mode(), now().here(), towards);
+    if (!(beyond > 0) || beyond > roundings * std::max(memory().size_at_stop, before)) return;
+    const double way = model::sign_of(towards), limit = mechanics_.holding(joint, towards, now().here());
+    double place = (found_.loads[0] - way * limit) / own.stiffness;
+    while (model::excess_over(limit, own.stiffness, found_.loads[0], place, way) > 0) {
+        place = std::nextafter(place, way * model::never);
+    }
+    now().y[0] = place, now().low[0] = 0;
+}
+
+/// A slip that has come down to rounding may go on: no more than the friction of sliding balances its pull, and
+/// more would hold it.
+void Decider::creep(std::size_t joint, Motion way, double pull) {
+    Slipping& how = mode().friction[joint];
+    const double level = mechanics_.sliding(joint, {.way = way}, 0, now().here());
+    if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, now().here()) > level)) return;
+    const double off = std::fabs(model::sign_of(way) * pull - level);
+    constexpr double balances = 1024 * rounding;  // of the torques
+    if (!(off <= balances * size(joint))) return;
+    how.creeps = way, how.apart = 2 * off + 64 * rounding * size(joint);
+    made_.creeping.emplace_back(joint, event_at(mechanics_, now(), EventKind::stick, joint));
+}
+
+/// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times
+/// the torques, plus slope, are the accelerations by which the joints slip.
+struct Decider::Box {
+    Eigen::MatrixXd G;
+    Eigen::VectorXd slope, low, high;
+};
+
+/// The box of these joints, which hold in the present mode. Returns false if something is not finite.
+bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
+    Balance found;
+    if (!by_.balances.at_present(now(), frame(), by_.last, found)) return false;
+    const model::System& system = mechanics_.system();
+    const std::size_t n = system.bodies.size();
+    const auto count = static_cast<Eigen::Index>(held.size()), bodies = static_cast<Eigen::Index>(n);
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(bodies, count);
+    box.low.resize(count), box.high.resize(count), box.slope.resize(count);
+    for (Eigen::Index c = 0; c < count; ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        for (const auto& [body, by] : joint_at(j).of) D(static_cast<Eigen::Index>(body), c) = by;
+        const bool sticks = now().rubs(j) && mode().friction[j].way == Motion::stuck;
+        constexpr double wall = 1e30;
+        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, now().here()) : 0;
+        box.high(c) = sticks ? std::min(wall, mechanics_.holding(j, Motion::backward, now().here())) : 0;
+        if (mode().leans[j] > 0 || mode().rigid[j] != 0) box.low(c) = -wall;
+        if (mode().leans[j] < 0 || mode().rigid[j] != 0) box.high(c) = wall;
+        box.slope(c) = mode().leans[j] == 0 ? -now().belt_slopes[j].rate : 0;
+    }
+    Eigen::VectorXd lightness(bodies), torques(bodies);
+    for (std::size_t i = 0; i < n; ++i) {
+        lightness(static_cast<Eigen::Index>(i)) = 1 / system.bodies[i].inertia;
+        torques(static_cast<Eigen::Index>(i)) = found.torques[i];
+    }
+    box.G = D.transpose() * lightness.asDiagonal() * D;
+    constexpr double little = 1e-10;  // what makes the smallest torques the solution
+    box.G.diagonal() += little * box.G.diagonal();
+    box.slope += D.transpose() * lightness.cwiseProduct(torques);
+    return true;
+}
+
+/// Decides all joints at slip 0 by the torques that solve the whole problem, if asking one after the other goes round.
+/// A joint that slips at the limit of holding has the torque of sliding, and the problem is solved again. The joint
+/// that came to its limit, if one did, is short of a little already.
+bool Decider::decide_together() {
+    mode() = by_.room.entered;
+    std::vector<std::size_t> held;
+    for (std::size_t j = 0; j < joints(); ++j) {
+        if (asked_[j].asked || mode().keeps_place(j)) held.push_back(j);
+    }
+    Box box;
+    if (!box_of(held, box)) return false;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+        if (held[k] != full_) continue;
+        const double room = little_more * size(full_);
+        box.low(static_cast<Eigen::Index>(k)) += room, box.high(static_cast<Eigen::Index>(k)) -= room;
+    }
+    std::vector<char> slips(held.size(), 0);
+    Eigen::VectorXd torque, rate;
+    for (bool grown = true; grown;) {
+        grown = false;
+        torque = least_in_box(box.G, box.slope, box.low, box.high);
+        rate = box.G * torque + box.slope;
+        for (Eigen::Index c = 0; c < torque.size(); ++c) {
+            const std::size_t k = static_cast<std::size_t>(c), j = held[k];
+            const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
+            if (slips[k] != 0 || !at_limit || !now().rubs(j) || mode().friction[j].way != Motion::stuck) continue;
+            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * size(j))) continue;  // others hold it, too
+            slips[k] = 1, grown = true;
+            const Moment here = now().here();
+            if (mode().leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
+            if (mode().leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here);
+        }
+    }
+    std::vector<std::size_t> gone;
+    for (Eigen::Index c = 0; c < torque.size(); ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
+        if (!at_low && !at_high) continue;
+        if (mode().leans[j] != 0) mode().leans[j] = 0, memory().of[j].leaves_wall = true;
+        if (!now().rubs(j)) continue;
+        if (mode().friction[j].way == Motion::stuck) {
+            // A joint that can hold nothing is at both of its limits.
+            slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
+            gone.push_back(j);
+        } else if (belt(j) == 0) {
+            mode().friction[j].way = Motion::stuck;  // it may go with the belt, which sets off
+        }
+    }
+    for (const std::size_t j : gone) {
+        if (!moves_as_one(j, frame())) continue;
+        mode().friction[j].riding = true, mode().friction[j].leaving = false;
+    }
+    return true;
+}
+
+/// If joints that hold close loops, their torques do not follow from the motion. What they can hold together they do:
+/// the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they have
+/// the smallest. A joint at its limit rides along, or slides when the others do not hold.
+bool Decider::share_loops() {
+    const std::vector<std::size_t> held = frame().sharing_of;
+    Box box;
+    if (!box_of(held, box)) return false;
+    Eigen::Index full = -1;  // the joint that came to its limit
+    for (std::size_t c = 0; released_ && c < held.size(); ++c) {
+        if (released_->joint == held[c]) full = static_cast<Eigen::Index>(c);
+    }
+    const double torques = full < 0 ? 0 : size(held[static_cast<std::size_t>(full)]);
+    Eigen::VectorXd torque;
+    bool still = false;
+    const auto share = [&](double part) {
+        Eigen::VectorXd lower = box.low, higher = box.high;
+        if (full >= 0) lower(full) += part * torques, higher(full) -= part * torques;
+        torque = least_in_box(box.G, box.slope, lower, higher);
+        still =
+            full >= 0 && (box.G * torque + box.slope).cwiseAbs().maxCoeff() <= no_motion * box.G(full, full) * torques;
+        if (full >= 0 && torque(full) <= lower(full)) torque(full) = box.low(full);
+        if (full >= 0 && torque(full) >= higher(full)) torque(full) = box.high(full);
+    };
+    // The joint at its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
+    // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
+    share(little_more);
+    if (!still) share(64 * rounding);
+    for (Eigen::Index c = 0; c < torque.size(); ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
+        if (!at_low && !at_high) continue;
+        if (mode().leans[j] != 0) mode().leans[j] = 0, memory().of[j].leaves_wall = true;
+        if (!now().rubs(j) || mode().friction[j].way != Motion::stuck) continue;
+        slide(j, at_low ? Motion::forward : Motion::backward, false);
+        mode().friction[j].riding = true;
+    }
+    return true;
+}
+
+}  // namespace
+
+Decision decide(const Evaluation& by, Now&& now, Contacts&& contacts, const Cause& cause) {
+    Decision made{.now = std::move(now), .contacts = std::move(contacts)};
+    made.good = Decider(by, cause, made).decide() && made.good;
+    return made;
+}
+
+model::Event event_at(const Mechanics& mechanics, const Now& now, EventKind kind, std::size_t where, int user) {
+    const std::size_t loaded = kind == EventKind::switched ? where : mechanics.system().joints[where].first();
+    return {.t = now.t.hi,
+            .kind = kind,
+            .theta = mechanics.angle(where, now.y),
+            .M = mechanics.load(loaded, now.here()),
+            .user = user,
+            .where = static_cast<int>(where),
+            .velocity = mechanics.velocity(where, now.y)};
+}
+
+}  // namespace dinal::motion::engine

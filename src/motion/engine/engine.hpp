@@ -1,0 +1,146 @@
+// The loop of a run: from one event to the next.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion/engine/balance.hpp"
+#include "motion/engine/breaks.hpp"
+#include "motion/engine/collocation.hpp"
+#include "motion/engine/conditions.hpp"
+#include "motion/engine/contacts.hpp"
+#include "motion/engine/decide.hpp"
+#include "motion/engine/frames.hpp"
+#include "motion/engine/now.hpp"
+#include "motion/engine/pace.hpp"
+#include "motion/engine/recorder.hpp"
+#include "motion/engine/torque_sizes.hpp"
+#include "motion/engine/user_events.hpp"
+#include "motion/engine/walls.hpp"
+
+namespace dinal::motion::engine {
+
+/// Owns what a run is made of, and orders what happens. Each owner changes its own part only.
+class Engine {
+public:
+    Engine(const Request& problem, Run& result);
+    void run();
+
+private:
+    // The loop (run.cpp).
+    void set_pace();
+    void begin();
+    bool advance();
+    bool solve(const Frame& frame);
+    bool stands_for_good(const Frame& present);
+    bool rest(const Frame& present);
+    void choose(const Frame& frame);
+    double longest_under_friction(const Frame& frame);
+    double until_wall(const Frame& frame);
+    void again(Collocation::Attempt attempt);
+    [[nodiscard]] bool a_belt_jumps_at(double t) const;
+    bool belt_jump_found();
+    Ending watch(const Frame& frame);
+    void hold_again(std::size_t joint, double torques);
+    bool ends_before(double x);
+    bool end_at(double x, const Frame& frame, SampledLoads& sampled);
+    bool arrive(double x, bool whole);
+    bool ask_after_break();
+    void go_to(double x);
+    void find_belt_slopes(std::optional<double> x);
+    [[nodiscard]] double kinetic_energy() const;
+
+    // The end (finish.cpp).
+    void finish();
+    [[nodiscard]] std::optional<model::Outcome> at_rest();
+    void explain_end();
+    std::string state_driven_back();
+
+    // The events that end stretches (events.cpp). Functions that return bool return false if the run is over.
+    bool handle(const Ending& ending);
+    bool come_to_a_stop(std::size_t joint);
+    bool release(const Ending& ending);
+    bool meet_stop(const Ending& ending);
+    bool turn_slider(const Ending& ending);
+    bool decide(bool told, std::optional<Cause::Released> released = {});
+    [[nodiscard]] bool nothing_presses(std::size_t joint) const;
+    bool open_and_close();
+    enum class Because { impact, act, belt };
+    bool restart_contacts(Because why, std::size_t at = 0);
+    void restart_contact(std::size_t joint, Because why, std::size_t at);
+    [[nodiscard]] double rounding_of_slip(std::size_t joint, Because why) const;
+    void let_slide(std::size_t slider, model::Motion way);
+    bool turn_sliders();
+    void catch_freewheels();
+    bool press_stops();
+    void press(std::size_t joint, int side);
+    void touch_walls();
+
+    // Impacts and acts (impacts.cpp).
+    struct Bounces {
+        double once = model::never, all = model::never;
+    };
+    [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
+    bool hit(std::size_t joint, int wall);
+    void leave_walls();
+    bool act_all(const std::vector<std::size_t>& told);
+    bool act(std::size_t event, const std::vector<std::size_t>& told);
+    void see_flight();
+    [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
+
+    bool fail(model::Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+    /// Returns false, and ends the run, if events follow each other too often at one time.
+    bool goes_on() { return !chatter_.too_often(now_.t.hi) || fail(model::Outcome::chattering); }
+    void tell(model::EventKind kind, std::size_t where) { recorder_->tell(now_, kind, where); }
+    void project(Side when) { projection_.apply(now_, frames_->of(now_.mode), when); }
+    /// Contacts have no events at the start.
+    [[nodiscard]] bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
+    [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+    /// The joints behind these move bodies.
+    [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
+    /// Returns the size of the torques on the angle of a joint, now.
+    [[nodiscard]] double torque_size(std::size_t joint) {
+        sizes_.find(mechanics_, segment_, now_.here());
+        return sizes_.on(joint_at(joint));
+    }
+    [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return problem_.system.joints[joint]; }
+
+    // The motion.
+    const Request& problem_;
+    Run& result_;
+    Asking asking_;
+    Mechanics mechanics_;
+    Now now_;
+    Contacts contacts_;
+    Segment segment_;  ///< the last stretch
+    // The owners.
+    Walls walls_;
+    Pace pace_;
+    Chatter chatter_;
+    Breaks breaks_;
+    Projection projection_;
+    Impulses impulses_;
+    UserEvents users_;
+    std::vector<Half> normal_halves_;  ///< of each joint, for the guards
+    std::optional<Frames> frames_;
+    std::optional<Collocation> solver_;
+    std::optional<Conditions> conditions_;
+    std::optional<Balances> balances_;
+    std::optional<Recorder> recorder_;
+    // Room, so that a stretch need not allocate it.
+    Balance balance_;
+    DecisionRoom room_;
+    TorqueSizes sizes_;
+    std::vector<double> departing_;
+    model::Outcome outcome_ = model::Outcome::reached_end;
+};
+
+/// The part of a pull by which a joint may pass its limit after it was let go and did not leave, of the torques.
+inline constexpr double most_blunt = 1e-9;
+
+}  // namespace dinal::motion::engine

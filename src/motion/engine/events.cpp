@@ -1,0 +1,329 @@
+#include <algorithm>
+#include <cmath>
+
+#include "motion/engine/engine.hpp"
+
+namespace dinal::motion::engine {
+
+using model::EventKind;
+using model::Joint;
+using model::Motion;
+using model::Outcome;
+
+bool Engine::handle(const Ending& ending) {
+    const std::size_t j = ending.which;
+    switch (ending.by) {
+        case By::nobody:
+        case By::kink:
+            return true;
+        case By::stays:
+            return decide(true);
+        case By::slip:
+            return come_to_a_stop(j);
+        case By::release:
+            return release(ending);
+        case By::wall:
+            return hit(j, ending.side);
+        case By::stop:
+            return meet_stop(ending);
+        case By::slider:
+            return turn_slider(ending);
+        case By::corner: {
+            Slipping& how = now_.mode.friction[j];
+            how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
+            contacts_.of[j].edge = -ending.side;
+            return goes_on();
+        }
+        case By::condition: {
+            const bool often = chatter_.too_often(now_.t.hi);
+            const Conditions::Crossed crossed = conditions_->cross(ending, now_.here(), often);
+            result_.jumps += crossed.count;
+            if (crossed.endless && crossed.jumps) return fail(Outcome::chattering);
+            return decide(true);
+        }
+        case By::relay:
+            mechanics_.loads()[j].toggle(index(ending.side));
+            tell(EventKind::switched, j);
+            return decide(true) && goes_on();
+        case By::user:
+            return act_all(ending.users);
+    }
+    return true;
+}
+
+/// The slip of a joint has come to 0, or has passed it as its belt jumped.
+bool Engine::come_to_a_stop(std::size_t j) {
+    const double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.y[n()]);
+    // A slip that passed zero because the belt jumped has not come to a standstill.
+    constexpr double clearly = 1e-6;
+    if (mechanics_.has_belt(j) && std::fabs(now_.slip(mechanics_, j)) > clearly * fastest && now_.mode.leans[j] == 0) {
+        return restart_contacts(Because::belt) && goes_on();
+    }
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
+        const Slipping& how = now_.mode.friction[i];
+        if (!now_.rubs(i) || how.way == Motion::stuck || how.riding || now_.mode.leans[i] != 0) continue;
+        const model::Weight& first = problem_.system.joints[i].of.front();
+        const double size = std::max(fastest, std::fabs(first.by) * greatest(segment_.y[n() + first.body]));
+        if (i == j || std::fabs(now_.slip(mechanics_, i)) <= 64 * rounding * size) contacts_.of[i].arrived = how.way;
+    }
+    if (now_.mode.leans[j] != 0) {  // the belt turns along a mass at a wall
+        contacts_.slide(mechanics_, now_, j,
+                        now_.mode.friction[j].way == Motion::forward ? Motion::backward : Motion::forward, true);
+        contacts_.of[j].arrived = Motion::stuck;
+    }
+    return decide(true) && goes_on();
+}
+
+/// A joint has come to its limit.
+bool Engine::release(const Ending& ending) {
+    const std::size_t j = ending.which;
+    const Mode before = now_.mode;
+    const double blunt = now_.mode.friction[j].blunt;
+    if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
+    bool same = now_.mode.leans == before.leans;
+    for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
+        same = now_.mode.friction[i].way == before.friction[i].way &&
+               now_.mode.friction[i].riding == before.friction[i].riding &&
+               now_.mode.friction[i].creeps == before.friction[i].creeps;
+    }
+    // A joint that only touched its limit must pass it clearly the next time.
+    if (same) {
+        Slipping& how = now_.mode.friction[j];
+        const double size = torque_size(j);
+        how.blunt = std::max(2 * blunt, 64 * rounding * size);
+        if (how.blunt > most_blunt * size) return fail(Outcome::chattering);
+    }
+    return goes_on();
+}
+
+/// An elastic wall begins to be pressed, or is left.
+bool Engine::meet_stop(const Ending& ending) {
+    const std::size_t j = ending.which;
+    const model::Walls& stops = *problem_.system.joints[j].stops;
+    const int side = ending.side != 0 ? ending.side : now_.mode.presses[j];
+    walls_.struck(j, stops.at(side));
+    const bool there =
+        std::fabs(now_.gap(problem_.system.joints[j], walls_.origin[j])) <= 64 * rounding * std::fabs(walls_.origin[j]);
+    contacts_.of[j].leaves_wall = ending.side == 0 && there;
+    press(j, ending.side);
+    breaks_.echo(now_.t.hi, 1);
+    return decide(true) && goes_on();
+}
+
+bool Engine::turn_slider(const Ending& ending) {
+    const std::size_t j = ending.which;
+    if (static_cast<Motion>(ending.side) == Motion::stuck) {
+        // The rest of its slip, and of its spring beyond its limit, is rounding: it would slide again at once.
+        const Mechanics::Slider& own = mechanics_.sliders()[j];
+        const model::Weight& first = problem_.system.joints[own.joint].of.front();
+        now_.y[n() + first.body] -= now_.slip(mechanics_, own.joint) / first.by;
+        now_.y[own.bend] *= 1 - 8 * rounding;
+    }
+    let_slide(j, static_cast<Motion>(ending.side));
+    return decide(true) && goes_on();
+}
+
+/// Applies the decision of contacts, and reports it.
+bool Engine::decide(bool told, std::optional<Cause::Released> released) {
+    const Evaluation by{mechanics_, *frames_, *balances_, projection_, segment_, room_};
+    const Cause cause{released, told && begun()};
+    Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
+    now_ = std::move(made.now), contacts_ = std::move(made.contacts);
+    recorder_->tell(made, pace_.unit);
+    return made.good || fail(Outcome::excitation_not_finite);
+}
+
+/// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
+bool Engine::nothing_presses(std::size_t joint) const {
+    constexpr double later = 1e-9;
+    // At the zero of the load its value may still be rounding.
+    if (normal_halves_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
+    std::vector<double> y = now_.y;
+    const double h = later * pace_.unit;
+    for (std::size_t i = 0; i < n(); ++i) y[i] += h * y[n() + i];
+    return mechanics_.pressing(joint, {now_.t.hi + h, Side::at, y}) <= 0;
+}
+
+/// A contact on which nothing presses is open: it neither sticks nor slips. True when one has opened or closed.
+bool Engine::open_and_close() {
+    bool changed = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mechanics_.may_open(j)) continue;
+        const bool opens = nothing_presses(j);
+        if (opens != now_.rubs(j)) continue;
+        changed = true;
+        now_.mode.rubs[j] = opens ? 0 : 1;
+        now_.mode.friction[j] = {};
+        contacts_.of[j].arrived = Motion::stuck;
+        normal_halves_[j] = opens ? -1 : 1;
+        const Joint& joint = problem_.system.joints[j];
+        double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side()));
+        for (const auto& [body, by] : joint.of) {
+            const double v = now_.y[n() + body];
+            fastest = std::max(fastest, std::fabs(by * v));
+            if (opens) recorder_->head(body, v);
+        }
+        if (!opens && std::fabs(now_.slip(mechanics_, j)) > 16 * rounding * fastest) {
+            contacts_.slide(mechanics_, now_, j, model::motion_of(now_.slip(mechanics_, j)), false);
+        } else if (!opens && now_.mode.leans[j] == 0) {
+            contacts_.slide(mechanics_, now_, j, Motion::forward, true);  // if it sticks from now on, that is told
+        }
+        if (begun()) tell(opens ? EventKind::opened : EventKind::closed, j);
+    }
+    return changed;
+}
+
+/// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
+bool Engine::restart_contacts(Because why, std::size_t at) {
+    open_and_close();
+    catch_freewheels();
+    press_stops();
+    turn_sliders();
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        restart_contact(j, why, at);
+    }
+    return decide(true);
+}
+
+void Engine::restart_contact(std::size_t j, Because why, std::size_t at) {
+    if (!now_.rubs(j) || now_.mode.leans[j] != 0) return;
+    Slipping& how = now_.mode.friction[j];
+    const double s = now_.slip(mechanics_, j);
+    const double corner = rounding_of_slip(j, why);
+    if (std::fabs(s) <= corner) {
+        if (how.way == Motion::stuck || how.riding) return;
+        if (why == Because::act) {
+            how.leaving = true;  // what a user stopped did not come to a standstill of its own
+        } else {
+            contacts_.of[j].arrived = how.way;
+        }
+        return;
+    }
+    const Motion way = model::motion_of(s);
+    const bool held = how.way == Motion::stuck || how.riding;
+    how.leaving = false;
+    if (held || how.way != way) {
+        const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
+        if (held && told) tell(EventKind::slip, j);
+        if (!held && why == Because::belt) tell(EventKind::turn, j);
+        contacts_.slide(mechanics_, now_, j, way, false);
+    } else if (const model::Friction& law = problem_.system.joints[j].friction.law; law.ranges() > 0) {
+        const model::SpeedRange range = law.range(how.range);  // the speed may have jumped out of it
+        const double speed = std::fabs(s);
+        if (speed < range.from - corner || speed > range.to + corner) contacts_.slide(mechanics_, now_, j, way, false);
+    }
+}
+
+/// Returns the slip of a joint that counts as zero after velocities have jumped.
+double Engine::rounding_of_slip(std::size_t j, Because why) const {
+    const double belt = mechanics_.belt(j, now_.t.hi, now_.side());
+    const bool weighted = problem_.system.joints[j].is_weighted();
+    const double known = weighted ? mechanics_.speed_scale(j, now_.y) : std::fabs(mechanics_.velocity(j, now_.y));
+    double corner = 4 * rounding * (known + std::fabs(belt));
+    if (why == Because::belt && mechanics_.has_belt(j)) {
+        // If the belt only turns a corner, its values differ by rounding, and by its change in a hair of time.
+        double rate = std::fabs(now_.belt_slopes[j].rate);
+        if (!segment_.belt_rates.empty()) rate = std::max(rate, std::fabs(segment_.belt_rates[j][node_count - 1]));
+        corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.t.hi);
+    }
+    return corner;
+}
+
+/// Elastic walls that are pressed after the state was set, or velocities have jumped. Whether one has changed.
+bool Engine::press_stops() {
+    bool changed = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const auto& stops = problem_.system.joints[j].stops;
+        if (!stops) continue;
+        const double q = mechanics_.angle(j, now_.y), v = mechanics_.velocity(j, now_.y);
+        int side = 0;
+        for (const int wall : {1, -1}) {
+            if (!std::isfinite(stops->at(wall))) continue;
+            const double nothing = 64 * rounding * std::fabs(stops->at(wall));
+            const double depth = wall * (q - stops->at(wall)), torque = wall * stops->torque(wall, q, v);
+            const bool before = now_.mode.presses[j] == wall;
+            const double least = before ? -nothing : nothing;
+            if (depth > least && torque > least * stops->stiffness) side = wall;
+        }
+        if (side == now_.mode.presses[j]) continue;
+        changed = true;
+        if (begun()) {
+            press(j, side);
+        } else {
+            now_.mode.presses[j] = side;
+        }
+    }
+    return changed;
+}
+
+/// The energy that an elastic wall stores when it is left is lost.
+void Engine::press(std::size_t joint, int side) {
+    const model::Walls& stops = *problem_.system.joints[joint].stops;
+    const int wall = side != 0 ? side : now_.mode.presses[joint];
+    const double depth = mechanics_.angle(joint, now_.y) - stops.at(wall);
+    const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
+    recorder_->add_jump(now_.t.hi, joint, {.impacts = stored, .kept = -stored});
+    now_.mode.presses[joint] = side;
+    conditions_->forget();
+    tell(side != 0 ? EventKind::impact : EventKind::released, joint);
+}
+
+void Engine::let_slide(std::size_t slider, Motion way) {
+    const Mechanics::Slider& own = mechanics_.sliders()[slider];
+    now_.mode.sliders[slider] = way;
+    if (way != Motion::stuck) now_.y[own.bend] = model::sign_of(way) * own.limit / own.stiffness;
+    tell(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, own.joint);
+}
+
+/// After velocities have jumped: sliders whose slip has turned stick.
+bool Engine::turn_sliders() {
+    bool turned = false;
+    for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
+        const double way = model::sign_of(now_.mode.sliders[s]);
+        const std::size_t joint = mechanics_.sliders()[s].joint;
+        if (!(way * now_.slip(mechanics_, joint) < -16 * rounding * mechanics_.speed_scale(joint, now_.y))) continue;
+        let_slide(s, Motion::stuck);
+        turned = true;
+    }
+    return turned;
+}
+
+/// A freewheel that something throws backward stops, and so does what leans on a wall and is thrown into it: one after
+/// the other, until all have.
+void Engine::catch_freewheels() {
+    bool any = false;
+    for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
+    const std::size_t most = any ? 500 * mechanics_.joints() : 0;
+    for (std::size_t k = 0; k < most; ++k) {
+        std::size_t worst = mechanics_.joints();
+        double least = 0;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && now_.rubs(j);
+            if (!one_way && now_.mode.leans[j] == 0) continue;
+            const double v = one_way ? now_.slip(mechanics_, j) : -now_.mode.leans[j] * mechanics_.velocity(j, now_.y);
+            if (v < -16 * rounding * mechanics_.speed_scale(j, now_.y) && v < least) worst = j, least = v;
+        }
+        if (worst == mechanics_.joints()) return;
+        const Impulses::Thrown thrown = impulses_.along(worst, now_);
+        if (!(thrown.lightness > 0)) return;
+        const double before = mechanics_.velocity(worst, now_.y);
+        const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
+        Impulses::apply(thrown, after, now_);
+        recorder_->add_jump(now_.t.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+    }
+}
+
+/// A joint that stands at a wall, and does not move away from it, leans there.
+void Engine::touch_walls() {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        if (!joint.walls) continue;
+        for (const int wall : {1, -1}) {
+            if (mechanics_.angle(j, now_.y) != joint.walls->at(wall)) continue;
+            contacts_.of[j].leaves_wall = true;
+            if (mechanics_.velocity(j, now_.y) == 0) now_.mode.leans[j] = wall;
+        }
+    }
+}
+
+}  // namespace dinal::motion::engine

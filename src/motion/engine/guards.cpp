@@ -1,0 +1,358 @@
+#include "motion/engine/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "motion/first_below.hpp"
+
+namespace dinal::motion::engine {
+
+using model::Joint;
+using model::Motion;
+
+Ending Guards::first() {
+    for (Contacts::Of& each : of_.contacts.of) each.crept = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j);
+        if (now_.rubs(j) && now_.mode.friction[j].way != Motion::stuck && !now_.mode.friction[j].riding) {
+            watch_slip(j);
+            watch_corner(j);
+        }
+        const auto& [walls, stops] = std::tie(joint_at(j).walls, joint_at(j).stops);
+        if (walls && now_.mode.leans[j] == 0) watch_walls(j, *walls, By::wall);
+        if (stops) watch_stop(j);
+        if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !now_.rubs(j))) watch_normal(j);
+        if (mechanics_.bristle(j) != nullptr) watch_bristles(j);
+    }
+    for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
+        // The slip of a contact that others hold is rounding.
+        if (!frame_.keeps(mechanics_.sliders()[s].joint)) watch_slider(s);
+    }
+    watch_relays();
+    return ending_;
+}
+
+void Guards::watch_slip(std::size_t joint) {
+    const Joint& own = joint_at(joint);
+    const Slipping& how = now_.mode.friction[joint];
+    const double sign = model::sign_of(how.way), torques = of_.sizes.on(own);
+    const Nodes& belt = segment_.belts[joint];
+    const bool leans = now_.mode.leans[joint] != 0;
+    const Nodes turns = leans ? Nodes{} : mechanics_.between(joint, std::span(segment_.y).subspan(n()));
+    const double first = how.leaving ? 0 : turns[0] - belt[0];
+    Series series{};
+    if (!leans) series = mechanics_.between(joint, std::span(segment_.series).subspan(n()));
+    if (mechanics_.has_belt(joint)) {
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) change[j] = belt[j] - belt[0];
+        series = difference(series, cheb::fit(change));
+    }
+    series[0] += first;
+    double fastest = greatest(belt), inertia = model::never;
+    for (const auto& [body, by] : own.of) {
+        fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
+        inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
+    }
+    // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
+    // the angle.
+    const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
+    const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, now_.y));
+    const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
+    if (crept) {
+        of_.contacts.of[joint].crept = true;
+        if (!how.leaving && ending_.by == By::nobody) ending_ = {1, By::slip, joint};
+        if (!how.leaving) return;
+    }
+    if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
+    Nodes slips{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        slips[j] = -(belt[j] - belt[0]);
+    }
+    for (const auto& [body, by] : own.of) {
+        const Nodes& v = segment_.y[n() + body];
+        for (std::size_t j = 0; j < node_count && !leans; ++j) slips[j] += by * (v[j] - v[0]);
+    }
+    for (double& slip : slips) {
+        slip = sign * (first + slip);
+    }
+    cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series), slips);
+    if (own.of.size() > 1 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
+    curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
+    const auto always = [](double) { return true; };
+    const auto start = how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere;
+    auto zero = cheb::first_below(curve, -1, start, always);
+    if (how.leaving && zero && *zero <= -1 &&
+        !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
+        curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
+        zero = cheb::first_below(curve, -1, start, always);
+    }
+    if (!zero && curve(1) <= curve.floor()) zero = 1;
+    // A slip that only touches zero does so at its lowest place.
+    if (zero && *zero > -1 && *zero < 1) {
+        if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
+    }
+    if (!zero || *zero > ending_.x) return;
+    ending_ = {*zero, By::slip, joint};
+    if (!how.leaving || *zero > -1) return;
+    ending_.by = By::stays;
+    stay_.push_back(joint);
+}
+
+/// Returns whether the torques at a joint are known as well as their rounding: it has no belt, and no function of its
+/// motion acts.
+bool Guards::may_creep(std::size_t joint) const {
+    return mechanics_.all_linear() && !mechanics_.has_belt(joint) && now_.mode.leans[joint] == 0;
+}
+
+/// The torque that holds a joint passes its limit.
+void Guards::watch_release(std::size_t joint) {
+    Nodes pull{};
+    for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
+    const Series series = cheb::fit(pull);
+    const int wall = now_.mode.leans[joint];
+    const double torques = of_.sizes.on(joint_at(joint));
+    for (const Motion side : {Motion::forward, Motion::backward}) {
+        const double sign = model::sign_of(side);
+        if (wall * sign > 0) continue;
+        const Nodes most = limit(joint, side);
+        if (std::isnan(most[0])) {
+            good_ = false;
+            return;
+        }
+        if (std::isinf(most[0])) continue;  // a freewheel, backward
+        Nodes values{};
+        const double blunt = now_.mode.friction[joint].blunt;
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
+        const Series left = cheb::fit(values);
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
+        const double doubt = 8 * (rounding * (greatest(most) + torques) + cheb::tail(series) +
+                                  (mechanics_.varies(joint) ? cheb::tail(cheb::fit(most)) : 0)) +
+                             of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
+        curve.raise_floor(doubt);
+        const auto lets_go = [&](double x) {
+            std::vector<double> y;
+            segment_.state(x, y);
+            const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
+            Balance found;
+            if (!of_.balances.on_stretch(segment_, x, at, now_.mode, frame_, found)) return false;
+            Motion towards = Motion::stuck;
+            return excess(mechanics_, joint, found, now_.mode, at, towards) > 0 && towards == side;
+        };
+        std::optional<double> touch;
+        const auto touches = [&](double x) {
+            if (blunt > 0) return false;
+            for (const double place : {x, curve.lowest_near(x)}) {
+                if (!touch && lets_go(place)) touch = place;
+            }
+            return touch.has_value();
+        };
+        // A jump that was passed over may have taken it far beyond.
+        auto x =
+            values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
+        if (x && touch) x = first_true(lets_go, *touch);
+        if (!x || !(*x < ending_.x) || !(segment_.time(*x) < segment_.end)) continue;
+        ending_ = {*x, By::release, joint, static_cast<int>(side)};
+    }
+}
+
+/// Returns the torques that hold a joint at most against a pull to this side, at the nodes; NaN if one is not finite.
+Nodes Guards::limit(std::size_t joint, Motion side) const {
+    const Slipping& how = now_.mode.friction[joint];
+    Nodes most{};
+    if (mechanics_.limits_change(joint, now_.mode)) {
+        most = segment_.limits[joint][side == Motion::forward ? 1 : 0];
+        const bool good = std::all_of(most.begin(), most.end(), [](double x) { return std::isfinite(x); });
+        if (!good) most.fill(std::numeric_limits<double>::quiet_NaN());
+        if (!good) return most;
+    } else {
+        const bool sticks = now_.rubs(joint) && how.way == Motion::stuck;
+        most.fill(sticks ? mechanics_.holding(joint, side, now_.here()) : 0);
+        if (std::isinf(most[0])) return most;
+    }
+    if (how.creeps != Motion::stuck) {
+        const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, now_.here());
+        most.fill(side == how.creeps ? how.apart + level : how.apart - level);
+    }
+    return most;
+}
+
+void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
+    const auto no = [](double) { return false; };
+    for (const int wall : {1, -1}) {
+        const double place = walls.at(wall);
+        if (!std::isfinite(place)) continue;
+        const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
+        Nodes change = mechanics_.between(joint, segment_.moved);
+        for (double& way : change) way *= -wall;
+        // The gap of a motion that begins at the wall is known as well as its way from there.
+        const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
+        const double far =
+            leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
+        Series left = cheb::fit(change);
+        if (!leaving) left[0] += begin;
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
+        curve.raise_floor(64 * rounding * far);
+        const auto x = cheb::first_below(curve, -1, leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
+        if (x && *x < ending_.x) ending_ = {*x, by, joint, wall};
+    }
+}
+
+/// An elastic wall is pressed while its depth and its torque are both positive. Before it is, the depth is, or, where
+/// it was left before the motion came back to its place, the torque will be.
+void Guards::watch_stop(std::size_t joint) {
+    const model::Walls& stops = *mechanics_.system().joints[joint].stops;
+    const Nodes angle = mechanics_.between(joint, segment_.y),
+                velocity = mechanics_.between(joint, std::span(segment_.y).subspan(n()));
+    const int pressed = now_.mode.presses[joint];
+    const int deep = pressed != 0 ? pressed : angle[0] > stops.upper ? 1 : angle[0] < stops.lower ? -1 : 0;
+    if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops, By::stop);
+    if (pressed == 0) {  // it may come to the other wall before
+        model::Walls other = stops;
+        (deep > 0 ? other.upper : other.lower) = deep * model::never;
+        watch_walls(joint, other, By::stop);
+    }
+    std::vector<double> y;
+    const auto value = [&](double q, double v) {
+        const double torque = deep * stops.torque(deep, q, v);
+        return pressed != 0 ? torque : std::min(torque, stops.stiffness * deep * (q - stops.at(deep)));
+    };
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return value(mechanics_.angle(joint, y), mechanics_.velocity(joint, y));
+    };
+    Nodes values{};
+    for (std::size_t j = 0; j < node_count; ++j) values[j] = value(angle[j], velocity[j]);
+    Half half = pressed != 0 ? 1 : -1;
+    const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
+    const auto x = Watched(values, exact, pressed != 0 ? 0 : rounded).leaves(half, -1);
+    if (x && *x < ending_.x) ending_ = {*x, By::stop, joint, pressed != 0 ? 0 : deep};
+}
+
+/// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
+void Guards::watch_slider(std::size_t slider) {
+    const auto& [joint, bend, stiffness, limit] = mechanics_.sliders()[slider];
+    std::vector<double> y;
+    const auto look = [&](const Nodes& values, const auto& exact, Motion way) {
+        Half half = 1;
+        const auto x = Watched(values, exact).leaves(half, -1);
+        if (x && *x < ending_.x) ending_ = {*x, By::slider, slider, static_cast<int>(way)};
+    };
+    Nodes values{};
+    if (now_.mode.sliders[slider] != Motion::stuck) {
+        const double sign = model::sign_of(now_.mode.sliders[slider]);
+        values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
+        for (double& value : values) value *= sign;
+        const auto slip_at = [&, joint = joint](double x) {
+            segment_.state(x, y);
+            return sign * (mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at));
+        };
+        return look(values, slip_at, Motion::stuck);
+    }
+    for (const Motion way : {Motion::forward, Motion::backward}) {
+        const double sign = model::sign_of(way);
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = limit - sign * stiffness * segment_.y[bend][j];
+        const auto left_at = [&, bend = bend, stiffness = stiffness, limit = limit](double x) {
+            return limit - sign * stiffness * segment_.at(bend, x);
+        };
+        look(values, left_at, way);
+    }
+}
+
+/// A law of friction goes on with another formula.
+void Guards::watch_corner(std::size_t joint) {
+    const Joint& own = mechanics_.system().joints[joint];
+    const model::Friction& law = own.friction.law;
+    const Slipping& how = now_.mode.friction[joint];
+    if (law.ranges() < 2 || own.friction.function != nullptr || now_.mode.leans[joint] != 0) return;
+    const model::SpeedRange range = law.range(how.range);
+    const double sign = model::sign_of(how.way);
+    double fastest = greatest(segment_.belts[joint]);
+    for (const auto& [body, by] : own.of) fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
+    Series series = cheb::fit(mechanics_.slips(joint, segment_.y, segment_.belts[joint]));
+    for (double& c : series) c *= sign;
+    const auto no = [](double) { return false; };
+    for (const int side : {1, -1}) {
+        const double corner = side > 0 ? range.to : range.from;
+        if (!(corner > 0 && corner < model::never)) continue;
+        Series left = series;
+        for (double& c : left) c *= -side;
+        left[0] += side * corner;
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
+        curve.raise_floor(16 * rounding * fastest);
+        const bool there = of_.contacts.of[joint].edge == side;
+        const auto x = cheb::first_below(curve, -1, there ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
+        if (x && *x < ending_.x) ending_ = {*x, By::corner, joint, side};
+    }
+}
+
+/// The rate of bristles has a corner where the slip is 0: a stretch ends there.
+void Guards::watch_bristles(std::size_t joint) {
+    const Nodes values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
+    std::vector<double> y;
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at);
+    };
+    const Watched watched(values, exact);
+    Half half = of_.normal_halves[joint];
+    const auto x = watched.leaves(half, -1);
+    of_.normal_halves[joint] = half;
+    if (!x || *x >= ending_.x) return;
+    if (*x > -1) ending_ = {*x, By::kink, joint};
+    of_.normal_halves[joint] = -half;
+}
+
+/// A normal load that passes zero ends a stretch: what is negative counts as none.
+void Guards::watch_normal(std::size_t joint) {
+    Nodes values{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        values[j] = mechanics_.pressing(joint, segment_.moment(j, point_));
+    }
+    std::vector<double> y;
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return mechanics_.pressing(joint, {segment_.time(x), Side::at, y});
+    };
+    if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
+        // Nothing presses at the start, where the load may be its rounding, or 0 for long.
+        const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
+        if (presses == values.end()) return;
+        const double x = first_true([&](double at) { return exact(at) > 0; },
+                                    cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
+        if (x < ending_.x) ending_ = {x, By::kink, joint};
+        return;
+    }
+    Half half = of_.normal_halves[joint];
+    const Watched watched(values, exact);
+    const auto x = watched.leaves(half, -1);
+    if (!x || *x >= ending_.x) {
+        of_.normal_halves[joint] = half;
+        return;
+    }
+    ending_ = {*x, By::kink, joint};
+    of_.normal_halves[joint] = -half;
+}
+
+void Guards::watch_relays() {
+    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
+        const Signal& load = mechanics_.loads()[i];
+        for (std::size_t r = 0; r < load.relays(); ++r) {
+            Nodes values{};
+            for (std::size_t j = 0; j < node_count; ++j) {
+                values[j] = load.until_switch(r, segment_.moment(j, point_));
+            }
+            std::vector<double> y;
+            const auto exact = [&](double x) {
+                segment_.state(x, y);
+                return load.until_switch(r, {segment_.time(x), Side::at, y});
+            };
+            Half half = 1;
+            const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
+            if (x && *x < ending_.x) ending_ = {*x, By::relay, i, static_cast<int>(r)};
+        }
+    }
+}
+
+}  // namespace dinal::motion::engine

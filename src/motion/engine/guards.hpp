@@ -1,0 +1,68 @@
+// The guards of a stretch: everything whose zero ends it before its time.
+#pragma once
+
+#include <vector>
+
+#include "motion/engine/balance.hpp"
+#include "motion/engine/contacts.hpp"
+#include "motion/engine/crossing.hpp"
+#include "motion/engine/ending.hpp"
+#include "motion/engine/torque_sizes.hpp"
+#include "motion/engine/walls.hpp"
+
+namespace dinal::motion::engine {
+
+/// Searches one stretch for its first end. It decides nothing: it notes only the signs of normal loads, and which
+/// contacts creep.
+class Guards {
+public:
+    struct Of {
+        const Mechanics& mechanics;
+        const Segment& segment;
+        const Frame& frame;
+        const Now& begin;
+        const Walls& walls;
+        const TorqueSizes& sizes;
+        const Collocation& solver;
+        Balances& balances;
+        Contacts& contacts;
+        std::vector<Half>& normal_halves;  ///< of each joint: the sign of its normal load, or of the slip of bristles
+    };
+    explicit Guards(const Of& of)
+        : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}
+
+    /// Returns the first end by a contact, a wall or a relay.
+    Ending first();
+    /// Joints that were let go and do not leave: they hold, and must be pulled clearly farther.
+    [[nodiscard]] const std::vector<std::size_t>& stay() const { return stay_; }
+    /// Returns false if a limit was not finite.
+    [[nodiscard]] bool good() const { return good_; }
+
+private:
+    void watch_slip(std::size_t joint);
+    [[nodiscard]] bool may_creep(std::size_t joint) const;
+    void watch_release(std::size_t joint);
+    [[nodiscard]] Nodes limit(std::size_t joint, model::Motion side) const;
+    void watch_walls(std::size_t joint, const model::Walls& walls, By by);
+    void watch_stop(std::size_t joint);
+    void watch_slider(std::size_t slider);
+    void watch_corner(std::size_t joint);
+    void watch_normal(std::size_t joint);
+    void watch_bristles(std::size_t joint);
+    void watch_relays();
+
+    [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return mechanics_.system().joints[joint]; }
+    [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+
+    const Mechanics& mechanics_;
+    const Segment& segment_;
+    const Frame& frame_;
+    const Now& now_;
+    const Of& of_;
+    Ending ending_;
+    std::vector<std::size_t> stay_;
+    bool good_ = true;
+    std::vector<double> point_;
+};
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <cmath>
+
+#include "motion/engine/breaks.hpp"
+#include "motion/engine/engine.hpp"
+#include "motion/engine/user_events.hpp"
+
+namespace dinal::motion::engine {
+
+using model::EventKind;
+using model::Joint;
+using model::Motion;
+using model::Outcome;
+
+namespace {
+
+// In units of the pace.
+constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
+
+}  // namespace
+
+/// Returns the duration of the next bounces from this speed, under torques that stay as they are; none if one of
+/// these is no number.
+std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall, double speed) {
+    const Joint& own = problem_.system.joints[joint];
+    const auto back_in = [&](bool out) {
+        Mode thrown = now_.mode;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            if (!now_.rubs(j)) continue;
+            if (now_.slip(mechanics_, j) != 0) thrown.friction[j].way = model::motion_of(now_.slip(mechanics_, j));
+            // Friction acts against the sliding: out and back again, or, on a belt, the same way all the time.
+            const bool turns = j == joint && mechanics_.belt(j, now_.t.hi, now_.side()) == 0;
+            if (turns) thrown.friction[j].way = (wall > 0) == out ? Motion::backward : Motion::forward;
+        }
+        Balance found;
+        const Frame frame(problem_.system, thrown);
+        if (!balances_->at_present(now_.here(), now_, thrown, frame, segment_, found)) return -model::never;
+        return wall * own.sum(found.accelerations);
+    };
+    const double out = back_in(true), back = back_in(false);
+    if (out == -model::never || back == -model::never) return {};
+    if (!(out > 0)) return Bounces{};
+    if (!(back > 0)) return Bounces{speed / out, speed / out};  // friction holds it at the top of the bounce
+    const double slower = std::sqrt(back / out), once = speed * (1 / out + slower / back);
+    const double kept = own.walls->restitution * slower;
+    return Bounces{once, kept < 1 ? once / (1 - kept) : model::never};
+}
+
+bool Engine::hit(std::size_t joint, int wall) {
+    const Joint& own = problem_.system.joints[joint];
+    const double place = own.walls->at(wall), e = own.walls->restitution;
+    const bool stayed = contacts_.of[joint].leaves_wall;
+    now_.put_child(own, own.first(), own.of.front().by, place);
+    walls_.struck(joint, place);
+    const double before = std::max(0.0, wall * mechanics_.velocity(joint, now_.y));
+    contacts_.of[joint].leaves_wall = true;
+    const auto stands = [&] {
+        if (now_.mode.leans[joint] != wall || contacts_.of[joint].leaned) return;
+        tell(EventKind::stick, joint);
+        contacts_.of[joint].leaned = true;
+    };
+    if (stayed && before == 0) {
+        now_.mode.leans[joint] = wall;
+        Slipping& how = now_.mode.friction[joint];
+        how.leaving = false;
+        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
+        if (!decide(true)) return false;
+        stands();
+        return goes_on();
+    }
+    tell(EventKind::impact, joint);
+    const Impulses::Thrown thrown = impulses_.along(joint, now_);
+    const auto velocity = [&](double relative) { Impulses::apply(thrown, relative, now_); };
+    velocity(-wall * e * before);
+    conditions_->forget();
+    bool rests = e * before == 0;
+    double rest = 0;
+    if (!rests) {
+        const auto bounces = next_bounces(joint, wall, e * before);
+        if (!bounces) return fail(Outcome::excitation_not_finite);
+        // Without a spring the run so far tells what is short: not its end, so that one may stop anywhere and go on.
+        const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
+        rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
+        rest = bounces->all < model::never ? bounces->all : bounces->once;
+    }
+    const double after = rests ? 0 : e * before;
+    recorder_->add_jump(now_.t.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+    breaks_.echo(now_.t.hi, 1);
+    for (std::size_t i = 0; i < n(); ++i) {
+        if (thrown.velocities[i].second != 0) recorder_->head(i, rests ? 0 : now_.y[n() + i]);
+    }
+    if (rests) {
+        velocity(0);
+        conditions_->forget();
+        if (rest > 0 && now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end)) {
+            std::vector<double> rates(mechanics_.states());
+            mechanics_.rates(now_.here(), rates.data(), &now_.mode);
+            for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
+            now_.t = now_.t.later(rest);
+        }
+        now_.mode.leans[joint] = wall;
+        if (now_.rubs(joint)) {
+            Slipping& how = now_.mode.friction[joint];
+            if (how.way != Motion::stuck) contacts_.of[joint].arrived = how.way;
+            how.leaving = false;
+        }
+    } else {
+        leave_walls();
+    }
+    if (!restart_contacts(Because::impact, joint)) return false;
+    if (rests) stands();
+    // Bounces at one wall die out; to and fro between others they need not, and when they do it takes many.
+    constexpr int most_to_and_fro = 5000;
+    const bool other = walls_.last_hit != std::pair(joint, wall);
+    walls_.last_hit = {joint, wall};
+    return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
+}
+
+/// A joint that leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
+void Engine::leave_walls() {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const double v = mechanics_.velocity(j, now_.y);
+        if (now_.mode.leans[j] == 0 || v == 0) continue;
+        if (contacts_.of[j].leaned && now_.mode.leans[j] * v < 0) tell(EventKind::slip, j);
+        now_.mode.leans[j] = 0, contacts_.of[j].leaned = false, contacts_.of[j].leaves_wall = true;
+    }
+}
+
+bool Engine::act_all(const std::vector<std::size_t>& told) {
+    users_.pass(told);
+    if (!std::all_of(told.begin(), told.end(), [&](std::size_t event) { return act(event, told); })) return false;
+    // Events of the same instant are reported before one of them stops the run: a run that goes on would not report
+    // them.
+    const bool stops =
+        std::any_of(told.begin(), told.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
+    return !stops || fail(Outcome::stopped);
+}
+
+bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
+    const model::WantedEvent& wanted = problem_.drive.events[event];
+    recorder_->tell_user(now_, event);
+    if (wanted.act != nullptr) {
+        const std::vector<double> before = now_.y;
+        const std::vector<double> values = users_.values(now_.here());
+        model::State state{now_.y[0], now_.y[n()]};
+        const bool named = problem_.system.named;
+        const std::span<double> all(now_.y);
+        const std::span<double> given = all.first(asking_.told);
+        if (!wanted.act->act(now_.t.hi, state, named ? given : given.subspan(2 * n()))) {
+            return fail(Outcome::excitation_not_finite);
+        }
+        if (!named) now_.y[0] = state.theta, now_.y[1] = state.velocity;
+        Walls::keep_within(problem_.system, now_.y);
+        conditions_->forget();
+        if (now_.y != before) now_.low.assign(n(), 0);  // what the user was given is what he goes on from
+        now_.keep_rigid_places(problem_.system);
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double work = energy_at(j, now_.y) - energy_at(j, before);
+            if (work != 0 || j == 0) recorder_->add_jump(now_.t.hi, j, {.acts = work});
+        }
+        breaks_.echo(now_.t.hi, 1);
+        const bool moved =
+            !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
+        if (moved) {
+            std::fill(now_.mode.leans.begin(), now_.mode.leans.end(), 0);
+            for (std::size_t i = 0; i < n(); ++i) recorder_->head(i, now_.y[n() + i]);
+            touch_walls();
+            if (!restart_contacts(Because::act)) return false;
+            see_flight();
+        }
+        users_.stand_where_put(values, now_.y != before ? told : std::vector<std::size_t>(), now_, segment_, pace_.h,
+                               *balances_, frames_->of(now_.mode));
+        if (moved && users_.fades(event, now_.t.hi) && !wanted.stop) return fail(Outcome::chattering);
+    }
+    return wanted.stop || goes_on();
+}
+
+/// A body that was thrown, and is soon back, is to be seen on its way.
+void Engine::see_flight() {
+    if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, balance_)) return;
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double v = now_.y[n() + i], a = balance_.accelerations[i];
+        if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * frames_->of(now_.mode).longest)) continue;
+        pace_.h = std::min(pace_.h, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_.unit));
+    }
+}
+
+/// Returns the energy that a joint stores, with the kinetic energy of its body if it is a body's joint with the ground.
+double Engine::energy_at(std::size_t joint, const std::vector<double>& y) const {
+    const Joint& own = problem_.system.joints[joint];
+    const double q = mechanics_.angle(joint, y);
+    const double kinetic =
+        joint < n() ? problem_.system.bodies[joint].inertia * y[n() + joint] * y[n() + joint] / 2 : 0;
+    return kinetic + own.stiffness * q * q / 2 + own.spring.energy(q);
+}
+
+}  // namespace dinal::motion::engine

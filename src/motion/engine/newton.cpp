@@ -1,0 +1,277 @@
+#include "motion/engine/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::motion::engine {
+
+namespace {
+
+constexpr double clear_of_noise = 1e4;  // differences over so much motion tell a slope
+constexpr std::size_t most_factors = 24;
+constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
+
+/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
+using Integration = Eigen::Matrix<double, node_count, node_count>;
+const Integration& integration() {
+    static const Integration weights = [] {
+        Integration rows = Integration::Zero();
+        for (std::size_t j = 0; j < node_count; ++j) {
+            Nodes unit{};
+            unit[j] = 1;
+            const auto F = cheb::integral(cheb::fit(unit), 0.0);
+            for (std::size_t i = 1; i < node_count; ++i) {
+                rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = cheb::value(F, cheb::nodes[i]);
+            }
+        }
+        return rows;
+    }();
+    return weights;
+}
+
+/// The eigenvalues of the matrix that integrates values at the nodes but the first, one of each conjugate pair, and the
+/// change to the basis of its eigenvectors and back. There each eigenvalue has a coefficient; real and imaginary parts
+/// of the complex ones stand next to each other.
+struct IntegrationModes {
+    using Matrix = Eigen::Matrix<double, node_count - 1, node_count - 1>;
+    std::vector<std::complex<double>> values{};
+    std::vector<std::pair<int, int>> places{};  ///< of both parts of a coefficient; the second is -1 where it is real
+    Matrix from_nodes, to_nodes;
+};
+const IntegrationModes& integration_modes() {
+    static const IntegrationModes modes = [] {
+        IntegrationModes made;
+        const IntegrationModes::Matrix once = integration().bottomRightCorner<node_count - 1, node_count - 1>();
+        const algebra::Eigenpairs pairs = algebra::eigenpairs(once);
+        int column = 0;
+        for (int i = 0; i < once.rows(); ++i) {
+            const std::complex<double> value = pairs.values(i);
+            if (value.imag() < 0) continue;
+            made.values.push_back(value);
+            made.places.emplace_back(column, value.imag() > 0 ? column + 1 : -1);
+            made.to_nodes.col(column++) = pairs.vectors.col(i).real();
+            if (value.imag() > 0) made.to_nodes.col(column++) = -pairs.vectors.col(i).imag();
+        }
+        made.from_nodes = algebra::inverse(Eigen::MatrixXd(made.to_nodes));
+        return made;
+    }();
+    return modes;
+}
+
+/// A matrix of `inner` rows, column after column, times a vector.
+void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
+    using Column = Eigen::Matrix<double, inner, 1>;
+    Column sums = Column::Zero();
+    for (std::size_t j = 0; j < columns; ++j) sums += vector[j] * Eigen::Map<const Column>(matrix + j * inner);
+    Eigen::Map<Column> result(product);
+    result = sums;
+}
+
+}  // namespace
+
+void integrate(const Nodes& values, double h, Nodes& sums) {
+    static const Eigen::Matrix<double, inner, node_count> rows = integration().bottomRows<inner>();
+    multiply(rows.data(), values.data(), node_count, sums.data() + 1);
+    sums[0] = 0;
+    for (double& sum : sums) sum *= h;
+}
+
+void Newton::begin(const Mode& mode, const Frame& frame) {
+    if (of_ == frame.bodies && pressed_ == mode.presses && sliding_ == mode.sliders) return;
+    known_ = false, of_ = frame.bodies, pressed_ = mode.presses, sliding_ = mode.sliders;
+}
+
+bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::size_t node, const Floor& floor) {
+    const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
+    const std::size_t groups = frame.groups(), rows = groups + m, columns = 2 * groups + m;
+    slopes_.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    factors_.clear(), last_factors_ = nullptr;
+    known_ = true;
+    if (!mechanics_.nonlinear()) {
+        find_linear(frame);
+        return true;
+    }
+    const double noise = floor.noise_of_torques(n);
+    std::vector<double> y(s.y.size());
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][node];
+    const auto torques = [&](std::vector<double>& out) {
+        std::vector<double> belts(mechanics_.joints()), loads(mechanics_.joints()), of_bodies;
+        for (std::size_t joint = 0; joint < belts.size(); ++joint) {
+            belts[joint] = s.belts[joint][node], loads[joint] = s.loads[joint][node];
+        }
+        const Moment at{s.times[node], s.side(node), y};
+        mechanics_.torques(at, mode, belts, loads, of_bodies);
+        out.assign(rows, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            for (const auto& [group, by] : frame.bodies[i]) out[group] += by * of_bodies[i];
+        }
+        for (std::size_t g = 0; g < groups; ++g) out[g] /= frame.inertia[g];
+        mechanics_.rates(at, out.data() + groups, &mode);
+        return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
+    };
+    std::vector<double> above, below;
+    for (std::size_t c = 0; c < columns; ++c) {
+        // The values of y that go together, and how widely they move on the segment.
+        std::vector<std::pair<std::size_t, double>> moved;
+        if (c < 2 * groups) {
+            const std::size_t from = c < groups ? 0 : n;
+            for (std::size_t i = 0; i < n; ++i) {
+                for (const auto& [group, by] : frame.bodies[i]) {
+                    if (group == c % groups) moved.emplace_back(from + i, by);
+                }
+            }
+        } else {
+            moved.emplace_back(2 * n + (c - 2 * groups), 1);
+        }
+        double spread = 0;
+        for (const auto& [k, by] : moved) {
+            const double rate = k < n ? s.y[n + k][node] : s.f[k][node];
+            spread = std::max(spread, (std::fabs(y[k]) + s.h * std::fabs(rate)) / std::fabs(by));
+        }
+        const double rough =
+            c < 2 * groups ? s.h * noise / frame.inertia[c % groups] : s.h * floor.noise[n + (c - 2 * groups)];
+        const double d =
+            spread > 0 ? std::max(1e-4 * spread, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
+        const std::vector<double> kept = y;
+        for (const auto& [k, by] : moved) y[k] = kept[k] + by * d;
+        if (!torques(above)) return false;
+        for (const auto& [k, by] : moved) y[k] = kept[k] - by * d;
+        if (!torques(below)) return false;
+        y = kept;
+        for (std::size_t r = 0; r < rows; ++r) {
+            slopes_(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = (above[r] - below[r]) / (2 * d);
+        }
+    }
+    return true;
+}
+
+void Newton::find_linear(const Frame& frame) {
+    const std::size_t groups = frame.groups();
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        for (const auto& [on, by] : frame.joints[j]) {
+            const auto row = static_cast<Eigen::Index>(on);
+            const double I = frame.inertia[on];
+            for (const auto& [group, turned] : frame.joints[j]) {
+                const auto c = static_cast<Eigen::Index>(group);
+                slopes_(row, c) -= by * turned * joint.stiffness / I;
+                slopes_(row, static_cast<Eigen::Index>(groups) + c) -= by * turned * joint.damping / I;
+            }
+        }
+    }
+}
+
+void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
+    left.resize(right.size());
+    if (inverse.rows() == static_cast<Eigen::Index>(inner)) {
+        multiply(inverse.data(), right.data(), inner, left.data());
+        return;
+    }
+    if (inverse.size() > 0) {
+        left.noalias() = inverse * right;
+        return;
+    }
+    if (sparse != nullptr) {
+        sparse->solve(right, left);
+        return;
+    }
+    const IntegrationModes& each = integration_modes();
+    constexpr auto size = static_cast<Eigen::Index>(inner);
+    const Eigen::Index rows = right.size() / size;
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
+    }
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(rows);
+    for (std::size_t i = 0; i < each.values.size(); ++i) {
+        const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
+        }
+        const std::complex<double>* matrix = of_modes.data() + static_cast<Eigen::Index>(i) * rows * rows;
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            std::complex<double> sum = 0;
+            for (Eigen::Index c = 0; c < rows; ++c) sum += matrix[c * rows + r] * of_mode(c);
+            left(r * size + real) = sum.real();
+            if (imaginary >= 0) left(r * size + imaginary) = sum.imag();
+        }
+    }
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        multiply(each.to_nodes.data(), left.data() + r * size, inner, left.data() + r * size);
+    }
+}
+
+const Newton::Factors& Newton::factors(double h, const Frame& frame) {
+    constexpr Eigen::Index few = 3;
+    constexpr int often = 4;
+    const bool linear = slopes_.rows() <= few && !mechanics_.nonlinear();
+    const auto serves = [h, linear](std::pair<const double, Factors>& of) {
+        if (std::fabs(of.first - h) > 1e-6 * h) return false;
+        return !linear || of.second.inverse.size() > 0 || ++of.second.asked < often;
+    };
+    if (last_factors_ != nullptr && serves(*last_factors_)) return last_factors_->second;
+    auto found = factors_.lower_bound(h * (1 - 1e-6));
+    if (found != factors_.end() && serves(*found)) {
+        last_factors_ = &*found;
+        return found->second;
+    }
+    using Inner = Eigen::Matrix<double, inner, inner>;
+    static const Inner once = integration().bottomRightCorner<inner, inner>(), twice = once * once;
+    const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
+               groups = static_cast<Eigen::Index>(frame.groups());
+    const auto block = [&](Eigen::Index r, Eigen::Index c) {
+        Inner own = Inner::Zero();
+        if (c < groups) own -= h * h * slopes_(r, c) * twice;
+        own -= h * slopes_(r, groups + c) * once;
+        if (r == c) own += Inner::Identity();
+        return own;
+    };
+    const auto empty = [&](Eigen::Index r, Eigen::Index c) {
+        return r != c && (c >= groups || slopes_(r, c) == 0) && slopes_(r, groups + c) == 0;
+    };
+    const bool known = found != factors_.end() && std::fabs(found->first - h) <= 1e-6 * h;
+    if (!known) {
+        if (factors_.size() >= most_factors) factors_.clear();
+        found = factors_.try_emplace(h).first;
+    }
+    Factors& made = found->second;
+    last_factors_ = &*found;
+    if (linear && known) {
+        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            for (Eigen::Index c = 0; c < rows; ++c) {
+                if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
+            }
+        }
+        made.inverse = algebra::inverse(A);
+        return made;
+    }
+    if (rows < many_unknowns) {
+        made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
+        for (const std::complex<double>& value : integration_modes().values) {
+            const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
+            if (rows == 1 && groups == 1) {
+                made.of_modes.push_back(1.0 / (1.0 - once_by * slopes_(0, 1) - twice_by * slopes_(0, 0)));
+                continue;
+            }
+            Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
+            A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
+            const Eigen::MatrixXcd inverse = algebra::inverse(A);
+            made.of_modes.insert(made.of_modes.end(), inverse.data(), inverse.data() + rows * rows);
+        }
+        return made;
+    }
+    std::vector<algebra::Entry> entries;
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        for (Eigen::Index c = 0; c < rows; ++c) {
+            if (empty(r, c)) continue;
+            const Inner own = block(r, c);
+            for (Eigen::Index i = 0; i < size; ++i) {
+                for (Eigen::Index k = 0; k < size; ++k) entries.push_back({r * size + i, c * size + k, own(i, k)});
+            }
+        }
+    }
+    made.sparse = algebra::factored_sparse(size * rows, entries);
+    return made;
+}
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,68 @@
+// Newton's method for the equations of a stretch, and the integration of values at its nodes.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "algebra/decompositions.hpp"
+#include "motion/engine/mechanics.hpp"
+#include "motion/engine/noise.hpp"
+#include "motion/engine/segment.hpp"
+
+namespace dinal::motion::engine {
+
+/// The number of nodes but the first one.
+inline constexpr std::size_t inner = node_count - 1;
+/// Integrates values from the first node to each.
+void integrate(const Nodes& values, double h, Nodes& sums);
+
+/// Knows how accelerations and rates depend on the motion, and solves with that for a step. It moves nothing.
+class Newton {
+public:
+    explicit Newton(const Mechanics& mechanics) : mechanics_(mechanics) {}
+
+    /// Begins with a stretch: slopes of other groups, pressed walls or sliders do not serve.
+    void begin(const Mode& mode, const Frame& frame);
+    [[nodiscard]] bool known() const { return known_; }
+    void forget() { known_ = false; }
+    /// Finds how accelerations of the groups and rates depend on angles and velocities of the groups and on states, at
+    /// a node. Returns false if something is not finite.
+    bool find(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node, const Floor& floor);
+    void solve(double h, const Frame& frame, const Eigen::VectorXd& residual, Eigen::VectorXd& step) {
+        factors(h, frame).solve(residual, step);
+    }
+    /// Returns the slopes; null if they are those of another frame.
+    [[nodiscard]] const Eigen::MatrixXd* slopes(const Frame& frame) const {
+        const auto rows = static_cast<Eigen::Index>(frame.groups() + mechanics_.states());
+        return of_ == frame.bodies && slopes_.rows() == rows ? &slopes_ : nullptr;
+    }
+
+private:
+    /// Newton's matrix for a length. Of a few linear groups it is inverted where it serves many stretches. Of many it
+    /// is sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
+    /// integration, of two conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
+    struct Factors {
+        int asked = 0;  ///< so often
+        Eigen::MatrixXd inverse;
+        std::unique_ptr<const algebra::Factored> sparse;
+        std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
+        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
+    };
+    void find_linear(const Frame& frame);
+    const Factors& factors(double h, const Frame& frame);
+
+    const Mechanics& mechanics_;
+    Eigen::MatrixXd slopes_;
+    std::vector<Frame::Shape> of_;  ///< the shapes of bodies for which they were found
+    std::vector<int> pressed_;      ///< the elastic walls that were pressed then
+    std::vector<model::Motion> sliding_;
+    bool known_ = false;
+    std::map<double, Factors> factors_;
+    std::pair<const double, Factors>* last_factors_ = nullptr;
+};
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,94 @@
+#include "motion/engine/noise.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "motion/roughness.hpp"
+
+namespace dinal::motion::engine {
+
+namespace {
+
+constexpr double most_noise_of_rate = 64;  // times the tolerance; of what is noisier than that the run says so
+
+}  // namespace
+
+Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
+    const std::size_t n = mechanics.bodies(), all = n + mechanics.states();
+    floor_.noise.resize(all), floor_.greatest.resize(all), stalled_.resize(all);
+    may_be_rough_.assign(all, 0);
+    std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n), may_be_rough_.end(), 1);
+    for (std::size_t j = 0; j < mechanics.joints(); ++j) {
+        const model::Joint& joint = mechanics.system().joints[j];
+        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.function == nullptr &&
+            !joint.friction.law.depends_on_speed())
+            continue;
+        for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;
+    }
+}
+
+void Noise::pass(const Segment& s) {
+    for (std::size_t k = 0; k < may_be_rough_.size(); ++k) {
+        if (may_be_rough_[k] != 0) floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
+    }
+}
+
+double Noise::clear(double tolerance) const {
+    double most = 0;
+    for (std::size_t i = 0; i < mechanics_.bodies(); ++i) {
+        if (floor_.noise[i] > tolerance * floor_.greatest[i]) most = std::max(most, floor_.noise[i]);
+    }
+    return most;
+}
+
+bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes) {
+    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
+    const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
+    bool any = false;
+    std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m);
+    for (std::size_t i = 0; i < n + m; ++i) {
+        if (may_be_rough_[i] == 0) continue;
+        const double of_all = cheb::tail(cheb::fit(acting(s, i)));
+        const bool of_time = i < n && mechanics_.loads()[i].asks_functions() &&
+                             !mechanics_.loads()[i].asks_the_motion() &&
+                             2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
+        const Nodes& values = of_time ? s.driven[i] : acting(s, i);
+        const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
+        const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
+        const double size = i < n ? sizes[i] : greatest(values);
+        // A motion dies out, but the rounding of the terms that make its torques does not.
+        const double ever = std::max(greatest(values), floor_.greatest[i]);
+        const double most = of_time ? most_noise * size
+                            : i < n ? most_noise_of_motion * ever
+                                    : most_noise_of_rate * tolerance * ever;
+        double& noise = floor_.noise[i];
+        if (!(tail > tolerance * size) || !(tail <= most)) continue;
+        if (noise > 0 && tail <= varies * noise) {
+            any = any || 2 * tail > noise;
+            noise = std::max(noise, 2 * tail);
+            continue;
+        }
+        if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
+        const auto here = [&](double t) {
+            s.state(s.start.until(t) / s.h - 1, y);
+            const Moment at{t, Side::at, y};
+            if (i >= n) {
+                mechanics_.rates(at, rates.data(), &mode);
+                return rates[i - n];
+            }
+            mechanics_.loads_of_time(t, Side::at, loads);
+            if (of_time) return loads[i];
+            for (std::size_t joint = 0; joint < belts.size(); ++joint)
+                belts[joint] = mechanics_.belt(joint, t, Side::at);
+            mechanics_.torques(at, mode, belts, loads, torques);
+            return torques[i];
+        };
+        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
+        if (!(rough.usual > alike * tail)) continue;
+        noise = above * std::max(tail, rough.most);
+        any = true;
+    }
+    return any;
+}
+
+}  // namespace dinal::motion::engine

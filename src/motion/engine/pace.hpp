@@ -1,0 +1,60 @@
+// The length of the stretches of a run, and the limits for events that follow each other without end.
+#pragma once
+
+#include "model/excitation.hpp"
+#include "motion/engine/nodes.hpp"
+
+namespace dinal::motion::engine {
+
+constexpr int most_at_once = 200;
+constexpr double short_part = 1e-3;  // shorter than this part of the longest stretch is short
+
+/// Sets the length of the next stretch. It knows nothing of what ends one.
+struct Pace {
+    double period = model::never;  ///< the shortest of the system without friction
+    double unit = 1;               ///< the period, or all of a run that is shorter
+    double longest = 1;            ///< stretch in a system without contacts
+    double h = 1;                  ///< half of the next stretch
+    double born = 0;               ///< the time at which the first of the runs began that go on
+    double bad_time = model::never;
+
+    /// Returns whether no break was searched for here yet in a stretch like this one, and notes the search.
+    bool may_search(double t, double half) {
+        if (searched_from_ == t && half > 0.1 * searched_half_) return false;
+        searched_from_ = t, searched_half_ = half;
+        return true;
+    }
+    /// After a stretch of this half length that was not resolved, by this factor.
+    void shorten(double half, double unresolved, double longest_now);
+    /// After one that was, and may be longer by a factor; no longer than `longest_now`.
+    void lengthen(double half, double factor, double longest_now);
+
+private:
+    double searched_from_ = model::never, searched_half_ = 0;
+    double short_enough_ = 0;  ///< half the length that replaced one with a slightly too large error
+    int limited_for_ = 0;      ///< the number of the next stretches that are not longer than that
+};
+
+/// Counts what follows each other at once: a run that gets nowhere ends.
+class Chatter {
+public:
+    Chatter() = default;
+    Chatter(double start, double unit) : unit_(unit), attempts_since_(start) {}
+
+    /// An event at time t. Returns whether more than `most` followed each other at once.
+    bool too_often(double t, int most = most_at_once);
+    /// One more attempt failed at time t. Returns whether `most` of them came no farther than a little.
+    bool too_many_attempts(double t, int most);
+    /// One more stretch is too short to be seen. Returns whether there were too many in a row.
+    bool too_many_short() { return ++too_short_ > most_short; }
+    void stretch_of(double length) {
+        if (length > 1e-7 * unit_) too_short_ = 0;
+    }
+
+private:
+    static constexpr int most_short = 400;
+    double unit_ = 1, last_event_ = -model::never, attempts_since_ = 0;
+    int at_once_in_a_row_ = 0, attempts_ = 0, too_short_ = 0;
+};
+
+}  // namespace dinal::motion::engine

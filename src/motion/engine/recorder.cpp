@@ -1,0 +1,315 @@
+#include "motion/engine/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "motion/engine/crossing.hpp"
+#include "motion/engine/walls.hpp"
+
+namespace dinal::motion::engine {
+
+using model::Event;
+using model::EventKind;
+using model::Joint;
+using model::Motion;
+
+Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start)
+    : problem_(problem), mechanics_(mechanics), result_(result), heading_(mechanics.bodies(), Motion::stuck) {
+    std::vector<Joint> weights;
+    for (const Joint& joint : problem.system.joints) {
+        weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping, .stops = joint.stops});
+    }
+    history_ = std::make_shared<History>(std::move(weights), n(), start.y, start.t.hi,
+                                         problem.before ? problem.before->past : nullptr, problem.history_bytes);
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
+                                mechanics.states_of_user() - (problem.joined_elsewhere ? n() : 0);
+    result.table = Growing<double>(problem.rows.count(), columns);
+}
+
+void Recorder::tell_user(const Now& now, std::size_t event) {
+    for (std::size_t j = 0; j < told_joints(); ++j) {
+        tell(now, EventKind::user, j, static_cast<int>(event));
+    }
+}
+
+void Recorder::tell(const Decision& decision, double unit) {
+    for (const auto& [joint, event] : decision.creeping) creeps(joint, event);
+    for (const Told& told : decision.told) {
+        if (told.unless == Told::Unless::touched && only_touched(told, unit)) continue;
+        const bool takes_back = told.unless == Told::Unless::taken_back;
+        if (takes_back && take_back_slip(static_cast<std::size_t>(told.event.where), told.event.t)) continue;
+        result_.events.push_back(told.event);
+    }
+}
+
+bool Recorder::take_back_slip(std::size_t joint, double t) {
+    auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
+        return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == t;
+    });
+    if (told == result_.events.rend()) return false;
+    result_.events.erase(std::next(told).base());
+    return true;
+}
+
+/// Returns whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld
+/// an impulse below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is no
+/// longer an event, or is a turn.
+bool Recorder::only_touched(const Told& slip, double unit) {
+    constexpr double briefly = 1e-3, withheld = 64 * rounding;
+    if (result_.events.empty() || slip.slid == Motion::stuck) return false;
+    Event& last = result_.events.back();
+    const double part = (slip.event.t - last.t) / unit;
+    if (last.kind != EventKind::stick || last.where != slip.event.where || part > briefly) return false;
+    if (!(slip.off * (2 * std::numbers::pi * part) <= withheld * slip.size)) return false;
+    if (slip.turns) {
+        last.kind = EventKind::turn;
+    } else {
+        result_.events.pop_back();
+    }
+    return true;
+}
+
+void Recorder::forget_chatter(double unit) {
+    constexpr double soon = 1e-6;
+    std::vector<Event>& events = result_.events;
+    const auto follows = [&](const Event& e, const Event& before) {
+        return e.kind <= EventKind::rest && e.t - before.t <= soon * unit;
+    };
+    while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
+}
+
+void Recorder::tell_crept(const Mode& mode) {
+    for (const auto& [joint, event] : crept_) {
+        if (mode.friction[joint].creeps == Motion::stuck) continue;
+        const auto later = std::upper_bound(result_.events.begin(), result_.events.end(), event,
+                                            [](const Event& a, const Event& b) { return a.t < b.t; });
+        result_.events.insert(later, event);
+    }
+}
+
+void Recorder::tell_rest() {
+    auto last = std::find_if(result_.events.rbegin(), result_.events.rend(),
+                             [](const Event& e) { return e.kind == EventKind::stick; });
+    if (last != result_.events.rend()) last->kind = EventKind::rest;
+}
+
+void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise) {
+    const auto& [now, segment, frame, balances, sampled] = of;
+    const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
+    for (std::size_t i = 0; i < n(); ++i) {
+        bool rubs = false;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            rubs = rubs || (problem_.system.joints[j].is_on(i) && now.rubs(j));
+        }
+        if (!rubs && !frame.bodies[i].empty()) {
+            const double torques = std::max(100 * rounding * sizes.on(problem_.system.joints[i]), noise);
+            record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled);
+        }
+    }
+    std::stable_sort(result_.events.begin() + told, result_.events.end(),
+                     [](const Event& a, const Event& b) { return a.t < b.t; });
+}
+
+void Recorder::record_turns(std::size_t i, const Segment& segment, double until, double nothing,
+                            SampledLoads& sampled) {
+    const Nodes& v = segment.y[n() + i];
+    const double moving = greatest(v);
+    const auto exact = [&](double x) { return segment.at(n() + i, x); };
+    constexpr double underflow = 1e-280;  // numbers so small lose their digits
+    if (!(moving > std::max(nothing, underflow))) return;
+    Half half = static_cast<int>(heading_[i]);
+    const Watched watched(v, exact);
+    std::vector<double> zeros{-1};
+    for (;;) {
+        const auto x = watched.leaves(half, zeros.back());
+        if (!x || *x >= until - 1e-12) break;
+        zeros.push_back(*x);
+        half = -half;
+    }
+    // Between two zeros it may be no more than the error of a series that fits what comes before or after.
+    const auto moves = [&](std::size_t k) {
+        const double from = zeros[k], to = k + 1 < zeros.size() ? zeros[k + 1] : until;
+        double most = std::fabs(exact((from + to) / 2));
+        for (std::size_t j = 0; j < node_count; ++j) {
+            if (cheb::nodes[j] > from && cheb::nodes[j] < to) most = std::max(most, std::fabs(v[j]));
+        }
+        return most > 8 * problem_.tolerance * moving;
+    };
+    int way = static_cast<int>(heading_[i]);
+    bool moved = false;  // on the stretch
+    for (std::size_t k = 0; k < zeros.size(); ++k) {
+        const int next = (zeros.size() - 1 - k) % 2 == 0 ? half : -half;
+        const bool clear = moves(k), at_end = k + 1 == zeros.size() && moved;
+        moved = moved || clear;
+        if (next == way || !(clear || at_end)) continue;
+        if (std::exchange(way, next) == 0) continue;
+        const double x = zeros[k], t = segment.time(x);
+        if (!(t > problem_.window.start) && problem_.before == nullptr) continue;
+        std::vector<double> y;
+        segment.state(x, y);
+        const std::optional<double> known = sampled.at(i, x);
+        const double M = known ? *known : mechanics_.load(i, {t, Side::at, y});
+        result_.events.push_back({.t = t, .theta = y[i], .M = M, .where = static_cast<int>(i)});
+    }
+    heading_[i] = static_cast<Motion>(way);
+}
+
+bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
+    const Grid& rows = problem_.rows;
+    while (next_row_ < rows.count()) {
+        const double t = rows.time(next_row_);
+        if (!(t < end) && !(to_the_end && t < of.segment.end)) return true;
+        if (!put_row(of, t, std::clamp(of.segment.start.until(t) / of.segment.h - 1, -1.0, 1.0))) return false;
+    }
+    return true;
+}
+
+bool Recorder::rows_at_end(const Stretch& of) {
+    const double t = of.now.t.hi;
+    while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= t) {
+        if (!put_row(of, t, -2)) return false;
+    }
+    return true;
+}
+
+bool Recorder::put_row(const Stretch& of, double t, double x) {
+    const auto& [now, segment, frame, balances, sampled] = of;
+    std::vector<double>& y = row_;
+    y = now.y;
+    if (x > -1) segment.state(x, y);
+    Walls::keep_within(problem_.system, y);
+    const Moment at{t, x <= -1 ? now.side() : Side::at, y};
+    bool needs_look = !problem_.joined_elsewhere;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || now.mode.holds(j);
+    if (needs_look && x > -1 && !balances.on_stretch(segment, x, at, now.mode, frame, balance_, &sampled)) return false;
+    if (needs_look && !(x > -1) && !balances.at_present(at, now, now.mode, frame, segment, balance_)) return false;
+    double* cell = result_.table.writable() + next_row_;
+    const std::size_t stride = problem_.rows.count();
+    const auto put = [&](double value) {
+        *cell = value == 0 ? 0 : value;
+        cell += stride;
+        return std::isfinite(value);
+    };
+    bool good = put(t);
+    for (std::size_t i = 0; i < n(); ++i) {
+        good = put(y[i]) && good;
+        good = put(y[n() + i]) && good;
+        const std::optional<double> known = sampled.at(i, x);
+        good = put(known ? *known : mechanics_.load(i, at)) && good;
+        good = put(friction(now, i, at, balance_)) && good;
+        good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
+        if (!problem_.joined_elsewhere) good = put(balance_.accelerations[i]) && good;
+    }
+    for (std::size_t j = n(); j < told_joints(); ++j) {
+        const double belt = mechanics_.belt(j, t, at.side);
+        double torque = -mechanics_.joint_torque(j, at, now.mode, belt);
+        if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
+        if (now.mode.holds(j)) torque += balance_.holding[j];
+        const bool kept = now.mode.rigid[j] != 0;  // to the letter
+        good = put(kept ? now.rigid_at[j] : mechanics_.angle(j, y)) && good;
+        good = put(kept ? 0 : mechanics_.velocity(j, y)) && good;
+        good = put(torque) && good;
+        good = put(friction(now, j, at, balance_)) && good;
+    }
+    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+        const std::size_t body = moved_body(j);
+        const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
+        good = put(balance_.holding[j] + more * balance_.accelerations[body]) && good;
+    }
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
+    if (good) ++next_row_;
+    return good;
+}
+
+/// The torque of a joint's friction on its first body.
+double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const {
+    // The wall carries what presses against it, friction what pulls away from it.
+    if (now.rubs(joint) && now.mode.friction[joint].way == Motion::stuck) {
+        const double held = balance.holding[joint] - mechanics_.slider_torque(joint, at.y);
+        return now.mode.leans[joint] != 0 && now.mode.leans[joint] * held <= 0 ? 0.0 : held;
+    }
+    return mechanics_.friction(joint, at, now.mode, mechanics_.belt(joint, at.t, at.side));
+}
+
+void Recorder::keep(const Now& now, const Segment& segment, double length, double longest_delay) {
+    if (!(length > 0) || (!problem_.limits.dense && longest_delay == 0)) return;
+    Kept kept{.start = segment.start, .h = segment.h, .length = length, .begin = now.y, .series = segment.series};
+    // For the legs of its course.
+    if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
+    const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
+    history_->add(std::move(kept), problem_.limits.dense, past);
+}
+
+/// Returns the torques that act at each joint on the stretch.
+std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segment) {
+    std::vector<Kept::Acting> all(mechanics_.joints());
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        all[j].M = segment.driven[j];
+        // Functions of the motion were evaluated before the last step of the iteration.
+        for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].asks_the_motion(); ++node) {
+            all[j].M[node] = segment.loads[j][node] + mechanics_.loads()[j].of_motion(segment.moment(node, point_));
+        }
+        if (j < n()) {
+            if (mechanics_.has_base()) all[j].push = std::make_unique<Nodes>();
+            for (std::size_t node = 0; node < node_count && mechanics_.has_base(); ++node) {
+                double& push = (*all[j].push)[node];
+                push = -problem_.system.bodies[j].inertia * mechanics_.base(segment.times[node], segment.side(node));
+                all[j].M[node] -= push;
+            }
+        }
+        all[j].holds = now.rubs(j) && now.mode.leans[j] == 0 && now.mode.friction[j].way == Motion::stuck;
+        if (j >= told_joints()) {  // what moves a body is its input
+            const std::size_t body = moved_body(j);
+            const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
+            for (std::size_t node = 0; node < node_count; ++node) {
+                all[body].M[node] += segment.holding[j][node] + more * segment.f[n() + body][node];
+            }
+            continue;
+        }
+        add_springs(now, segment, j, all[j]);
+        if (mechanics_.has_belt(j)) all[j].belt = std::make_unique<Nodes>(segment.belts[j]);
+        add_friction(now, segment, j, all[j]);
+    }
+    return all;
+}
+
+/// Adds what springs of sliders that stick, and pressed walls, take and store.
+void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const {
+    Nodes springs{};
+    acting.presses = now.mode.presses[joint] != 0;
+    if (acting.presses) {
+        const model::Walls& stops = *problem_.system.joints[joint].stops;
+        springs = mechanics_.between(joint, segment.y);
+        for (double& q : springs) q = stops.torque(now.mode.presses[joint], q, 0);
+    }
+    for (std::size_t s = 0; s < now.mode.sliders.size(); ++s) {
+        const Mechanics::Slider& slider = mechanics_.sliders()[s];
+        if (slider.joint != joint) continue;
+        if (now.mode.sliders[s] == Motion::stuck) {
+            add(springs, segment.y[slider.bend], slider.stiffness);
+        } else {
+            acting.slides += slider.stiffness * segment.y[slider.bend][0];
+        }
+    }
+    if (greatest(springs) > 0) acting.springs = std::make_unique<Nodes>(springs);
+}
+
+void Recorder::add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) {
+    if (acting.holds) {
+        acting.friction = segment.holding[joint];
+    } else if (mechanics_.is_native(joint) && now.rubs(joint) && now.mode.leans[joint] == 0) {
+        const Nodes slips = mechanics_.slips(joint, segment.y, segment.belts[joint]);
+        mechanics_.add_native_friction(joint, now.mode, slips, 0, node_count, acting.friction);
+        for (double& torque : acting.friction) torque = -torque;
+    } else if (now.rubs(joint) || mechanics_.bristle(joint) != nullptr) {
+        for (std::size_t node = 0; node < node_count; ++node) {
+            const Moment at = segment.moment(node, point_);
+            acting.friction[node] = mechanics_.friction(joint, at, now.mode, segment.belts[joint][node]) +
+                                    mechanics_.slider_torque(joint, at.y);
+        }
+    }
+}
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,26 @@
+// The size of the torques in a run: their rounding is a part of it.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "motion/engine/collocation.hpp"
+
+namespace dinal::motion::engine {
+
+/// The size of the torques on each body at a moment, with the loads of the last stretch.
+class TorqueSizes {
+public:
+    void find(const Mechanics& mechanics, const Segment& last, const Moment& at);
+    /// Returns the size of the torques at the bodies of a joint, as torques on its angle.
+    [[nodiscard]] double on(const model::Joint& joint) const {
+        double size = 0;
+        for (const auto& [body, by] : joint.of) size += of_bodies_[body] / std::fabs(by);
+        return size;
+    }
+
+private:
+    std::vector<double> of_bodies_;
+};
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,131 @@
+#include "motion/engine/user_events.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::motion::engine {
+
+UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
+    constexpr std::size_t most_passages = 200;
+    const double before = ending.before();
+    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
+    std::vector<double> y;
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
+        const model::Crossing direction = wanted_[e].direction;
+        Watch& watch = watches_[e];
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            values[j] = value(e, segment.moment(j, point_));
+            if (!std::isfinite(values[j])) return {.good = false};
+        }
+        const auto exact = [&](double x) {
+            segment.state(x, y);
+            return value(e, {segment.time(x), Side::at, y});
+        };
+        const Watched curve(values, exact, watch.rounded);
+        double from = -1;
+        Half half = watch.half;
+        while (const auto x = curve.leaves(half, from)) {
+            if (!(*x < before)) break;
+            if (watch.sent_back && !curve.is_clearly(half, *x)) return {.again = e};
+            if (direction == model::Crossing::both || (half < 0) == (direction == model::Crossing::up)) {
+                wanted_ones.emplace_back(e, *x);
+                break;
+            }
+            if (unwanted.size() > most_passages) break;
+            if (watch.half == 0) watch.half = half;
+            unwanted.emplace_back(e, *x);
+            half = -half;
+            from = *x;
+        }
+        if (watch.half == 0) watch.half = half;
+        if (watch.sent_back) watch.sent_back = !curve.is_clearly(watch.half, 1);
+    }
+    if (!wanted_ones.empty()) {
+        double first = 1;
+        for (const auto& [event, x] : wanted_ones) first = std::min(first, x);
+        ending = {first, By::user};
+        for (const auto& [event, x] : wanted_ones) {
+            if (x <= first + one_instant) ending.users.push_back(event);
+        }
+    }
+    for (const auto& [event, x] : unwanted) {
+        if (x <= ending.x) watches_[event].half = -watches_[event].half;
+    }
+    return {};
+}
+
+std::vector<double> UserEvents::values(const Moment& at) const {
+    std::vector<double> all;
+    for (std::size_t e = 0; e < watches_.size(); ++e) all.push_back(value(e, at));
+    return all;
+}
+
+void UserEvents::pass(const std::vector<std::size_t>& events) {
+    came_from_.clear();
+    for (const Watch& watch : watches_) came_from_.push_back(watch.half);
+    for (const std::size_t event : events) watches_[event].half = -watches_[event].half;
+}
+
+/// Returns how far a watched value goes when what it is made of changes by some ulps.
+double UserEvents::rounding_of(std::size_t event, const Now& now) const {
+    constexpr double ulps = 1 + 4 * rounding;
+    std::vector<double> y = now.y;
+    const double own = value(event, {now.t.hi, now.side(), y});
+    double most = 0;
+    for (std::size_t k = 0; k < 2 * mechanics_.bodies(); ++k) {
+        y[k] = now.y[k] * ulps;
+        most = std::max(most, std::fabs(value(event, {now.t.hi, now.side(), y}) - own));
+        y[k] = now.y[k];
+    }
+    return most;
+}
+
+/// Returns whether a value at zero goes on to the side to which it has come, now that the user has acted, as it does at
+/// once; otherwise the act threw it back, or stopped it.
+bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& last, double h, Balances& balances,
+                           const Frame& frame) {
+    constexpr double soon = 1e-4;
+    const double step = soon * h;
+    const std::size_t n = mechanics_.bodies();
+    Balance found;
+    if (!balances.at_present(now, frame, last, found)) return true;
+    std::vector<double> rates(mechanics_.states()), y = now.y;
+    mechanics_.rates(now.here(), rates.data(), &now.mode);
+    const auto later = [&](double after) {
+        for (std::size_t i = 0; i < n; ++i) {
+            y[i] = now.y[i] + after * now.y[n + i];
+            y[n + i] = now.y[n + i] + after * found.accelerations[i];
+        }
+        for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n + k] = now.y[2 * n + k] + after * rates[k];
+        return value(event, {now.t.hi + after, Side::at, y});
+    };
+    return came_from_[event] * (later(step) - later(-step)) < -watches_[event].rounded;
+}
+
+void UserEvents::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told,
+                                 const Now& now, const Segment& last, double h, Balances& balances,
+                                 const Frame& frame) {
+    constexpr double at_zero = 1e-12;  // this part of what it was on the stretch stands at zero
+    std::vector<double> begin, end;
+    last.state(-1, begin), last.state(1, end);
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
+        Watch& watch = watches_[e];
+        const double own = value(e, now.here());
+        const double size = std::max({std::fabs(value(e, {last.time(-1), Side::at, begin})),
+                                      std::fabs(value(e, {last.end, Side::at, end})), std::fabs(own)});
+        if (own == before[e]) {
+            // One that an impact took past zero does not stand there.
+            const bool stands = std::fabs(own) <= at_zero * size + 2 * rounding_of(e, now) + watch.rounded;
+            if (!stands || std::find(told.begin(), told.end(), e) == told.end()) continue;
+            watch.rounded = 2 * std::fabs(own) + rounding_of(e, now);
+            watch.sent_back = !passes_on(e, now, last, h, balances, frame);
+            watch.half = watch.sent_back ? came_from_[e] : 0;
+            continue;
+        }
+        watch.half = std::fabs(own) <= at_zero * size ? 0 : own > 0 ? 1 : -1;
+        watch.sent_back = false;
+    }
+}
+
+}  // namespace dinal::motion::engine
