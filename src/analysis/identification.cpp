@@ -989,7 +989,7 @@ private:
         if (share < little) return;
         Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count(), count());
         for (Eigen::Index first = 0, last = 0; first < path.size(); first = last) {
-            while (last < path.size() && std::fabs(path[last] - path[first]) < step / 2) ++last;
+            while (last < path.size() && std::fabs(path[last] - path[first]) < step) ++last;
             const Eigen::VectorXd sum = J.middleRows(first, last - first).colwise().sum().transpose();
             alike += sum * sum.transpose();
         }
@@ -1068,8 +1068,9 @@ private:
 
     /// Rounding and the steps of an instrument count as white.
     [[nodiscard]] bool is_left_white() const {
+        const std::span<const double> left(best_->residual.data(), question_.t.size());
         return !(deviation() > least_noise * range_) || stopped_ || is_within_a_step() ||
-               is_white({best_->residual.data(), question_.t.size()});
+               (is_white(left) && !may_drift(question_.t, left));
     }
 
     [[nodiscard]] std::optional<Misfit> misfit(const Eigen::MatrixXd& J, std::span<const int> columns) {
@@ -1181,7 +1182,8 @@ private:
                 if (sum > best_->sum + as_well * spread * spread) continue;
                 low = std::min(low, at(p, which)), high = std::max(high, at(p, which));
             }
-            low = std::min(low, reach(which, -1, spread)), high = std::max(high, reach(which, 1, spread));
+            if (which != Unknown::Re) low = std::min(low, reach(which, -1, spread));
+            high = std::max(high, reach(which, 1, spread));
         } else {
             const auto place = static_cast<Eigen::Index>(which);
             const bool is_open = open[static_cast<std::size_t>(place_of(which))];
@@ -1204,7 +1206,7 @@ private:
         double step = small * whole;
         while (step < wide * whole && !stopped_ && fits(step)) step *= 2;
         if (step >= wide * whole) return way * INFINITY;
-        constexpr int halvings = 8;
+        constexpr int halvings = 5;
         double least = step > small * whole ? step / 2 : 0;
         for (int i = 0; i < halvings && !stopped_; ++i) {
             const double middle = (least + step) / 2;

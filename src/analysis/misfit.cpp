@@ -45,6 +45,9 @@ private:
     std::vector<Eigen::VectorXd> basis_;
 };
 
+/// A drift is a sum of so many cosines of time.
+constexpr int slow_cosines = 4;
+
 constexpr double dependent = 1e-7, imitated = 1e-3;
 
 /// Removes a memory of one step, in each measured column by itself.
@@ -145,7 +148,7 @@ Eigen::MatrixXd missing_torques(Follows what, std::span<const double> theta, std
 
 Structure drift(std::span<const double> times, std::span<const int> columns, int column) {
     const auto n = static_cast<Eigen::Index>(times.size());
-    const Eigen::Index slow = 4, fast = std::min<Eigen::Index>(32, n / 8);
+    const Eigen::Index slow = slow_cosines, fast = std::min<Eigen::Index>(32, n / 8);
     Eigen::MatrixXd cosines = Eigen::MatrixXd::Zero(n, slow + fast);
     const double span = times.back() - times.front();
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -178,15 +181,16 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, std::span<const
         const double spare = static_cast<double>(residual.size()) - white.size();
         constexpr double least_spare = 8;
         if (more == 0 || spare < least_spare) continue;
-        double sure = significance(before, after, more, spare);
+        const double likely = significance(before, after, more, spare);
+        double sure = likely;
         if (structure.faster.cols() > 0) {
             const int faster = white.add(filter(structure.faster), imitated);
             const double noise = after - white.left();
-            sure = faster < 4 ? 0 : std::min(sure, significance(before - after + noise, noise, more, faster));
+            sure = faster < 4 ? 0 : std::min(likely, significance(before - after + noise, noise, more, faster));
         }
         Misfit found{structure.what, sure > beyond_chance, 1 - plain.left() / all, 0, {}, {}};
         const auto rank = [](const Misfit& one) { return std::pair(one.is_sure, one.share); };
-        if (sure < possible || (worst && rank(found) <= rank(*worst))) continue;
+        if (likely < possible || (worst && rank(found) <= rank(*worst))) continue;
         found.noise = std::sqrt(plain.left() / spare);
         const Eigen::Index n = slopes.cols(), k = structure.columns.cols();
         Eigen::MatrixXd both(residual.size(), n + k);
@@ -222,6 +226,24 @@ bool is_white(std::span<const double> residual, double unusual) {
         sum += n * (n + 2) * part * part / (n - static_cast<double>(lag));
     }
     return lags == 0 || deviations(sum, static_cast<int>(lags)) < unusual;
+}
+
+bool may_drift(std::span<const double> times, std::span<const double> residual) {
+    std::array<double, slow_cosines> products{}, squares{};
+    const double span = times.back() - times.front();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double twice = 2 * std::cos(std::numbers::pi * (times[i] - times.front()) / span);
+        double before = 1, now = twice / 2;
+        for (std::size_t j = 0; j < slow_cosines; ++j) {
+            products[j] += now * residual[i], squares[j] += now * now;
+            before = std::exchange(now, twice * now - before);
+        }
+    }
+    double sum = 0;
+    for (std::size_t j = 0; j < slow_cosines; ++j) sum += products[j] * products[j] / squares[j];
+    const double variance = correlated(residual, 0) / static_cast<double>(residual.size());
+    constexpr double unusual = 2;
+    return variance > 0 && deviations(sum / variance, slow_cosines) > unusual;
 }
 
 bool has_only_memory(std::span<const double> residual) {

@@ -41,8 +41,8 @@ struct Misfit {
 
     /// The shift is known to first order only: it counts as an error of one standard deviation.
     [[nodiscard]] Eigen::MatrixXd added_covariance() const { return covariance + shift * shift.transpose(); }
-    /// Behind half of the residual first order says nothing about the parameters.
-    [[nodiscard]] bool leaves_errors() const { return share < 0.5; }
+    /// Beyond a third of the residual first order says too little about the parameters.
+    [[nodiscard]] bool leaves_errors() const { return share < 1.0 / 3; }
 };
 
 /// The structure that explains most of the residual, first of those that are sure; none if chance would make one of
@@ -60,6 +60,8 @@ Eigen::VectorXd widened_by_memory(const Eigen::MatrixXd& slopes, const Eigen::Ve
 
 /// Whether the correlation of neighbours is within that many standard deviations of chance.
 bool is_white(std::span<const double> residual, double unusual = 2);
+/// Whether slow cosines of time stand out: a small drift moves a fitted zero by far more than it colours the residual.
+bool may_drift(std::span<const double> times, std::span<const double> residual);
 /// A residual that is white once the memory of one step is filtered out.
 bool has_only_memory(std::span<const double> residual);
 
