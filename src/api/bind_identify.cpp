@@ -1273,7 +1273,16 @@ std::string fit_summary(const FitAnswer& fit) {
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit);
     }
-    for (const auto& [name, bounds] : unlisted) text += fmt::format("\n  the record says nothing about {}", name);
+    const double k = fit.found.value[static_cast<std::size_t>(Unknown::k)];
+    for (const auto& [name, bounds] : unlisted) {
+        if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1
+            const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
+            text += fmt::format("\n  {:<{}} {}", "Re_over_k", width,
+                                text_of_bounds(ratios, unit_of_value(fit.units, "Rd_over_k")));
+        } else {
+            text += fmt::format("\n  the record says nothing about {}", name);
+        }
+    }
     for (const std::string& note : notes_of_fit(fit)) text += "\n  " + note;
     return text;
 }

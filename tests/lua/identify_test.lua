@@ -412,6 +412,7 @@ test("Re of a free decay is between what holds the mass at rest and what would h
     equal(run.outcome, "at rest")
     local low, high = table.unpack(identify{ data = run, I = 1 }.bounds.Re)
     near(low, math.max(0.8, 40 * math.abs(run.theta[#run])), 1e-5)
+    has(identify{ data = run }, ("Re_over_k  between %.4g and %.4g, not determined by this record"):format(low / 40, high / 40))
     local function rest(Re)
         local theta = s:with{ Re = Re }:simulate{ theta0 = 1, t_end = 12 }.theta
         return theta[#theta]
