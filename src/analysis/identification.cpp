@@ -16,7 +16,6 @@
 #include "analysis/misfit.hpp"
 #include "analysis/repetition.hpp"
 #include "analysis/turning_points.hpp"
-#include "model/terms/polyline.hpp"
 #include "motion/integrators.hpp"
 #include "theory/theory_free.hpp"
 
@@ -1037,35 +1036,6 @@ private:
 
     // ---- what a wrong model leaves
 
-    /// How the prediction changes with each of these torques, which are added to M along the best fit.
-    [[nodiscard]] std::optional<Eigen::MatrixXd> responses(const model::Oscillator& system,
-                                                           const Eigen::MatrixXd& torques, double noise) {
-        std::vector<model::Excitation> added;
-        for (const auto& torque : torques.colwise()) {
-            auto samples = std::make_shared<model::terms::Samples>();
-            samples->t = question_.t;
-            samples->M.assign(torque.begin(), torque.end());
-            added.push_back(model::Excitation::make(model::terms::Polyline(std::move(samples))).value());
-        }
-        const Parameters& p = best_filled_;
-        const Prediction model = [&](const Eigen::VectorXd& strength) -> std::optional<Eigen::VectorXd> {
-            model::Excitation M = question_.M.value_or(model::Excitation());
-            for (std::size_t i = 0; i < added.size(); ++i) {
-                const double gain = strength[static_cast<Eigen::Index>(i)];
-                if (gain != 0) M = M + added[i].scaled(gain);
-            }
-            ++runs_;
-            const auto run = driven(system, M, {at(p, Unknown::theta0), at(p, Unknown::velocity0)}, question_.t.size());
-            if (!run) return {};
-            return shown(Eigen::VectorXd(run->column(motion::Column::theta)));
-        };
-        const Eigen::Index k = torques.cols();
-        const double whole = at(p, Unknown::k) * range_;
-        const FitScale scale{Eigen::VectorXd::Constant(k, whole), Eigen::VectorXd::Constant(k, -1e300),
-                             Eigen::VectorXd::Constant(k, whole), Eigen::VectorXd::Zero(k)};
-        return derivative(model, Eigen::VectorXd::Zero(k), scale, noise);
-    }
-
     /// Rounding and the steps of an instrument count as white.
     [[nodiscard]] bool is_left_white() const {
         const std::span<const double> left(best_->residual.data(), question_.t.size());
@@ -1082,11 +1052,19 @@ private:
         const Eigen::VectorXd theta = run->column(motion::Column::theta),
                               velocity = run->column(motion::Column::velocity);
         std::vector<Structure> structures{drift(question_.t, columns, 0)};
+        const Pushed pushed = [&](const model::Excitation& added) -> std::optional<Eigen::VectorXd> {
+            ++runs_;
+            const auto other =
+                driven(*system, question_.M.value_or(model::Excitation()) + added, initial, question_.t.size());
+            if (!other) return {};
+            return shown(
+                Eigen::VectorXd(other->column(motion::Column::theta).array() + at(best_filled_, Unknown::offset)));
+        };
+        const std::size_t n = question_.t.size();
         for (const Follows what : {Follows::velocity, Follows::theta}) {
-            const Eigen::MatrixXd torques =
-                missing_torques(what, {theta.data(), question_.t.size()}, {velocity.data(), question_.t.size()});
-            if (auto found = responses(*system, torques, deviation()))
-                structures.push_back({what, *std::move(found), {}});
+            auto found = responses(pushed, question_.t, missing_torques(what, {theta.data(), n}, {velocity.data(), n}),
+                                   at(best_filled_, Unknown::k) * range_, deviation());
+            if (found) structures.push_back({what, *std::move(found), {}});
         }
         return misfit_of(best_->residual, columns, J, scale_of(best_filled_).whole, structures);
     }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "analysis/least_squares.hpp"
+#include "model/terms/polyline.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -144,6 +146,32 @@ Eigen::MatrixXd missing_torques(Follows what, std::span<const double> theta, std
         }
     }
     return torques;
+}
+
+std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
+                                         const Eigen::MatrixXd& torques, double whole, double noise) {
+    const auto here = pushed(model::Excitation());
+    if (!here) return {};
+    Eigen::MatrixXd columns(here->size(), torques.cols());
+    double step = 1e-3 * whole;
+    for (Eigen::Index i = 0; i < torques.cols(); ++i) {
+        auto samples = std::make_shared<model::terms::Samples>();
+        samples->t.assign(times.begin(), times.end());
+        samples->M.assign(torques.col(i).begin(), torques.col(i).end());
+        const auto torque = model::Excitation::make(model::terms::Polyline(std::move(samples))).value();
+        constexpr int most_tries = 6;
+        for (int tries = 0; tries < most_tries; ++tries) {
+            const auto there = pushed(torque.scaled(step));
+            if (!there) return {};
+            columns.col(i) = (*there - *here) / step;
+            const double change = (*there - *here).norm();
+            constexpr double least = 0.5, most = 10, widest = 1e3;  // of the noise, all samples together
+            if (change > least * noise && change < most * noise) break;
+            step *= std::clamp(noise / std::max(change, 1e-300), 1 / widest, widest);
+        }
+        step = std::clamp(step, 1e-9 * whole, whole);
+    }
+    return columns;
 }
 
 Structure drift(std::span<const double> times, std::span<const int> columns, int column) {

@@ -9,10 +9,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
+
+#include "model/excitation.hpp"
 
 namespace dinal::analysis {
 
@@ -21,6 +24,12 @@ inline constexpr std::array<std::string_view, 3> follows_names{"velocity", "thet
 
 /// Torques of one size along a motion that a model may lack, a column each; a number for each time.
 Eigen::MatrixXd missing_torques(Follows what, std::span<const double> theta, std::span<const double> velocity);
+
+/// A prediction with this torque added to M; none if nothing can be predicted.
+using Pushed = std::function<std::optional<Eigen::VectorXd>(const model::Excitation& added)>;
+/// How the prediction changes with each of these torques, by steps of about the noise; `whole` is a large torque.
+std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
+                                         const Eigen::MatrixXd& torques, double whole, double noise);
 
 /// Regressors that belong together.
 struct Structure {

@@ -36,7 +36,6 @@
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "model/system.hpp"
-#include "model/terms/polyline.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
 #include "text/suggest.hpp"
@@ -842,30 +841,16 @@ private:
         const auto theta = runs ? path("theta") : std::vector<double>(), velocity = runs ? path("velocity") : theta;
         lua_settop(L_, top);
         if (theta.size() != t_.size() || velocity.size() != t_.size()) return;
+        const analysis::Pushed pushed = [&](const model::Excitation& added) {
+            added_ = {{joint, added}};
+            auto changed = predicted(p, known_until_.back());
+            added_.reset();
+            return changed;
+        };
+        const double whole = system_.bodies[system_.joints[joint].first()].inertia * speed_ / time_;
         for (const analysis::Follows what : {analysis::Follows::velocity, analysis::Follows::theta}) {
-            const Eigen::MatrixXd torques = analysis::missing_torques(what, theta, velocity);
-            std::vector<model::Excitation> units;
-            for (const auto& torque : torques.colwise()) {
-                auto samples = std::make_shared<model::terms::Samples>();
-                samples->t = t_;
-                samples->M.assign(torque.begin(), torque.end());
-                units.push_back(model::Excitation::make(model::terms::Polyline(std::move(samples))).value());
-            }
-            const analysis::Prediction response = [&](const Eigen::VectorXd& strength) {
-                added_ = {{joint, model::Excitation()}};
-                for (std::size_t i = 0; i < units.size(); ++i) {
-                    const double gain = strength[static_cast<Eigen::Index>(i)];
-                    if (gain != 0) added_->torque = added_->torque + units[i].scaled(gain);
-                }
-                auto changed = predicted(p, known_until_.back());
-                added_.reset();
-                return changed;
-            };
-            const Eigen::Index k = torques.cols();
-            const double whole = system_.bodies[system_.joints[joint].first()].inertia * speed_ / time_;
-            const analysis::FitScale scale{Eigen::VectorXd::Constant(k, whole), Eigen::VectorXd::Constant(k, -1e300),
-                                           Eigen::VectorXd::Constant(k, whole), Eigen::VectorXd::Zero(k)};
-            auto columns = analysis::derivative(response, Eigen::VectorXd::Zero(k), scale, noise);
+            auto columns =
+                analysis::responses(pushed, t_, analysis::missing_torques(what, theta, velocity), whole, noise);
             if (columns) found.push_back({what, *std::move(columns), {}});
         }
     }
