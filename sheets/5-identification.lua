@@ -74,7 +74,7 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
         secret.system.dead_zone),
       "A larger start: viscous damping takes a part and rules the large swings, dry friction takes an amount and rules the last ones, so the more amplitudes the record has, the less can one " ..
         "stand for the other. It must go on until the rest; what comes behind that tells of the offset and the noise only.",
-      "How much the noise moves the result of that fit, if its model were true. It does not say how far off the model is: that shows in the residual, which has a swing in it.",
+      "Only how much the noise would move the result of that fit if its model were true, not how far off the model is. That shows in the residual, which follows the velocity; so dinal leaves the error out.",
       "Re acts only where the mass is at rest, and in a decay it comes there once. That it stays says Re >= k |theta - offset|, no more.",
       "Neighbouring samples then have errors in common, and the fit takes them for independent: the error bars come out too small. The extremes are cut, so the amplitudes, and with them the " ..
         "dampings, are off by something that no error bar shows. Least squares does the smoothing itself, by the model.",
@@ -85,14 +85,14 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
     local true_system = secret.system
     local decay = decay_of(given, secret)
     local fit = identify{ data = decay, velocity0 = 0 }
-    local viscous -- takes half a second, so only when it is asked for
-    local function is_viscous(zeta)
-      viscous = viscous or identify{ data = decay, velocity0 = 0, I = given.I, Rd = 0 }
-      return math.abs(zeta - viscous.zeta) <= 4*viscous.std_error.zeta
-    end
     local x_f = true_system.Rd/true_system.k
     -- Honest work has the error of the fit; four of them are missed by one record in ten thousand.
     local function bars(name) return 4*fit.std_error[name] end
+    local viscous -- takes half a second, so only when it is asked for
+    local function is_viscous(zeta)
+      viscous = viscous or identify{ data = decay, velocity0 = 0, I = given.I, Rd = 0 }
+      return math.abs(zeta - viscous.zeta) <= bars "zeta" -- that fit has no errors: its model is wrong
+    end
     return {
       { name = "a", asks = "omega0", unit = "rad per time unit", answer = true_system.omega0, within = bars "omega0", task = "5.2",
         how = "identify{ data = record, velocity0 = 0 }.omega0",

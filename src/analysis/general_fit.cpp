@@ -6,18 +6,26 @@
 namespace dinal::analysis {
 namespace {
 
-double longest_correlation(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
-    const int columns =
-        question.columns.empty() ? 0 : *std::max_element(question.columns.begin(), question.columns.end()) + 1;
-    double longest = 1;
-    for (int column = 0; column < columns; ++column) {
-        std::vector<double> own;
-        for (Eigen::Index i = 0; i < residual.size(); ++i) {
-            if (question.columns[static_cast<std::size_t>(i)] == column) own.push_back(residual[i]);
-        }
-        longest = std::max(longest, correlation_length(own));
+/// The residual of each measured column.
+std::vector<std::vector<double>> by_column(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
+    std::vector<std::vector<double>> parts;
+    for (Eigen::Index i = 0; i < residual.size(); ++i) {
+        const auto column = static_cast<std::size_t>(question.columns[static_cast<std::size_t>(i)]);
+        if (parts.size() <= column) parts.resize(column + 1);
+        parts[column].push_back(residual[i]);
     }
+    return parts;
+}
+
+double longest_correlation(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
+    double longest = 1;
+    for (const auto& part : by_column(question, residual)) longest = std::max(longest, correlation_length(part));
     return longest;
+}
+
+bool is_all_white(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
+    const auto parts = by_column(question, residual);
+    return std::all_of(parts.begin(), parts.end(), [](const std::vector<double>& part) { return is_white(part); });
 }
 
 std::optional<LeastSquares> fit(const GeneralQuestion& question, const Eigen::VectorXd& start, Eigen::Index count,
@@ -54,18 +62,29 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     GeneralFit found{.value = best->parameters,
                      .error = Eigen::VectorXd::Zero(n),
                      .predicted = question.measured - best->residual,
-                     .silent = std::vector<bool>(static_cast<std::size_t>(n), false)};
+                     .silent = {},
+                     .open = {}};
     found.noise = std::sqrt(best->sum / static_cast<double>(spare));
     found.widening = std::sqrt(longest_correlation(question, best->residual));
     const Prediction model = [&](const Eigen::VectorXd& p) { return question.model(p, question.measured.size()); };
-    const auto J = derivative(model, best->parameters, question.scale, found.noise);
-    const Covariance covariance = covariance_of(J.value_or(Eigen::MatrixXd::Zero(question.measured.size(), n)),
-                                                question.scale.whole, found.noise);
+    const Eigen::MatrixXd J = derivative(model, best->parameters, question.scale, found.noise)
+                                  .value_or(Eigen::MatrixXd::Zero(question.measured.size(), n));
+    Covariance covariance = covariance_of(J, question.scale.whole, found.noise);
+    const double spread = found.widening * found.noise;
+    covariance.matrix *= spread * spread;
+    if (found.noise > question.least_noise && !is_all_white(question, best->residual)) {
+        const Eigen::VectorXd wider =
+            widened_by_memory(J, question.scale.whole, best->residual, question.columns, found.noise, found.widening);
+        covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
+        found.misfit = misfit_of(best->residual, question.columns, J, question.scale.whole,
+                                 question.structures(best->parameters, found.noise));
+        if (found.misfit) covariance.matrix += found.misfit->added_covariance();
+    }
     found.silent = covariance.silent;
+    found.open = covariance.open;
     for (Eigen::Index i = 0; i < n; ++i) {
-        if (found.silent[static_cast<std::size_t>(i)]) continue;
         const double least = 1e-15 * std::fabs(found.value[i]);  // some ulps
-        found.error[i] = std::max(least, found.widening * found.noise * std::sqrt(covariance.matrix(i, i)));
+        found.error[i] = std::max(least, std::sqrt(covariance.matrix(i, i)));
     }
     return found;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/least_squares.hpp"
+#include "analysis/misfit.hpp"
 
 namespace dinal::analysis {
 
@@ -18,14 +19,20 @@ struct GeneralQuestion {
     std::vector<Eigen::Index> stages;  ///< beginnings of the record that are fitted first
     Eigen::VectorXd start;
     FitScale scale;
+    double least_noise = 0;  ///< a residual that is less is rounding
+    /// What the model may lack at these parameters; called only if the residual is not white.
+    std::function<std::vector<Structure>(const Eigen::VectorXd& parameters, double noise)> structures;
     std::vector<std::vector<double>> other_starts;  ///< of each parameter: where a search may begin, too
 };
 
 struct GeneralFit {
-    Eigen::VectorXd value, error, predicted;
-    std::vector<bool> silent;
-    double noise = 0;     ///< standard deviation of the residual
-    double widening = 1;  ///< of the errors, because the residual is alike from sample to sample
+    Eigen::VectorXd value, error, predicted;  ///< error: also of what is silent, where it bounds little
+    std::vector<bool> silent, open;           ///< open: next to nothing bounds it
+    double noise = 0;                         ///< standard deviation of the residual
+    double widening = 1;                      ///< of the errors, because the residual is alike from sample to sample
+    std::optional<Misfit> misfit = {};
+
+    [[nodiscard]] bool is_wrong() const { return misfit && misfit->is_sure; }
 };
 
 /// None when nothing can be predicted from the start.

@@ -7,11 +7,13 @@
 #include <functional>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "algebra/decompositions.hpp"
 #include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
+#include "analysis/misfit.hpp"
 #include "analysis/repetition.hpp"
 #include "analysis/turning_points.hpp"
 #include "motion/integrators.hpp"
@@ -50,6 +52,9 @@ bool is_same(const LeastSquares& a, const LeastSquares& b) {
 /// In standard deviations of noise: what is left after a fit that is so much more alike from sample to sample is looked
 /// at again.
 constexpr double suspected = 3;
+
+/// A residual that is less, in ranges of the record, is rounding.
+constexpr double least_noise = 1e-7;
 
 /// What is held so stays where it is.
 constexpr double firmly = 1e8;
@@ -195,7 +200,9 @@ private:
     }
     /// What the instrument shows of the motion with these parameters.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows) {
-        auto theta = moved(p, rows);
+        return shown(moved(p, rows));
+    }
+    [[nodiscard]] std::optional<Eigen::VectorXd> shown(std::optional<Eigen::VectorXd> theta) const {
         if (theta && cut_.at_low > 0) *theta = theta->cwiseMax(cut_.low);
         if (theta && cut_.at_high > 0) *theta = theta->cwiseMin(cut_.high);
         return theta;
@@ -216,18 +223,25 @@ private:
             decay.array() += at(p, Unknown::offset);
             return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
         }
+        const auto run = driven(*system, *question_.M, initial, rows);
+        if (!run) return {};
+        return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
+    }
+
+    /// A run with a row for each of the first samples; none if it ends before them.
+    [[nodiscard]] std::optional<motion::Trajectory> driven(const model::Oscillator& system, const model::Excitation& M,
+                                                           const model::State& initial, std::size_t rows) {
         const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
         motion::Limits limits;
         limits.dense = false;
-        const auto run =
-            motion::simulate(*system, {*question_.M, initial}, {times.front(), times.back()}, motion::Grid::at(times),
-                             motion::integrator_for(*system, *question_.M), monitor_, limits);
+        auto run = motion::simulate(system, {M, initial}, {times.front(), times.back()}, motion::Grid::at(times),
+                                    motion::integrator_for(system, M), monitor_, limits);
         if (!run || static_cast<std::size_t>(run->size()) != rows) {
             stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||
                                             run->outcome == model::Outcome::excitation_not_finite));
             return {};
         }
-        return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
+        return std::move(run).value();
     }
 
     [[nodiscard]] std::optional<model::Oscillator> system_of(const Parameters& p) const {
@@ -947,15 +961,38 @@ private:
     }
 
     /// Where a small change would add or take away a swing slopes by differences say nothing: the turn of rest is kept.
-    [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise) {
+    [[nodiscard]] Eigen::MatrixXd slopes_at(const Rest& rest, double noise) {
         breakaway_ = rest.breakaway;
         const Parameters p = filled(rest.fit.parameters);
         rests_at_ = rest.turn ? rest.turn : resting_turn(p, noise);
-        const FitScale scale = scale_of(p);
         const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
-                                  rest.fit.parameters, scale, noise);
+                                  rest.fit.parameters, scale_of(p), noise);
         rests_at_.reset();
-        return covariance_of(J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), scale.whole, noise);
+        return J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count()));
+    }
+    [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise) {
+        const Eigen::MatrixXd J = slopes_at(rest, noise);
+        Covariance covariance = covariance_of(J, scale_of(filled(rest.fit.parameters)).whole, noise);
+        add_steps(J, measured_ - rest.fit.residual, noise, covariance.matrix);
+        return covariance;
+    }
+
+    /// An instrument with steps errs alike as long as the motion stays within one, unless noise hides its steps (by
+    /// the first harmonic of the sawtooth).
+    void add_steps(const Eigen::MatrixXd& J, const Eigen::VectorXd& path, double noise,
+                   Eigen::MatrixXd& covariance) const {
+        const double step = smallest_step(question_.theta), variance = noise * noise, rounded = step * step / 12;
+        const double other = std::max(0.0, variance - rounded) * std::pow(2 * std::numbers::pi / step, 2);
+        const double share = variance > 0 ? std::min(1.0, rounded / variance * std::exp(-other)) : 0;
+        constexpr double little = 1e-3;
+        if (share < little) return;
+        Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count(), count());
+        for (Eigen::Index first = 0, last = 0; first < path.size(); first = last) {
+            while (last < path.size() && std::fabs(path[last] - path[first]) < step) ++last;
+            const Eigen::VectorXd sum = J.middleRows(first, last - first).colwise().sum().transpose();
+            alike += sum * sum.transpose();
+        }
+        covariance += share * covariance * (alike - J.transpose() * J) * covariance;
     }
 
     /// Takes the likeliest of the ways in which the record may have come to rest; in units of noise squared, with what
@@ -985,7 +1022,7 @@ private:
         for (const Rest& rest : ways) best = evidence(rest) > evidence(best) ? rest : best;
         best_ = best.fit;
         best_breakaway_ = best.breakaway;
-        Covariance all{Eigen::MatrixXd::Zero(count(), count()), best.covariance.silent, 0};
+        Covariance all{Eigen::MatrixXd::Zero(count(), count()), best.covariance.silent, best.covariance.open, 0};
         double odds = 0;
         for (const Rest& rest : ways) {
             const double share = std::exp(evidence(rest) - evidence(best));
@@ -997,9 +1034,50 @@ private:
         return all;
     }
 
+    // ---- what a wrong model leaves
+
+    /// Rounding and the steps of an instrument count as white.
+    [[nodiscard]] bool is_left_white() const {
+        const std::span<const double> left(best_->residual.data(), question_.t.size());
+        return !(deviation() > least_noise * range_) || stopped_ || is_within_a_step() ||
+               (is_white(left) && !may_drift(question_.t, left));
+    }
+
+    [[nodiscard]] std::optional<Misfit> misfit(const Eigen::MatrixXd& J, std::span<const int> columns) {
+        const auto system = system_of(best_filled_);
+        if (!system) return {};
+        const model::State initial{at(best_filled_, Unknown::theta0), at(best_filled_, Unknown::velocity0)};
+        const auto run = driven(*system, question_.M.value_or(model::Excitation()), initial, question_.t.size());
+        if (!run) return {};
+        const Eigen::VectorXd theta = run->column(motion::Column::theta),
+                              velocity = run->column(motion::Column::velocity);
+        std::vector<Structure> structures{drift(question_.t, columns, 0)};
+        const Pushed pushed = [&](const model::Excitation& added) -> std::optional<Eigen::VectorXd> {
+            ++runs_;
+            const auto other =
+                driven(*system, question_.M.value_or(model::Excitation()) + added, initial, question_.t.size());
+            if (!other) return {};
+            return shown(
+                Eigen::VectorXd(other->column(motion::Column::theta).array() + at(best_filled_, Unknown::offset)));
+        };
+        const std::size_t n = question_.t.size();
+        for (const Follows what : {Follows::velocity, Follows::theta}) {
+            auto found = responses(pushed, question_.t, missing_torques(what, {theta.data(), n}, {velocity.data(), n}),
+                                   at(best_filled_, Unknown::k) * range_, deviation());
+            if (found) structures.push_back({what, *std::move(found), {}});
+        }
+        return misfit_of(best_->residual, columns, J, scale_of(best_filled_).whole, structures);
+    }
+
+    /// An instrument that shows steps errs by half of one, alike from sample to sample where the motion is slow.
+    [[nodiscard]] bool is_within_a_step() const {
+        constexpr double part = 0.5;
+        return deviation() < part * smallest_step(question_.theta);
+    }
+
     [[nodiscard]] Identified result() {
         Identified found;
-        const Covariance covariance = weigh_rests();
+        Covariance covariance = weigh_rests();
         breakaway_ = best_breakaway_;
         found.value = best_filled_ = filled_best();
         if (!question_.M && !is_given(Unknown::Re)) {
@@ -1010,11 +1088,25 @@ private:
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
         // Samples whose noise is alike tell less than as many that are independent.
-        constexpr double rounding = 1e-7;
-        if (found.noise > rounding * range_) {
+        if (found.noise > least_noise * range_) {
             found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
         }
         const double spread = found.widening * found.noise;
+        judge(found);
+        if (!found.is_noise && !is_left_white()) {
+            const Eigen::MatrixXd J = slopes_at({*best_, best_breakaway_, best_rest_, {}}, found.noise);
+            const std::vector<int> columns(question_.t.size(), 0);
+            const Eigen::VectorXd wider = widened_by_memory(J, scale_of(best_filled_).whole, best_->residual, columns,
+                                                            found.noise, found.widening);
+            covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
+            const auto wrong = misfit(J, columns);
+            if (wrong) covariance.matrix += wrong->added_covariance() / (spread * spread);
+            if (wrong && wrong->is_sure) {
+                found.misfit = wrong->what;
+                found.noise_without_misfit = std::min(wrong->noise, found.scatter);
+                found.has_errors = wrong->leaves_errors();
+            }
+        }
         Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
         for (Eigen::Index i = 0; i < count(); ++i) {
             const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
@@ -1037,11 +1129,13 @@ private:
             found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
         }
         ratios(full, spread, found);
-        judge(found);
+        if (found.is_unexplained && !found.wild) found.has_errors = false;
+        for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors are those of a motion, and there may be none
             found.error.fill(0);
             found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
+            found.low.fill(-INFINITY), found.high.fill(INFINITY);
         }
         const Eigen::VectorXd predicted_all = measured_ - best_->residual;
         found.predicted.assign(predicted_all.begin(), predicted_all.end());
@@ -1049,6 +1143,67 @@ private:
         found.cut_low = cut_.at_low;
         found.cut_high = cut_.at_high;
         return found;
+    }
+
+    // ---- bounds of what the record does not determine
+
+    void set_bounds(Unknown which, double spread, const Eigen::MatrixXd& covariance, const std::vector<bool>& open,
+                    Identified& found) {
+        const auto i = static_cast<std::size_t>(which);
+        if (!found.silent[i]) return;
+        double &low = found.low[i] = found.value[i], &high = found.high[i] = found.value[i];
+        if (which == Unknown::Re && !question_.M) {
+            std::tie(low, high) = breakaways();
+        } else if (tells_nothing_[i]) {
+            constexpr double as_well = 4;  // two standard errors
+            for (const auto& [sum, p] : seen_) {
+                if (sum > best_->sum + as_well * spread * spread) continue;
+                low = std::min(low, at(p, which)), high = std::max(high, at(p, which));
+            }
+            if (which != Unknown::Re) low = std::min(low, reach(which, -1, spread));
+            high = std::max(high, reach(which, 1, spread));
+        } else {
+            const auto place = static_cast<Eigen::Index>(which);
+            const bool is_open = open[static_cast<std::size_t>(place_of(which))];
+            const double error = is_open ? INFINITY : 2 * spread * std::sqrt(covariance(place, place));
+            low -= error, high += error;
+        }
+        if (which < Unknown::theta0) low = std::max(low, which == Unknown::Re ? at(found.value, Unknown::Rd) : 0.0);
+    }
+
+    /// How far this parameter can be changed alone before the fit is worse by two standard errors.
+    [[nodiscard]] double reach(Unknown which, double way, double spread) {
+        const auto fits = [&](double step) {
+            Parameters p = best_filled_;
+            at(p, which) += way * step;
+            const auto theta = predicted(p, question_.t.size());
+            return theta && (measured_ - *theta).squaredNorm() <= best_->sum + 4 * spread * spread;
+        };
+        const double whole = best_scale_.whole[place_of(which)];
+        constexpr double small = 1.0 / 64, wide = 8;
+        double step = small * whole;
+        while (step < wide * whole && !stopped_ && fits(step)) step *= 2;
+        if (step >= wide * whole) return way * INFINITY;
+        constexpr int halvings = 5;
+        double least = step > small * whole ? step / 2 : 0;
+        for (int i = 0; i < halvings && !stopped_; ++i) {
+            const double middle = (least + step) / 2;
+            (fits(middle) ? least : step) = middle;
+        }
+        return at(best_filled_, which) + way * least;
+    }
+
+    /// Of a free decay: Re holds the mass where it rests, and let it pass the turn before.
+    [[nodiscard]] std::pair<double, double> breakaways() const {
+        const double k = at(best_filled_, Unknown::k), Rd = at(best_filled_, Unknown::Rd);
+        const auto decay = decay_of(best_filled_);
+        if (!decay) return {Rd, INFINITY};
+        const double half = std::numbers::pi / (omega0_of(best_filled_) * std::sqrt(1 - decay->zeta * decay->zeta));
+        const double last = std::floor((span_ - decay->first.t) / half);  // turn of the record
+        const double rest = best_rest_ ? *best_rest_ - turns_before(best_filled_) : decay->extremes - 1;
+        if (rest > last) return {Rd, last < 0 ? INFINITY : k * std::fabs(decay->size_at(last))};
+        const double before = rest < 1 ? INFINITY : k * decay->size_at(rest - 1);
+        return {std::max(Rd, k * std::fabs(decay->size_at(rest))), before};
     }
 
     /// What noise leaves at a sample has nothing to do with what it leaves at the next one: in square the differences
@@ -1067,16 +1222,12 @@ private:
         const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
         const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
         found.is_noise = all - left < by_chance * found.noise * found.noise;
-        double step = range_;  // of an instrument that shows steps; without them next to none
-        for (Eigen::Index i = 1; i < measured_.size(); ++i) {
-            const double apart = std::fabs(measured_[i] - measured_[i - 1]);
-            if (apart > 0) step = std::min(step, apart);
-        }
-        found.scatter = std::max(noise_, step);
+        found.scatter = std::max(noise_, smallest_step(question_.theta));
         constexpr double much = 5, part = 0.01;
         constexpr double more = 1.25, little = 1e-4, sure = 5;
         found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
-                               (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
+                               (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure) &&
+                                !has_only_memory({best_->residual.data(), question_.t.size()}));
         if (question_.M && !question_.M->has_feedback()) {
             std::vector<double> M;
             for (const double t : question_.t) M.push_back(question_.M->value(t));

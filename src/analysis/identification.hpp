@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/misfit.hpp"
 #include "model/excitation.hpp"
 #include "motion/simulate.hpp"
 #include "text/expected.hpp"
@@ -32,6 +33,7 @@ struct IdentifyQuestion {
 struct Identified {
     std::array<double, unknown_count> value{}, error{};  ///< error: of one standard deviation; 0 of what was given
     std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: the record says nothing about it
+    std::array<double, unknown_count> low{}, high{};  ///< of what is silent: values from low to high fit about as well
     // Ratios, which a free decay tells.
     double omega0 = 0, zeta = 0, Rd_over_k = 0, omega0_error = 0, zeta_error = 0, Rd_over_k_error = 0;
     std::vector<double> predicted;          ///< at the times of the record
@@ -42,8 +44,11 @@ struct Identified {
     bool M_is_noisy = false;                ///< which the errors ignore
     bool is_noise = false;                  ///< it explains no more of the record than it would of noise
     bool is_unexplained = false;            ///< it leaves much of the record, and what it leaves is not noise
-    std::optional<std::size_t> wild = {};   ///< the sample that makes more than half of the sum of squares
-    int runs = 0;                           ///< motions that were compared with the record
+    std::optional<Follows> misfit = {};     ///< the pattern that a wrong model leaves in the residual
+    double noise_without_misfit = 0;       ///< standard deviation without that pattern, or by the record itself if less
+    bool has_errors = true;                ///< false: the model is so wrong that nothing is known of them
+    std::optional<std::size_t> wild = {};  ///< the sample that makes more than half of the sum of squares
+    int runs = 0;                          ///< motions that were compared with the record
 };
 
 /// Fails when the record cannot be one: too short, constant, times that do not increase.

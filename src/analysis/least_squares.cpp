@@ -148,7 +148,8 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
 
 Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise) {
     const Eigen::Index rows = J.rows(), n = J.cols();
-    Covariance result{Eigen::MatrixXd::Zero(n, n), std::vector<bool>(static_cast<std::size_t>(n), false)};
+    const std::vector<bool> none(static_cast<std::size_t>(n), false);
+    Covariance result{Eigen::MatrixXd::Zero(n, n), none, none};
     if (n == 0) return result;
     // Below 1e-8 of the greatest a slope by differences is rounding.
     constexpr double widest = 10, rounding = 1e-8;
@@ -160,7 +161,10 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     const Eigen::MatrixXd inverse = algebra::inverse_of_triangular(R);
     result.matrix = inverse * inverse.transpose();
     for (Eigen::Index i = 0; i < n; ++i) {
-        result.silent[static_cast<std::size_t>(i)] = known * std::sqrt(result.matrix(i, i)) > 1 / widest;
+        const double unknown = known * std::sqrt(result.matrix(i, i));  // 1 if nothing depends on it
+        result.silent[static_cast<std::size_t>(i)] = unknown > 1 / widest;
+        constexpr double most = 0.5;
+        result.open[static_cast<std::size_t>(i)] = unknown > most;
         result.log_volume -= std::log(std::fabs(R(i, i)));
     }
     result.matrix = whole.asDiagonal() * result.matrix * whole.asDiagonal();

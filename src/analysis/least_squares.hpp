@@ -38,7 +38,8 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
 struct Covariance {
     Eigen::MatrixXd matrix;
     std::vector<bool> silent;
-    double log_volume = 0;  ///< ln of the root of the determinant, in units of what says nothing
+    std::vector<bool> open;  ///< silent ones that next to nothing bounds
+    double log_volume = 0;   ///< ln of the root of the determinant, in units of what says nothing
 };
 /// Before the record nothing is known to better than ten times what says nothing, which bounds the errors along a
 /// valley that is flat; all parameters that such a valley runs through are silent, not one of them.

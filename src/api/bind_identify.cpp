@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "analysis/general_fit.hpp"
 #include "analysis/identification.hpp"
+#include "analysis/misfit.hpp"
 #include "analysis/turning_points.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
@@ -113,12 +115,15 @@ struct FitAnswer {
     analysis::IdentifyQuestion question;
     analysis::Identified found;
     std::vector<std::pair<std::string, double>> values, errors;
-    std::vector<std::string> silent;
+    std::vector<std::pair<std::string, std::vector<double>>> silent;  ///< what is not determined, and its bounds
     std::optional<model::System> system;
     bool from_guess = false;  ///< whether a system was given
     model::Units units;       ///< units of the record; without a unit for M if only ratios to I are found
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
+
+/// The error of a fitted value if the model is wrong.
+constexpr double withheld = std::numeric_limits<double>::quiet_NaN();
 
 // The record passed to identify{ ... }, and the choice of fitted parameters.
 
@@ -302,6 +307,15 @@ std::string before_names(const model::System& system, std::size_t joint) {
     return system.named ? system.joints[joint].name + "." : "";
 }
 
+/// Returns "load." for "load.Rd"; empty for a single unnamed body.
+std::string body_of_value(const FitAnswer& fit, std::string_view name) {
+    for (std::size_t j = 0; fit.system && j < fit.system->joints.size(); ++j) {
+        std::string before = before_names(*fit.system, j);
+        if (name.starts_with(before)) return before;
+    }
+    return "";
+}
+
 /// Visits each fittable number of the body or link by its name in identify: "load.Rd", or "Rd" for a single body.
 void change_numbers(model::System& system, std::size_t j, const Change& change_named) {
     const std::string before = before_names(system, j);
@@ -424,6 +438,11 @@ public:
             length *= 2;
         }
         question.model = [this](const Eigen::VectorXd& p, Eigen::Index count) { return predicted(p, count); };
+        question.structures = [this](const Eigen::VectorXd& p, double noise) { return structures(p, noise); };
+        constexpr double rounding = 1e-7;
+        for (const MeasuredColumn& column : columns_) {
+            question.least_noise = std::max(question.least_noise, rounding * column.range / column.size);
+        }
         const auto found = analysis::general_fit(question);
         restore();
         if (!found) {
@@ -753,28 +772,123 @@ private:
 
     std::optional<Eigen::VectorXd> predicted(const Eigen::VectorXd& p, Eigen::Index count) {
         const int top = lua_gettop(L_);
-        model::System system = with(p);
         const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
                                                    known_until_.begin() + 1);
+        std::optional<Eigen::VectorXd> found;
+        if (push_run(p, rows)) found = stacked(p, rows);
+        lua_settop(L_, top);
+        return found;
+    }
+
+    /// Pushes a run with these parameters that has all these rows. Returns whether there is one.
+    bool push_run(const Eigen::VectorXd& p, std::size_t rows) {
+        model::System system = with(p);
         lua_pushcfunction(L_, lua::guarded<run_with_numbers>);
         lua_pushlightuserdata(L_, &system);
         push_options(p, rows);
         const bool good = lua_pcall(L_, 2, 1, 0) == LUA_OK;
         if (!good && lua::interrupt_requested()) lua_error(L_);
+        if (!good) failure_ = lua::text_at(L_, -1);
         const auto* run = good ? lua::test<RunHandle>(L_, -1) : nullptr;
-        std::optional<Eigen::VectorXd> found;
-        if (!good) {
-            failure_ = lua::text_at(L_, -1);
-        } else if (run != nullptr && static_cast<std::size_t>((*run)->trajectory.size()) == rows) {
-            found = stacked(p, rows);
+        return run != nullptr && static_cast<std::size_t>((*run)->trajectory.size()) == rows;
+    }
+
+    // ---- what the model may lack
+
+    /// A torque beside M on a body or link.
+    struct Added {
+        std::size_t joint;
+        model::Excitation torque;
+    };
+
+    /// What the model may lack at the joints that are measured or have a fitted number, and drifting zeros.
+    std::vector<analysis::Structure> structures(const Eigen::VectorXd& p, double noise) {
+        std::vector<analysis::Structure> found;
+        std::vector<double> times;
+        std::vector<int> columns;
+        for (std::size_t row = 0; row < t_.size(); ++row) {
+            for (std::size_t j = 0; j < columns_.size(); ++j) {
+                if (std::isnan(columns_[j].numbers[row])) continue;
+                times.push_back(t_[row]);
+                columns.push_back(static_cast<int>(j));
+            }
         }
-        lua_settop(L_, top);
+        for (std::size_t j = 0; j < columns_.size(); ++j) {
+            found.push_back(analysis::drift(times, columns, static_cast<int>(j)));
+        }
+        for (std::size_t j = 0; j < system_.joints.size(); ++j) {
+            const std::string before = before_names(system_, j);
+            const bool is_fitted = std::any_of(free_.begin(), free_.end(),
+                                               [&](const Fitted& one) { return one.name.starts_with(before); });
+            const bool is_measured = std::any_of(columns_.begin(), columns_.end(),
+                                                 [j](const MeasuredColumn& column) { return column.joint == j; });
+            if (is_fitted || is_measured) add_missing_torques(j, p, noise, found);
+        }
         return found;
+    }
+
+    void add_missing_torques(std::size_t joint, const Eigen::VectorXd& p, double noise,
+                             std::vector<analysis::Structure>& found) {
+        const auto path = [&](const char* quantity) {
+            std::vector<double> numbers;
+            lua_getfield(L_, -1, (before_names(system_, joint) + quantity).c_str());
+            if (const auto* vector = lua::test<lua::Vector>(L_, -1)) numbers.assign(vector->begin(), vector->end());
+            lua_pop(L_, 1);
+            return numbers;
+        };
+        const int top = lua_gettop(L_);
+        const bool runs = push_run(p, t_.size());
+        const auto theta = runs ? path("theta") : std::vector<double>(), velocity = runs ? path("velocity") : theta;
+        lua_settop(L_, top);
+        if (theta.size() != t_.size() || velocity.size() != t_.size()) return;
+        const analysis::Pushed pushed = [&](const model::Excitation& added) {
+            added_ = {{joint, added}};
+            auto changed = predicted(p, known_until_.back());
+            added_.reset();
+            return changed;
+        };
+        const double whole = system_.bodies[system_.joints[joint].first()].inertia * speed_ / time_;
+        for (const analysis::Follows what : {analysis::Follows::velocity, analysis::Follows::theta}) {
+            auto columns =
+                analysis::responses(pushed, t_, analysis::missing_torques(what, theta, velocity), whole, noise);
+            if (columns) found.push_back({what, *std::move(columns), {}});
+        }
+    }
+
+    /// Pushes M with the torque that is added to it.
+    void push_excitation() {
+        options_.push("M");
+        if (!added_) return;
+        if (!system_.named) {
+            model::Excitation M = added_->torque;
+            if (!lua_isnil(L_, -1)) M = to_excitation(L_, -1, "identify: M", "M") + M;
+            lua_pop(L_, 1);
+            lua::push<model::Excitation>(L_, M);
+            return;
+        }
+        const int old = lua_gettop(L_);
+        lua_newtable(L_);
+        for (lua_pushnil(L_); lua_istable(L_, old) && lua_next(L_, old) != 0;) {
+            lua_pushvalue(L_, -2);
+            lua_insert(L_, -2);
+            lua_settable(L_, old + 1);
+        }
+        lua_settop(L_, old + 1);
+        const char* name = system_.joints[added_->joint].name.c_str();
+        lua_getfield(L_, -1, name);
+        model::Excitation M = added_->torque;
+        if (!lua_isnil(L_, -1)) M = to_excitation(L_, -1, "identify: M", "M") + M;
+        lua_pop(L_, 1);
+        lua::push<model::Excitation>(L_, M);
+        lua_setfield(L_, -2, name);
+        lua_remove(L_, old);
     }
 
     void push_options(const Eigen::VectorXd& p, std::size_t rows) {
         lua_createtable(L_, 0, 8);
-        for (const char* name : {"M", "belt", "base", "states"}) {
+        push_excitation();
+        lua_setfield(L_, -2, "M");
+        for (const char* name : {"belt", "base", "states"}) {
             options_.push(name);
             lua_setfield(L_, -2, name);
         }
@@ -832,6 +946,7 @@ private:
     void answer(const analysis::GeneralFit& found, FitAnswer& fit) {
         model::System system = with(found.value);
         restore();
+        fit.system = system;
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
             double value = found.value[place];  // by rounding, the breakaway torque may be the smaller one
@@ -842,10 +957,15 @@ private:
                 });
             }
             fit.values.emplace_back(free_[i].name, value);
-            fit.errors.emplace_back(free_[i].name, found.error[place]);
-            if (found.silent[i]) fit.silent.push_back(free_[i].name);
+            const bool is_silent = found.silent[i], is_known = !found.is_wrong() || found.misfit->leaves_errors();
+            fit.errors.emplace_back(free_[i].name, is_silent ? 0 : is_known ? found.error[place] : withheld);
+            if (is_silent) add_bounds(free_[i], value, found, place, fit);
         }
-        fit.system = std::move(system);
+        if (found.is_wrong()) {
+            fit.found.misfit = found.misfit->what;
+            fit.found.noise_without_misfit = std::min(found.misfit->noise, 1.0) * columns_.front().size;
+            fit.found.has_errors = found.misfit->leaves_errors();
+        }
         const MeasuredColumn& first = columns_.front();
         Eigen::Index next = 0;
         for (std::size_t row = 0; row < t_.size(); ++row) {
@@ -861,6 +981,18 @@ private:
         if (fit.found.noise > rounding * first.range) fit.found.widening = found.widening;
     }
 
+    /// Two errors to each side. A number that does not change the motion has no bounds but its least value.
+    void add_bounds(const Fitted& one, double value, const analysis::GeneralFit& found, Eigen::Index place,
+                    FitAnswer& fit) {
+        const double error = found.open[static_cast<std::size_t>(place)] ? INFINITY : 2 * found.error[place];
+        double low = value - error;
+        const std::string before = body_of_value(fit, one.name);
+        for (const auto& [name, sliding] : fit.values) {
+            if (one.name == before + "Re" && name == before + "Rd") low = std::max(low, sliding);
+        }
+        fit.silent.push_back({one.name, {std::max(low, one.least == -1e300 ? low : 0.0), value + error}});
+    }
+
     lua_State* L_;
     const lua::Options& options_;
     const IdentifyOptions& asked_;
@@ -872,7 +1004,8 @@ private:
     std::vector<Eigen::Index> known_until_;                           ///< number of measured values up to each row
     std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< given values, by body or link
     double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;
-    std::string failure_;  ///< error of the last run
+    std::optional<Added> added_;  ///< torques added to M
+    std::string failure_;         ///< error of the last run
 };
 
 // The answer.
@@ -881,7 +1014,9 @@ void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
     const auto add = [&fit](std::string_view name, double value, double error) {
         fit.values.emplace_back(name, value);
-        fit.errors.emplace_back(name, error > 0 ? std::max(error, 1e-15 * std::fabs(value)) : 0);  // at least some ulps
+        const double known =
+            fit.found.has_errors ? std::max(error, 1e-15 * std::fabs(value)) : withheld;  // at least some ulps
+        fit.errors.emplace_back(name, error > 0 ? known : 0);
     };
     const auto given = [&fit](Unknown which) {
         return fit.question.given[static_cast<std::size_t>(which)].has_value();
@@ -895,14 +1030,18 @@ void name_values(FitAnswer& fit) {
          ++i) {
         add(analysis::unknown_names[i], found.value[i], found.error[i]);
     }
-    if (absolute && found.is_noise) fit.silent = {"omega0", "zeta", "Rd_over_k"};
+    if (absolute && found.is_noise) {
+        for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
+    }
+    const double k = found.value[static_cast<std::size_t>(Unknown::k)];
     for (std::size_t i = 0; i < analysis::unknown_names.size(); ++i) {
         if (!found.silent[i]) continue;
         std::string name(analysis::unknown_names[i]);
-        if (!absolute && name == "k") name = "omega0";
-        if (!absolute && name == "C") name = "zeta";
-        if (!absolute && name == "Rd") name = "Rd_over_k";
-        fit.silent.push_back(name);
+        double low = found.low[i], high = found.high[i];
+        if (!absolute && name == "k") name = "omega0", low = std::sqrt(low), high = std::sqrt(high);
+        if (!absolute && name == "C") name = "zeta", low /= 2 * std::sqrt(k), high /= 2 * std::sqrt(k);
+        if (!absolute && name == "Rd") name = "Rd_over_k", low /= k, high /= k;
+        fit.silent.push_back({name, {low, high}});
     }
     const auto value = [&found](Unknown which) { return found.value[static_cast<std::size_t>(which)]; };
     auto system = model::Oscillator::make({.inertia = value(Unknown::I),
@@ -1031,82 +1170,127 @@ std::string unit_of_value(const model::Units& units, std::string_view name) {
                                           : "";
 }
 
-/// Returns "load." for "load.Rd"; empty for a single unnamed body.
-std::string body_of_value(const FitAnswer& fit, std::string_view name) {
-    for (std::size_t j = 0; fit.system && j < fit.system->joints.size(); ++j) {
-        std::string before = before_names(*fit.system, j);
-        if (name.starts_with(before)) return before;
-    }
-    return "";
+/// The bounds of a value that the record does not determine.
+std::string text_of_bounds(const std::vector<double>& bounds, const std::string& unit) {
+    const auto number = [&unit](double x) { return model::with_unit(fmt::format("{:.4g}", x), unit); };
+    const double low = bounds[0], high = bounds[1];
+    const bool is_bounded = std::isfinite(low) && (low != 0 || std::isfinite(high));
+    const std::string known = is_bounded && std::isfinite(high)
+                                  ? fmt::format("between {:.4g} and {}, ", low, number(high))
+                              : is_bounded          ? fmt::format(">= {}, ", number(low))
+                              : std::isfinite(high) ? fmt::format("<= {}, ", number(high))
+                                                    : "";
+    return known + "not determined by this record";
 }
 
-/// Describes a value that the record does not determine; its fitted value is one of many. Re is at least Rd.
-std::string text_of_silent(const FitAnswer& fit, const std::string& name, double value) {
-    const auto is_silent = [&fit](const std::string& other) {
-        return std::find(fit.silent.begin(), fit.silent.end(), other) != fit.silent.end();
-    };
-    const std::string before = body_of_value(fit, name), sliding = before + "Rd";
-    const auto Rd =
-        std::find_if(fit.values.begin(), fit.values.end(), [&](const auto& v) { return v.first == sliding; });
-    const bool bounded = name == before + "Re" && Rd != fit.values.end() && !is_silent(sliding);
-    const std::string number = model::with_unit(fmt::format("{:.6g}", bounded ? Rd->second : value),
-                                                unit_of_value(fit.units, name.substr(before.size())));
-    return bounded ? fmt::format(">= {}, not determined by this record", number)
-                   : fmt::format("not determined by this record; {} is possible", number);
+/// Possible causes of a residual that follows velocity, theta or time.
+constexpr std::array<const char*, 3> causes{
+    "is the law of friction another one, such as friction.stribeck, or a given C or Rd wrong?",
+    "is the spring nonlinear, or a given k wrong?", "does the zero of the instrument drift, or a parameter change?"};
+
+/// The sentences about how far the fit can be believed.
+std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
+    std::vector<std::string> notes;
+    const analysis::Identified& found = fit.found;
+    constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
+    const double Rd = found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
+    if (Re < Rd * (1 - 1e-9) - 3 * found.error[kinetic]) {  // a record without noise leaves rounding
+        notes.push_back(fmt::format(
+            "Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
+            "Rd; leave Re out, or give Rd as well",
+            Re));
+    }
+    if (found.is_noise) {
+        notes.emplace_back("it fits the record no better than it would fit noise, so there may be no motion in it");
+    } else if (found.misfit) {
+        const auto what = static_cast<std::size_t>(*found.misfit);
+        notes.push_back(fmt::format(
+            "the residual is {:.2g} times the noise and follows {}: {}", found.noise / found.noise_without_misfit,
+            what == 1 ? "theta" : fmt::format("the {}", analysis::follows_names[what]), causes[what]));
+    } else if (found.is_unexplained) {
+        notes.push_back(fmt::format(
+            "neighbouring samples scatter by {:.3g} only, so the residual is not noise: another kind of system "
+            "made this record, a given value is wrong, or the best fit was not found",
+            found.scatter));
+        if (const auto wild = found.wild) {
+            notes.back() += fmt::format("; sample {} at t = {:.6g} causes more than half of it: is it an outlier?",
+                                        *wild + 1, fit.question.t[*wild]);
+        }
+    }
+    if (!found.has_errors && !found.is_noise) {
+        notes.emplace_back("standard errors are left out: they hold only if the model is right");
+    } else if (found.misfit) {
+        notes.emplace_back("the errors include how far this moves the values");
+    }
+    constexpr double alike = 1.3;
+    if (found.widening > alike && found.has_errors && !found.is_noise) {
+        notes.push_back(fmt::format(
+            "the residual is correlated from sample to sample (noise with a memory or in M, another law of friction "
+            "or a wrong guess); the errors are {:.2g} times wider because of that",
+            found.widening));
+    }
+    if (found.M_is_noisy) notes.emplace_back("the errors ignore the noise of M: they may be far too small");
+    if (fit.question.given.back() == 0.0) notes.emplace_back("offset is held at 0");
+    if (const std::size_t cut = found.cut_low + found.cut_high; cut > 0) {
+        notes.push_back(
+            fmt::format("{} samples have the extreme values of the record, as if it were clipped there", cut));
+    }
+    return notes;
 }
 
 std::string fit_summary(const FitAnswer& fit) {
     std::string text = fmt::format("fit of {} samples, {:.3g} of noise:", fit.question.t.size(), fit.found.noise);
     std::size_t width = 10;
     for (const auto& value : fit.values) width = std::max(width, value.first.size());
-    std::vector<std::string> unlisted = fit.silent;
+    auto unlisted = fit.silent;
     for (std::size_t i = 0; i < fit.values.size(); ++i) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
-        if (std::erase(unlisted, name) > 0) {
-            text += fmt::format("\n  {:<{}} {}", name, width, text_of_silent(fit, name, value));
+        const std::string unit = unit_of_value(fit.units, name.substr(body_of_value(fit, name).size()));
+        const auto silent = std::find_if(unlisted.begin(), unlisted.end(),
+                                         [&known = name](const auto& one) { return one.first == known; });
+        if (silent != unlisted.end()) {
+            text += fmt::format("\n  {:<{}} {}", name, width, text_of_bounds(silent->second, unit));
+            unlisted.erase(silent);
             continue;
         }
         text += fmt::format("\n  {:<{}} {:<12.6g}", name, width, value);
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
-        text =
-            model::with_unit(std::move(text), unit_of_value(fit.units, name.substr(body_of_value(fit, name).size())));
+        text = model::with_unit(std::move(text), unit);
     }
-    if (!unlisted.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(unlisted, ", "));
-    constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
-    const double Rd = fit.found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // without noise only rounding remains
-        text += fmt::format(
-            "\n  Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
-            "Rd; leave Re out, or give Rd as well",
-            Re);
-    }
-    if (fit.found.is_noise) {
-        text += "\n  it fits the record no better than it would fit noise, so there may be no motion in it";
-    } else if (fit.found.is_unexplained) {
-        text += fmt::format(
-            "\n  neighbouring samples scatter by {:.3g} only, so the residual is not noise: another kind of system "
-            "made this record, a given value is wrong, or the best fit was not found",
-            fit.found.scatter);
-        if (const auto wild = fit.found.wild) {
-            text += fmt::format("; sample {} at t = {:.6g} causes more than half of it: is it an outlier?", *wild + 1,
-                                fit.question.t[*wild]);
+    const double k = fit.found.value[static_cast<std::size_t>(Unknown::k)];
+    for (const auto& [name, bounds] : unlisted) {
+        if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1
+            const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
+            text += fmt::format("\n  {:<{}} {}", "Re_over_k", width,
+                                text_of_bounds(ratios, unit_of_value(fit.units, "Rd_over_k")));
+        } else {
+            text += fmt::format("\n  the record says nothing about {}", name);
         }
     }
-    constexpr double alike = 1.3;
-    if (fit.found.widening > alike && !fit.found.is_noise) {
-        text += fmt::format(
-            "\n  the residual is correlated from sample to sample (noise with a memory or in M, another law of friction "
-            "or a wrong guess); the errors are {:.2g} times wider because of that",
-            fit.found.widening);
-    }
-    if (fit.found.M_is_noisy) text += "\n  the errors ignore the noise of M: they may be far too small";
-    if (fit.question.given.back() == 0.0) text += "\n  offset is held at 0";
-    if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
-        text += fmt::format("\n  {} samples have the extreme values of the record, as if it were clipped there", cut);
-    }
+    for (const std::string& note : notes_of_fit(fit)) text += "\n  " + note;
     return text;
+}
+
+std::vector<std::string> silent_names(const FitAnswer& fit) {
+    std::vector<std::string> names;
+    for (const auto& one : fit.silent) names.push_back(one.first);
+    return names;
+}
+
+/// Those that are not withheld.
+std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
+    auto errors = fit.errors;
+    std::erase_if(errors, [](const auto& error) { return std::isnan(error.second); });
+    return errors;
+}
+
+/// What the residual follows; nothing if it is noise as far as one can see.
+std::optional<std::string> misfit_of_fit(const FitAnswer& fit) {
+    if (fit.found.is_noise) return {};
+    if (fit.found.misfit) return std::string(analysis::follows_names[static_cast<std::size_t>(*fit.found.misfit)]);
+    return fit.found.is_unexplained ? std::optional<std::string>("something else") : std::nullopt;
 }
 
 #define DINAL_FIT                                               \
@@ -1119,16 +1303,37 @@ constexpr lua::Member fit_members[] = {
     {lua::a_value<FitHandle, names_of_fit>,
      {"fit.names -> table", "The names of the values that it has.",
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
-    {lua::a_value<FitHandle, &FitAnswer::errors>,
+    {lua::a_value<FitHandle, known_errors>,
      {"fit.std_error -> table",
-      "The standard errors by name: the truth lies within two of them in 19 of 20 records. Given values have 0.",
+      "The standard errors by name: the truth lies within two of them in 19 of 20 records. Given values have 0. They are "
+      "wider if neighbouring residuals are alike or a wrong model moves the values, and nil if the model is so wrong that "
+      "they would mean nothing (fit.misfit).",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
-    {lua::a_value<FitHandle, &FitAnswer::silent>,
+    {lua::a_value<FitHandle, silent_names>,
      {"fit.silent -> table",
       "The names of values that the record does not determine: Re of a free decay or of a motion without stops; "
       "Rd_over_k, theta0 and offset of a decay in one direction, which determines only their sums. The values "
-      "given are possible ones.",
+      "given are possible ones; fit.bounds has their bounds.",
       DINAL_FIT "print(table.concat(fit.silent, \" \"))  --> Re"}},
+    {lua::a_value<FitHandle, &FitAnswer::silent>,
+     {"fit.bounds -> table",
+      "Of each name in fit.silent the least and the greatest value that fit about as well, without an end -math.huge or "
+      "math.huge. Re of a free decay must hold the mass where it rests and let it pass the turn before.",
+      DINAL_FIT "low, high = table.unpack(fit.bounds.Re)\nprint(low < 0.9, high > 0.8)  --> true\ttrue"}},
+    {lua::a_value<FitHandle, misfit_of_fit>,
+     {"fit.misfit -> string or nil",
+      "\"velocity\", \"theta\" or \"time\": the residual is not noise but follows this, so the model is wrong. Another law "
+      "of friction follows the velocity, a nonlinear spring theta, a drifting zero the time. \"something else\" if the "
+      "residual is far above the noise and follows none of them. Otherwise nil.",
+      "bent = system{ I = 1, k = 4, C = 0.1, Rd = 0.1, spring = spring.polynomial{ [3] = 2 } }\n"
+      "run = bent:simulate{ theta0 = 1, t_end = 20, dt = 0.05 }\n"
+      "noise = vector.normal{ n = #run, seed = 1, std = 0.003 }\n"
+      "fit = identify{ data = { t = run.t, theta = run.theta + noise } }\n"
+      "print(fit.misfit, fit.std_error.zeta)  --> theta\tnil"}},
+    {lua::a_value<FitHandle, notes_of_fit>,
+     {"fit.notes -> table",
+      "What tostring says about how far the fit can be believed: a list of sentences, empty if there is nothing to say.",
+      DINAL_FIT "print(#fit.notes)  --> 0"}},
     {lua::a_value<FitHandle, fit_system>,
      {"fit.system -> system", "The fitted system; for a free decay without I and k, with I = 1.",
       DINAL_FIT "print(fit.system.I, math.abs(fit.system.k - 40) < 0.2)  --> 1.0\ttrue"}},

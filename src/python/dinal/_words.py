@@ -214,7 +214,7 @@ RESULTS = {"number": "float", "integer": "int", "string": "str", "boolean": "boo
            "steady": "SteadyMotion", "law": "Friction", "": "None", "vector or table": "Vector", "string or false": "str | bool",
            "theta, velocity, z": "tuple[float, ...]", "vector, ...": "tuple[Vector, ...]", "run or data": "Any",
            "number or vector": "Any", "number or nil, or vector": "Any", "run, data or nil": "Any", "t, theta": "tuple[Vector, Vector]"}
-FIELDS = {"names": "list[str]", "silent": "list[str]", "half_cycles": "list[Record]", "multipliers": "list[Record]", "others": "list[SteadyMotion]",
+FIELDS = {"names": "list[str]", "silent": "list[str]", "notes": "list[str]", "half_cycles": "list[Record]", "multipliers": "list[Record]", "others": "list[SteadyMotion]",
           "plot": "Picture | None", "phase_plot": "Picture | None"}
 
 
