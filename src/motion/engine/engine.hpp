@@ -29,16 +29,11 @@ public:
 
 private:
     // The loop (run.cpp).
-    void set_pace();
     void begin();
     bool advance();
     bool solve(const Frame& frame);
     bool stands_for_good(const Frame& present);
     bool rest(const Frame& present);
-    void choose(const Frame& frame);
-    double longest_under_friction(const Frame& frame);
-    double until_wall(const Frame& frame);
-    void again(Collocation::Attempt attempt);
     [[nodiscard]] bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
     Ending watch(const Frame& frame);
@@ -50,6 +45,13 @@ private:
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);
     [[nodiscard]] double kinetic_energy() const;
+
+    // The length of the next stretch (choose.cpp).
+    void set_pace();
+    void choose(const Frame& frame);
+    double longest_under_friction(const Frame& frame);
+    double until_wall(const Frame& frame);
+    void again(Collocation::Attempt attempt);
 
     // The end (finish.cpp).
     void finish();
