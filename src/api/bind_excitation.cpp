@@ -57,17 +57,6 @@ namespace {
 
 constexpr double no_end = 1e300;
 
-/// None when there are none, or when one is not finite.
-std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
-    model::Excitation sum;
-    for (const model::Term& term : terms) {
-        const auto one = model::Excitation::make(term);
-        if (!one) return {};
-        sum = sum + *one;
-    }
-    return terms.empty() ? std::nullopt : std::optional(sum);
-}
-
 /// Whether the terms equal the formula between these times, to its own rounding and that of the times: what
 /// stands for a formula is compared with it before the run begins.
 bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
@@ -120,7 +109,8 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         const double width = std::min(next, first + period) - t;
         middles.push_back(t + width / 2);
         const auto terms = function.formula()->terms(t, middles.back());
-        const auto* level = terms.size() == 1 ? std::get_if<model::Constant>(&terms.front()) : nullptr;
+        const bool one = terms && terms->components().size() == 1;
+        const auto* level = one ? std::get_if<model::Constant>(&terms->components().front().term) : nullptr;
         if (level == nullptr || made.size() > most_pieces) return {};
         if (t == first) base = offset = level->amplitude;
         const double half = (level->amplitude - base) / 2;
@@ -129,15 +119,20 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         offset += half;
     }
     made.emplace_back(model::Constant{offset});
-    auto sum = sum_of(made);
-    return sum && agree(*function.formula(), *sum, middles, period, to) ? sum : std::nullopt;
+    model::Excitation sum;
+    for (const model::Term& term : made) {
+        const auto wave = model::Excitation::make(term);
+        if (!wave) return {};
+        sum = sum + *wave;
+    }
+    return agree(*function.formula(), sum, middles, period, to) ? std::optional(sum) : std::nullopt;
 }
 
 /// The function as native terms from one time to another, piece by piece.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
-    if (!(function.next_break(from) < to)) {
-        auto terms = sum_of(function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from));
+    if (!(function.next_condition(from) < to)) {
+        auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
         return terms && agree(*function.formula(), *terms, from, to) ? terms : std::nullopt;
     }
     if (const double period = function.formula()->period(); period > 0) {
@@ -147,9 +142,9 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     model::Excitation sum;
     double t = from;
     for (int n = 0; t < to; ++n) {
-        const double next = std::min(function.next_break(t), to);
+        const double next = std::min(function.next_condition(t), to);
         if (function.formula() == nullptr || n == most_pieces) return {};
-        const auto piece = sum_of(function.formula()->terms(t, t + (next - t) / 2));
+        const auto piece = function.formula()->terms(t, t + (next - t) / 2);
         if (!piece || !agree(*function.formula(), *piece, t, next)) return {};
         double until = model::never;
         if (next < to) until = next;
@@ -169,13 +164,8 @@ lua::LuaFunction* read_function(const model::Component& component) {
 
 }  // namespace
 
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
-                                             double from, double to) {
-    if (!system.is_plain()) return {};
-    const model::Excitation& M = drive.M();
-    model::Drive others = drive;
-    others.loads = {model::Excitation()};
-    if (!M.has_script() || motion::has_functions(system, others)) return {};
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Excitation& M, double from, double to) {
+    if (!M.has_script()) return {};
     lua::CallState call(L);
     if (to < no_end) call.set_span(to - from);
     model::Excitation sum;
@@ -193,6 +183,15 @@ std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& 
         if (one) sum = sum + one->scaled(component.gain).windowed(component.from, component.to);
     }
     return sum;
+}
+
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
+                                             double from, double to) {
+    if (!system.is_plain()) return {};
+    model::Drive others = drive;
+    others.loads = {model::Excitation()};
+    if (motion::has_functions(system, others)) return {};
+    return terms_alone(L, drive.M(), from, to);
 }
 
 model::Excitation with_periods(lua_State* L, const model::Excitation& M) {
@@ -241,6 +240,10 @@ int value(lua_State* L) {
     if (lua_istable(L, 2) || lua::test<lua::Vector>(L, 2) != nullptr) return values(L);
     const double t = lua::finite_argument(L, 2, "e:value(t): t");
     const model::State state = state_arguments(L, 3);
+    if (!excitation.has_script()) {  // nothing else runs in Lua, so what is read stays so
+        lua_pushnumber(L, excitation.value(t));
+        return 1;
+    }
     refuse_memory(L, excitation, "e:value(t)");
     lua::CallState call(L);
     const double M = excitation.value(t, state);

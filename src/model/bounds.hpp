@@ -25,6 +25,8 @@ inline constexpr Interval anything{-never, never};
 
 /// The results of an operation, whole numbers as floats. A condition has none.
 Interval image(Op op, const Interval& a, const Interval& b);
+/// The values of an excitation of native terms at these times.
+Interval image(const Excitation& excitation, const Interval& times);
 
 /// decision_of() this condition where it is the same for all; none where it is not, or where that is not known.
 std::optional<double> decision_over(Op op, const Interval& a, const Interval& b);
@@ -44,6 +46,8 @@ inline double outward(double r, double c) {
 
 /// The results of an operation that gives c for the centres; not finite where it may not be analytic.
 Disc image(Op op, const Disc& a, const Disc& b, double c);
+/// The radius of the values of an excitation at these times, continued from the piece at their centre.
+double radius(const Excitation& excitation, const Disc& times);
 
 /// Runs a program on discs. Its conditions are decided by intervals of the real numbers, or by a piece that the
 /// function is held to. What hardly changes on the stretch while its disc is huge, as the foot of a narrow pulse, is
