@@ -49,6 +49,25 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
 
+/// An answer at a later time than all before. Searches about one time, however long, leave those of other times alone.
+void Witness::keep_milestone(const Answer& answer, std::span<const double> states) {
+    latest_ = answer.t;
+    if (ahead_++ % way_ != 0) return;
+    std::size_t place = first_milestone + static_cast<std::size_t>((ahead_ - 1) / way_);
+    if (place == first_milestone + milestones) {  // every second one stays
+        const std::size_t count = states_.size() / places;
+        for (std::size_t i = 1; i < milestones / 2; ++i) {
+            const std::size_t to = first_milestone + i, from = first_milestone + 2 * i;
+            answers_[to] = answers_[from];
+            std::copy_n(states_.begin() + static_cast<std::ptrdiff_t>(from * count), count,
+                        states_.begin() + static_cast<std::ptrdiff_t>(to * count));
+        }
+        way_ *= 2;
+        place = first_milestone + milestones / 2;
+    }
+    keep(place, answer, states);
+}
+
 /// Asks for an answer again. One that fails now fails as it would have failed anywhere else: that is another story.
 bool Witness::stands_by(std::size_t place) {
     const Answer& answer = answers_[place];
@@ -66,9 +85,9 @@ bool Witness::stands_by(std::size_t place) {
 /// The answers take turns, old and new ones.
 bool Witness::ask_again() {
     next_ = asked_ + questions_between;
-    for (std::size_t i = 0; i <= 2 * ages; ++i) {
-        constexpr std::size_t stride = 7;  // has no factor in common with their number, 37
-        turn_ = (turn_ + stride) % (2 * ages + 1);
+    for (std::size_t i = 0; i < asked_in_turn; ++i) {
+        constexpr std::size_t stride = 7;  // has no factor in common with their number, 45
+        turn_ = (turn_ + stride) % asked_in_turn;
         if ((known_ >> turn_ & 1U) != 0) return stands_by(turn_);
     }
     return true;
@@ -88,7 +107,8 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     }
     keep(last_, answer, states);
     keep_for_later(answer, states);
-    if (!jumped) return asked_ < next_ || ask_again();
+    if (answer.t > latest_) keep_milestone(answer, states);
+    if (!jumped) return true;
     ++jumps_asked_;
     // What a relay in a closure said before it switched, it does not say again; nor chance what it said once.
     return stands_by(before_jump_) && stands_by(last_);
@@ -96,7 +116,8 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
-    if (testimony_->found) return no_number;
+    // Old questions come first: what the function leaves behind for others is that of the latest one.
+    if (testimony_->found || (asked_ >= next_ && !ask_again())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
     return heard({t, state, value}, states) ? value : no_number;
@@ -108,15 +129,19 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
         const std::size_t good = function_->fill(times, out);
         if (good < times.size()) return good;
         std::size_t i = 0;
-        while (i < good && heard({times[i], {}, out[i]}, {})) ++i;
+        while (i < good && heard({times[i], {}, out[i]}, {}) && (asked_ < next_ || ask_again())) ++i;
         if (i == good) return good;
     }
     out[0] = no_number;
     return 0;
 }
 
+/// All other functions have run, and may have changed what this one depends on.
 void Witness::conclude() {
-    if (asked_ > 1 && !testimony_->found) stands_by(first_place);
+    if (asked_ < 2 || testimony_->found || !stands_by(first_place)) return;
+    for (std::size_t place = first_milestone; place < asked_in_turn; ++place) {
+        if ((known_ >> place & 1U) != 0 && !stands_by(place)) return;
+    }
 }
 
 namespace {

@@ -64,13 +64,16 @@ private:
         model::State state;
         double value = 0;
     };
-    static constexpr std::size_t ages = 18;  ///< answers are kept from 4, 8, 16 ... questions ago
-    // The places of answers: two of each age; the very first one; the last one, and the one before a jump, which take
-    // turns.
-    static constexpr std::size_t first_place = 2 * ages, places = first_place + 3;
+    static constexpr std::size_t ages = 18;       ///< answers are kept from 4, 8, 16 ... questions ago
+    static constexpr std::size_t milestones = 8;  ///< and at times all over the run
+    // The places of answers: two of each age; the very first one; milestones; the last one, and the one before a jump,
+    // which take turns.
+    static constexpr std::size_t first_place = 2 * ages, first_milestone = first_place + 1,
+                                 asked_in_turn = first_milestone + milestones, places = asked_in_turn + 2;
 
     void keep(std::size_t place, const Answer& answer, std::span<const double> states);
     void keep_for_later(const Answer& answer, std::span<const double> states);
+    void keep_milestone(const Answer& answer, std::span<const double> states);
     bool stands_by(std::size_t place);
     bool ask_again();
     bool heard(const Answer& answer, std::span<const double> states);
@@ -82,9 +85,11 @@ private:
 
     std::uint64_t asked_ = 0, next_ = 0;  ///< questions, and when one of them comes again
     std::uint64_t jumps_asked_ = 0;       ///< jumps because of which two were put again
-    std::size_t turn_ = 0, last_ = first_place + 1, before_jump_ = first_place + 2;
-    double usual_ = 0;         ///< change from one question to the next
-    std::uint64_t known_ = 0;  ///< a bit for each place
+    std::size_t turn_ = 0, last_ = asked_in_turn, before_jump_ = asked_in_turn + 1;
+    double latest_ = -model::never;      ///< time of a question
+    std::uint64_t ahead_ = 0, way_ = 1;  ///< questions later than all before; how many lie between two milestones
+    double usual_ = 0;                   ///< change from one question to the next
+    std::uint64_t known_ = 0;            ///< a bit for each place
     std::array<Answer, places> answers_;
     std::vector<double> states_;  ///< of each place
 };

@@ -285,6 +285,9 @@ public:
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
     }
+    /// Calls every function that is not read: variables that several functions share are of this moment then, as what
+    /// is called once, in order, expects.
+    void call_unread(const Moment& at, const Mode& mode) const;
     /// A user's function, and the piece that it is held to: for those who look at what is read.
     struct Asked {
         model::UserFunction* function = nullptr;

@@ -115,6 +115,7 @@ private:
     void forget_chatter();
     std::string state_driven_back();
     bool end_at(double x);
+    bool arrive();
     bool ask_after_break();
     void foresee_break();
     void go_to(double x);
@@ -1125,9 +1126,7 @@ void Engine::begin() {
     for (const model::OwnState& state : problem_.drive.states) names.push_back(state.name);
     if (problem_.before == nullptr) {
         mechanics_.for_each_signal([&](Signal& s) { s.begin(here(), names); });
-        bool good = true;
-        mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
-        if (!good) fail(Outcome::excitation_not_finite);
+        if (!arrive()) fail(Outcome::excitation_not_finite);
         echo(now_.hi, 1);
         open_and_close();
         press_stops();
@@ -1574,12 +1573,20 @@ bool Engine::end_at(double x) {
     if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
     find_belt_slopes(after_break_ ? std::nullopt : std::optional(x));
     project(after_break_ ? Side::before : Side::at);
-    bool good = true;
-    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
-    if (!good) return fail(Outcome::excitation_not_finite);
+    if (!arrive()) return fail(Outcome::excitation_not_finite);
     const bool changed = open_and_close();
     if (after_break_) return ask_after_break();
     return !changed || (decide(true) && (!too_often() || fail(Outcome::chattering)));
+}
+
+/// The controllers that sample do so now if it is time. False if one failed.
+bool Engine::arrive() {
+    bool samples = false, good = true;
+    mechanics_.for_each_signal([&](const Signal& s) { samples = samples || s.has_sampled(); });
+    if (!samples) return true;
+    mechanics_.call_unread(here(), mode_);
+    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
+    return good;
 }
 
 /// Loads, limits and belts may have jumped: what holds is asked again.
@@ -2605,6 +2612,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         const bool named = problem_.system.named;
         const std::span<double> all(y_);
         const std::span<double> given = all.first(asking_.told);
+        mechanics_.call_unread(here(), mode_);
         if (!wanted.act->act(now_.hi, state, named ? given : given.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
         }

@@ -102,6 +102,18 @@ double Signal::next_break(double t) const {
     return first;
 }
 
+void Signal::call_unread(const Moment& at) const {
+    const auto is_unread = [](const auto& owner) {
+        return owner != nullptr && owner->function != nullptr && owner->function->read() == nullptr;
+    };
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (is_unread(parts_[i].function) || is_unread(parts_[i].delayed)) static_cast<void>(value_of(i, at));
+    }
+    for (std::size_t r = 0; r < relays_.size(); ++r) {
+        if (is_unread(parts_[relays_[r]].relay)) static_cast<void>(until_switch(r, at));
+    }
+}
+
 void Signal::begin(const Moment& at, const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         if (const auto* sampled = parts_[i].sampled) {

@@ -219,7 +219,13 @@ public:
         }
     }
 
+    /// Calls its functions that are not read, whatever they give.
+    void call_unread(const Moment& at) const;
+
     // Controllers.
+    [[nodiscard]] bool has_sampled() const {
+        return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.sampled != nullptr; });
+    }
     /// At the start of a run.
     void begin(const Moment& at, const std::vector<std::string>& names);
     /// At the time of `at`: outputs that have waited until now, and the instants of this time. False when one failed.
