@@ -295,6 +295,36 @@ std::optional<std::string> obstacle(lua_State* L, const model::Excitation& excit
     return {};
 }
 
+/// What a run knows of this function between its samples.
+std::string proof_of(model::UserFunction& function) {
+    if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return "called at its instants only";
+    if (dynamic_cast<const model::DelayedController*>(&function) != nullptr) return "sampled: it depends on the past";
+    const auto* relay = dynamic_cast<const model::RelayController*>(&function);
+    if (relay != nullptr && relay->function == nullptr) return "native terms";
+    auto* own = dynamic_cast<lua::LuaFunction*>(relay != nullptr ? relay->function.get() : &function);
+    if (own == nullptr) return "sampled";
+    if (const std::string why = own->obstacle(); !why.empty()) return "sampled: " + why;
+    if (relay != nullptr && own->formula()->has_conditions_of_motion()) {
+        return "sampled: a relay's function has conditions on the motion";
+    }
+    const auto& steps = own->formula()->steps();
+    const auto conditions = std::count_if(steps.begin(), steps.end(), [](const model::Formula::Step& step) {
+        return model::is_comparison(step.op) || model::is_fold(step.op);
+    });
+    if (conditions == 0) return "read: bounded on every stretch";
+    return fmt::format("read: {} condition{}, bounded on every stretch", conditions, conditions == 1 ? "" : "s");
+}
+
+std::string proof(lua_State* L, const model::Excitation& excitation) {
+    const lua::CallState call(L);
+    std::string all;
+    excitation.each_function([&](model::UserFunction& function) {
+        const std::string one = proof_of(function);
+        if (all.find(one) == std::string::npos) all += (all.empty() ? "" : "; ") + one;
+    });
+    return all.empty() ? "native terms" : all;
+}
+
 text::Expected<model::Excitation> delay(const model::Excitation& excitation, double d) {
     if (!model::has_memory(excitation)) return excitation.delayed(d);
     return text::Error{
@@ -388,6 +418,13 @@ constexpr lua::Member excitation_members[] = {
       "Why a function in it cannot be read as a formula: the line and the reason. nil if every function is read; "
       "it is then evaluated without Lua, and its conditions on t are breaks.",
       "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):obstacle())  --> nil"}},
+    {lua::a_typed_method<proof>,
+     {"e:proof() -> string",
+      "What a run with integrator.spectral{} knows of it between its samples: \"native terms\"; \"read: 2 conditions, "
+      "bounded on every stretch\" for a function that is read; \"sampled: \" and the reason for any other. "
+      "What is sampled, and a stretch without a bound, is reported by run.gap.",
+      "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):proof())\n"
+      "--> read: 2 conditions, bounded on every stretch"}},
     {lua::a_typed_method<delay>,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
     {lua::a_method<window>,

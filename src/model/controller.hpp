@@ -44,6 +44,8 @@ struct RelayController final : Controller {
     Of of = Of::theta;
     std::string state;  ///< the name, of a state
     bool starts_on = true;
+
+    double next_break(double t) override { return function == nullptr ? never : function->next_break(t); }
 };
 
 /// The same relay, with this function in the place of its own.
@@ -58,6 +60,8 @@ inline std::shared_ptr<RelayController> copied(const RelayController& relay, std
 /// A function of what was measured `by` ago; before the start that is the initial state.
 struct DelayedController final : Controller {
     double by = 0;
+
+    double next_break(double t) override { return function->next_break(t); }
 };
 
 /// The controller that this component is, nullptr when it is none.

@@ -315,6 +315,23 @@ test("an excitation at a time that depends on the motion, with more arguments or
         "it evaluates an excitation at a time that depends on the motion")
 end)
 
+test("proof tells what is known between the samples, and why not", function()
+    local function proof(M) return (M + excitation.step {}):proof() end
+    equal(excitation.step {}:proof(), "native terms")
+    equal(proof(math.pi * excitation.scripted(function(t) return math.sin(t) * t end)), "read: bounded on every stretch")
+    equal(proof(function(t) return t % 2 < 1 and 1 or 0 end), "read: 2 conditions, bounded on every stretch")
+    equal(proof(function(t) return natives[1](t) > 0 and 1 or 0 end), "read: 1 condition, bounded on every stretch")
+    assert(proof(function(t) return #tostring(t) end):find "^sampled: .*reading_test.lua:%d+: it ")
+    local function held(t, theta, v) return -v end
+    equal(excitation.sampled(held, { every = 1 }):proof(), "called at its instants only")
+    equal(excitation.delayed(held, { by = 1 }):proof(), "sampled: it depends on the past")
+    local function relay(of) return excitation.relay { on = 0, off = 1, amplitude = 1, of = of }:proof() end
+    equal(relay("theta"), "native terms")
+    equal(relay(held), "read: bounded on every stretch")
+    equal(relay(function(t, theta, v) return theta > 0 and 1 or 0 end), "sampled: a relay's function has conditions on the motion")
+    equal(proof(excitation.delayed(held, { by = 1 }) + function(t) return t end), "sampled: it depends on the past; read: bounded on every stretch")
+end)
+
 test("an error keeps its line", function()
     raises_here(function()
         local f = function(t)

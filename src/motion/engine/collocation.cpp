@@ -1142,6 +1142,13 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     for (std::size_t e = 0; e < mechanics_.events(); ++e) {
         if (begin(mechanics_.asked_when(e), time(0), nullptr)) look(0, smallest, of_last_iteration);
     }
+    for (const Signal& load : mechanics_.loads()) {
+        load.for_each_relay_function([&](model::UserFunction& function) {
+            const model::Formula* formula = function.read();
+            if (formula == nullptr || formula->has_conditions_of_motion()) return;
+            if (begin({&function}, time(0), nullptr)) look(0, smallest, of_last_iteration);
+        });
+    }
     for (std::size_t j = 0; j < mechanics_.joints() && good; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const std::size_t body = joint.first();

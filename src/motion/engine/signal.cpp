@@ -15,7 +15,8 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         if (!controller) part.function = std::get_if<model::Scripted>(&c.term);
         part.of_motion = part.function != nullptr && part.function->feedback;
         asks_the_motion_ |= part.of_motion;
-        asks_functions_ |= part.function != nullptr || part.delayed != nullptr;
+        const bool switches_by_function = part.relay != nullptr && part.relay->function != nullptr;
+        asks_functions_ |= part.function != nullptr || part.delayed != nullptr || switches_by_function;
         asks_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
         if (part.of_motion) {
             const Piecewise made(asking_, part.function->function.get(), part.function->delay);

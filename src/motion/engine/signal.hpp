@@ -231,6 +231,13 @@ public:
     /// At the time of `at`: outputs that have waited until now, and the instants of this time. False when one failed.
     bool arrive(const Moment& at);
     [[nodiscard]] std::size_t relays() const { return relays_.size(); }
+    /// The functions of relays, if they have one.
+    template <class F>
+    void for_each_relay_function(F f) const {
+        for (const std::size_t i : relays_) {
+            if (parts_[i].relay->function != nullptr) f(*parts_[i].relay->function);
+        }
+    }
     /// Positive until the relay is to switch.
     [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
