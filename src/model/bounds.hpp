@@ -36,9 +36,11 @@ struct Disc {
     double c = 0, r = 0;
 };
 
+inline constexpr double roundings_of_a_step = 16;
+
 /// A few roundings more than r, and those of the centre c.
 inline double outward(double r, double c) {
-    constexpr double few = 16 * std::numeric_limits<double>::epsilon();
+    constexpr double few = roundings_of_a_step * std::numeric_limits<double>::epsilon();
     const double more = r * (1 + few) + few * std::fabs(c) + std::numeric_limits<double>::min();
     if (std::isnan(more)) return never;
     return more;

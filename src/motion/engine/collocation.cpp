@@ -1179,9 +1179,58 @@ bool Collocation::hides_nothing(Segment& s, const Mode& mode) {
     return good;
 }
 
+/// The rounding of functions that are read, at the beginning of the stretch: of the torques on each body and of the
+/// rate of each state.
+std::vector<double> Collocation::roundings(const Segment& s, const Mode& mode) {
+    std::vector<double> of(n_ + m_);
+    const bool named = mechanics_.system().named;
+    const std::size_t told = 2 * n_ + mechanics_.states_of_user(), from = named ? 0 : 2;
+    const auto constant = [](double x) { return Series{x}; };
+    const auto add_of = [&](std::size_t k, double gain, model::Formula& formula, const model::terms::Piece* piece,
+                            double first, const double* speed) {
+        unseen_.begin(formula, piece);
+        unseen_.give(0, constant(first));
+        if (formula.takes_motion() && !named) {
+            unseen_.give(1, constant(s.y[0][0])), unseen_.give(2, constant(s.y[n_][0]));
+        }
+        std::size_t place = formula.first_state();
+        const std::size_t behind = place + formula.state_count();
+        if (speed != nullptr && place < behind) unseen_.give(place++, constant(*speed));
+        for (std::size_t i = from; i < told && place < behind; ++i) unseen_.give(place++, constant(s.y[i][0]));
+        const double rounded = std::fabs(gain) * unseen_.rounded();
+        if (std::isfinite(rounded)) of[k] += rounded;
+    };
+    const auto add_asked = [&](std::size_t k, const Mechanics::Asked& asked, double first, const double* speed) {
+        model::Formula* formula = asked.function != nullptr ? asked.function->read() : nullptr;
+        if (formula != nullptr) add_of(k, 1, *formula, asked.piece, first, speed);
+    };
+    const double t = s.start.hi;
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        add_asked(n_ + k, mechanics_.asked_rate(k), t, nullptr);
+    }
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        double angle = 0, slip = -s.belts[j][0];
+        for (const auto& [body, by] : joint.of) angle += by * s.y[body][0], slip += by * s.y[n_ + body][0];
+        slip *= model::sign_of(mode.friction[j].way);
+        const bool alone = joint.friction.function == nullptr;
+        for (const auto& [body, by] : joint.of) {
+            mechanics_.loads()[j].for_each_read(
+                t, [&, k = body, per = by](model::Formula& formula, const auto* piece, double delay, double gain) {
+                    add_of(k, per * gain, formula, piece, t - delay, nullptr);
+                });
+            add_asked(body, mechanics_.asked_spring(j), angle, nullptr);
+            if (mode.friction[j].way != model::Motion::stuck)
+                add_asked(body, mechanics_.asked_law(j), alone ? slip : t, alone ? nullptr : &slip);
+        }
+    }
+    return of;
+}
+
 bool Collocation::found_noise(const Segment& s, const Mode& mode) {
-    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
+    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
     bool found = false;
+    std::vector<double> known;
     std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m_);
     for (std::size_t i = 0; i < n_ + m_; ++i) {
         if (may_be_rough_[i] == 0) continue;
@@ -1199,7 +1248,13 @@ bool Collocation::found_noise(const Segment& s, const Mode& mode) {
                             : i < n_ ? most_noise_of_motion * ever
                                      : most_noise_of_rate * tolerance_ * ever;
         double& noise = floor_.noise[i];
-        if (!(tail > tolerance_ * size) || !(tail <= most)) continue;
+        if (!(tail > tolerance_ * size)) continue;
+        if (!(tail <= most)) {  // of a motion that is nothing beside what its functions calculate with
+            if (known.empty()) known = roundings(s, mode);
+            if (tail <= few_roundings * known[i] && noise < 2 * tail)
+                noise = std::max(2 * tail, known[i]), found = true;
+            continue;
+        }
         if (noise > 0 && tail <= varies * noise) {
             found = found || 2 * tail > noise;
             noise = std::max(noise, 2 * tail);

@@ -148,6 +148,7 @@ private:
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     bool hides_nothing(Segment& segment, const Mode& mode);
+    std::vector<double> roundings(const Segment& segment, const Mode& mode);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     void find_sizes(const Segment& segment);
     /// Returns how great the torques on the angle of a joint are, from those on its bodies.

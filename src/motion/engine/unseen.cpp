@@ -72,6 +72,13 @@ bool Unseen::is_told(double allowed, double part) {
            told.apart <= allowed && falls(cheb::degree) * walk_.loosest() <= close;
 }
 
+/// Discs grow by the roundings of each step.
+double Unseen::rounded() {
+    walk_.begin(*formula_, piece_, false);
+    for (const Input& input : inputs_) walk_.set(input.place, {cheb::value(input.series, 0), 0}, Interval{});
+    return walk_.run().disc.r / model::bounds::roundings_of_a_step;
+}
+
 double Unseen::value(double x) {
     for (const Input& input : inputs_) walk_.set(input.place, cheb::value(input.series, x));
     return walk_.run(condition_).disc.c;

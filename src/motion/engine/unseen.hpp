@@ -38,6 +38,9 @@ public:
         return search(allowed(series_), budget);
     }
     [[nodiscard]] const model::terms::Piece* piece() const { return piece_; }
+    /// What the function may be off in the middle of the stretch by the rounding of its steps; not finite if that is
+    /// not known.
+    [[nodiscard]] double rounded();
 
 private:
     struct Input {
