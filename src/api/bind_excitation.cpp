@@ -57,19 +57,8 @@ namespace {
 
 constexpr double no_end = 1e300;
 
-/// The sum of these terms; none if there are none or one is invalid.
-std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
-    model::Excitation sum;
-    for (const model::Term& term : terms) {
-        const auto one = model::Excitation::make(term);
-        if (!one) return {};
-        sum = sum + *one;
-    }
-    return terms.empty() ? std::nullopt : std::optional(sum);
-}
-
-/// Returns whether the terms equal the formula between these times, to rounding of the values and times. Replacements
-/// of a formula are compared with it before a run.
+/// Returns whether the terms equal the formula between these times, to its own rounding and that of the times.
+/// Replacements of a formula are compared with it before a run.
 bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon(),
                      allowed = 1e-12;  // relative, for the values
@@ -120,7 +109,8 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         const double width = std::min(next, first + period) - t;
         middles.push_back(t + width / 2);
         const auto terms = function.formula()->terms(t, middles.back());
-        const auto* level = terms.size() == 1 ? std::get_if<model::Constant>(&terms.front()) : nullptr;
+        const bool one = terms && terms->components().size() == 1;
+        const auto* level = one ? std::get_if<model::Constant>(&terms->components().front().term) : nullptr;
         if (level == nullptr || made.size() > most_pieces) return {};
         if (t == first) base = offset = level->amplitude;
         const double half = (level->amplitude - base) / 2;
@@ -129,15 +119,20 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         offset += half;
     }
     made.emplace_back(model::Constant{offset});
-    auto sum = sum_of(made);
-    return sum && agree(*function.formula(), *sum, middles, period, to) ? sum : std::nullopt;
+    model::Excitation sum;
+    for (const model::Term& term : made) {
+        const auto wave = model::Excitation::make(term);
+        if (!wave) return {};
+        sum = sum + *wave;
+    }
+    return agree(*function.formula(), sum, middles, period, to) ? std::optional(sum) : std::nullopt;
 }
 
 /// The function as native terms in a time span, piece by piece; none if that fails.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
-    if (!(function.next_break(from) < to)) {
-        auto terms = sum_of(function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from));
+    if (!(function.next_condition(from) < to)) {
+        auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
         return terms && agree(*function.formula(), *terms, from, to) ? terms : std::nullopt;
     }
     if (const double period = function.formula()->period(); period > 0) {
@@ -147,9 +142,9 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     model::Excitation sum;
     double t = from;
     for (int n = 0; t < to; ++n) {
-        const double next = std::min(function.next_break(t), to);
+        const double next = std::min(function.next_condition(t), to);
         if (function.formula() == nullptr || n == most_pieces) return {};
-        const auto piece = sum_of(function.formula()->terms(t, t + (next - t) / 2));
+        const auto piece = function.formula()->terms(t, t + (next - t) / 2);
         if (!piece || !agree(*function.formula(), *piece, t, next)) return {};
         double until = model::never;
         if (next < to) until = next;
@@ -169,13 +164,8 @@ lua::LuaFunction* read_function(const model::Component& component) {
 
 }  // namespace
 
-std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
-                                             double from, double to) {
-    if (!system.is_plain()) return {};
-    const model::Excitation& M = drive.M();
-    model::Drive others = drive;
-    others.loads = {model::Excitation()};
-    if (!M.has_script() || motion::has_functions(system, others)) return {};
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Excitation& M, double from, double to) {
+    if (!M.has_script()) return {};
     lua::CallState call(L);
     if (to < no_end) call.set_span(to - from);
     model::Excitation sum;
@@ -193,6 +183,15 @@ std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& 
         if (one) sum = sum + one->scaled(component.gain).windowed(component.from, component.to);
     }
     return sum;
+}
+
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
+                                             double from, double to) {
+    if (!system.is_plain()) return {};
+    model::Drive others = drive;
+    others.loads = {model::Excitation()};
+    if (motion::has_functions(system, others)) return {};
+    return terms_alone(L, drive.M(), from, to);
 }
 
 model::Excitation with_periods(lua_State* L, const model::Excitation& M) {
@@ -241,6 +240,10 @@ int value(lua_State* L) {
     if (lua_istable(L, 2) || lua::test<lua::Vector>(L, 2) != nullptr) return values(L);
     const double t = lua::finite_argument(L, 2, "e:value(t): t");
     const model::State state = state_arguments(L, 3);
+    if (!excitation.has_script()) {  // nothing else runs in Lua, so what is read stays so
+        lua_pushnumber(L, excitation.value(t));
+        return 1;
+    }
     refuse_memory(L, excitation, "e:value(t)");
     lua::CallState call(L);
     const double M = excitation.value(t, state);
@@ -290,6 +293,36 @@ std::optional<std::string> obstacle(lua_State* L, const model::Excitation& excit
         if (std::string why = function->obstacle(); !why.empty()) return why;
     }
     return {};
+}
+
+/// What a run knows of this function between its samples.
+std::string proof_of(model::UserFunction& function) {
+    if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return "called at its instants only";
+    if (dynamic_cast<const model::DelayedController*>(&function) != nullptr) return "sampled: it depends on the past";
+    const auto* relay = dynamic_cast<const model::RelayController*>(&function);
+    if (relay != nullptr && relay->function == nullptr) return "native terms";
+    auto* own = dynamic_cast<lua::LuaFunction*>(relay != nullptr ? relay->function.get() : &function);
+    if (own == nullptr) return "sampled";
+    if (const std::string why = own->obstacle(); !why.empty()) return "sampled: " + why;
+    if (relay != nullptr && own->formula()->has_conditions_of_motion()) {
+        return "sampled: a relay's function has conditions on the motion";
+    }
+    const auto& steps = own->formula()->steps();
+    const auto conditions = std::count_if(steps.begin(), steps.end(), [](const model::Formula::Step& step) {
+        return model::is_comparison(step.op) || model::is_fold(step.op);
+    });
+    if (conditions == 0) return "read: bounded on every stretch";
+    return fmt::format("read: {} condition{}, bounded on every stretch", conditions, conditions == 1 ? "" : "s");
+}
+
+std::string proof(lua_State* L, const model::Excitation& excitation) {
+    const lua::CallState call(L);
+    std::string all;
+    excitation.each_function([&](model::UserFunction& function) {
+        const std::string one = proof_of(function);
+        if (all.find(one) == std::string::npos) all += (all.empty() ? "" : "; ") + one;
+    });
+    return all.empty() ? "native terms" : all;
 }
 
 text::Expected<model::Excitation> delay(const model::Excitation& excitation, double d) {
@@ -385,6 +418,13 @@ constexpr lua::Member excitation_members[] = {
       "Why a function in it cannot be read as a formula: the line and the reason. nil if every function is read; "
       "it is then evaluated without Lua, and its conditions on t are breaks.",
       "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):obstacle())  --> nil"}},
+    {lua::a_typed_method<proof>,
+     {"e:proof() -> string",
+      "What a run with integrator.spectral{} knows of it between its samples: \"native terms\"; \"read: 2 conditions, "
+      "bounded on every stretch\" for a function that is read; \"sampled: \" and the reason for any other. "
+      "What is sampled, and a stretch without a bound, is reported by run.gap.",
+      "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):proof())\n"
+      "--> read: 2 conditions, bounded on every stretch"}},
     {lua::a_typed_method<delay>,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
     {lua::a_method<window>,

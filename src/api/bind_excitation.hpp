@@ -17,6 +17,8 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
 /// function, or if other Lua code runs meanwhile, which may change what M depends on.
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to);
+/// The same of M alone, if no other function runs.
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Excitation& M, double from, double to);
 /// The same M with the proven periods of its functions.
 model::Excitation with_periods(lua_State* L, const model::Excitation& M);
 

@@ -1080,8 +1080,12 @@ int identify_record(lua_State* L) {
     }
     take_given(L, options, asked, fit->question);
     std::optional<text::Error> wrong;
+    auto question = fit->question;
+    if (question.M && !question.t.empty()) {
+        if (auto terms = terms_alone(L, *question.M, question.t.front(), question.t.back())) question.M = terms;
+    }
     asking(L, [&](const motion::Monitor& monitor) {
-        auto found = analysis::identify(fit->question, monitor);
+        auto found = analysis::identify(question, monitor);
         if (found) {
             fit->found = std::move(found).value();
         } else {

@@ -200,15 +200,24 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
 bool sees_all(const model::System& system, const model::Drive& drive, bool located) {
     bool all = true;
     const auto see = [&](const model::UserFunction& function) {
-        const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+        if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return;  // nothing between instants
+        const auto* relay = dynamic_cast<const model::RelayController*>(&function);
+        if (relay != nullptr && relay->function == nullptr) return;
+        const auto* own = dynamic_cast<const lua::LuaFunction*>(relay != nullptr ? relay->function.get() : &function);
         const model::Formula* read = own == nullptr ? nullptr : own->formula();
-        all = all && read != nullptr && !read->gave_up() && (located || !read->has_conditions_of_motion());
+        const bool sees_motion = located && relay == nullptr;
+        all = all && read != nullptr && !read->gave_up() && (sees_motion || !read->has_conditions_of_motion());
     };
     const auto see_in = [&](const std::optional<model::Excitation>& acting) {
         if (acting) acting->each_function(see);
     };
     for (const auto* acting : {&drive.loads, &drive.belts}) std::for_each(acting->begin(), acting->end(), see_in);
     see_in(drive.base);
+    for (const model::Body& body : system.bodies) {
+        if (!body.moved) continue;
+        see_in(body.moved->motion);
+        all = all && !(body.moved->by_angle && body.moved->motion.has_script());  // its velocity is sampled
+    }
     for (const model::OwnState& state : drive.states) see(*state.rate);
     for (const model::WantedEvent& event : drive.events) see(*event.when);
     for (const model::Body& body : system.bodies) {

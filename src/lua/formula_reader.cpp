@@ -11,6 +11,7 @@
 #include <span>
 #include <tuple>
 
+#include "lua/bind.hpp"
 #include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
 #include "model/formula.hpp"
@@ -290,6 +291,10 @@ public:
             follow(std::move(way), {});
             while (!waiting_.empty()) follow_next();
             reading.formula = formula();
+            if (reading.formula->moves_excitations()) {
+                reading.formula.reset(), place_ = {};
+                throw Obstacle{"it evaluates an excitation at a time that depends on the motion"};
+            }
         } catch (const Obstacle& obstacle) {
             const auto& [function, at] = place_;
             const bool known = function != nullptr && at < function->code.lines.size();
@@ -725,6 +730,9 @@ private:
     /// False when the way has come to an end, or waits.
     bool call(Way& way, int function, int arguments, int results) {
         const Known called = way[function];
+        if (const model::Excitation* excitation = excitation_at(called)) {
+            return evaluate(way, *excitation, function, arguments, results);
+        }
         if (called.kind != Known::Kind::object || push_kept(called.object) != LUA_TFUNCTION) {
             throw Obstacle{"it calls a value that is not a function"};
         }
@@ -751,6 +759,29 @@ private:
         if (found->op == Op::fail) return library(way, name, function, arguments, results);
         if (found->op == Op::log && arguments == 2) return logarithm(way, function, results);
         one_argument(way, found->op, function);
+        deliver(way, function, 1, results);
+        return true;
+    }
+    /// The excitation that is this object, else null.
+    const model::Excitation* excitation_at(const Known& known) {
+        if (known.kind != Known::Kind::object) return nullptr;
+        push_kept(known.object);
+        const auto* found = test<model::Excitation>(L_, -1);
+        lua_pop(L_, 1);
+        return found;
+    }
+    /// Its value at the time that stands behind it, or behind it and itself: e(t), e:value(t).
+    bool evaluate(Way& way, const model::Excitation& excitation, int function, int arguments, int results) {
+        const bool by_name = arguments > 0 && way[function + 1] == way[function];
+        const int time = function + (by_name ? 2 : 1);
+        if (arguments != time - function) throw Obstacle{"it evaluates an excitation with more than the time"};
+        if (excitation.has_script()) throw Obstacle{"it evaluates an excitation that has a function in it"};
+        int& own = excitation_registers_[way[function].object];
+        if (own == 0) {
+            excitations_.push_back(std::make_shared<const model::Excitation>(excitation));
+            own = constant_register(model::from_excitation(*excitations_.back()));
+        }
+        calculate(way, Op::native, function, float_register(way[time], time, 0), own, Known::Kind::number);
         deliver(way, function, 1, results);
         return true;
     }
@@ -1022,6 +1053,13 @@ private:
             case getfield:
                 field(way, a, b, constant(*function, i.c()));
                 return true;
+            case self: {
+                // The excitation stands for its method, which is called with itself.
+                const Known name = i.k() ? constant(*function, i.c()) : way[c], own = way[b];
+                if (excitation_at(own) == nullptr || !(name == text("value"))) refuse(code);
+                way[a] = way[a + 1] = own;
+                return true;
+            }
             case addi:
                 arithmetic(way, 0, a, in_register(b), immediate(i.signed_c()));
                 ++at;
@@ -1174,7 +1212,8 @@ private:
             return place;
         };
         for (auto& step : steps_) step.to = placed(step.to), step.a = placed(step.a), step.b = placed(step.b);
-        return {std::move(steps_), std::move(registers), motion, used, states, arguments_.timeless};
+        return {std::move(steps_),   std::move(registers),   motion, used, states,
+                arguments_.timeless, std::move(excitations_)};
     }
 
     lua_State* L_;
@@ -1187,6 +1226,8 @@ private:
     std::vector<Waiting> waiting_;
     std::vector<model::Formula::Step> steps_;
     std::vector<double> constants_;
+    model::Formula::Excitations excitations_;
+    std::map<int, int> excitation_registers_;  ///< by their places in the list of values
     std::map<std::int64_t, std::size_t> constant_places_;
     int used_ = 0, followed_ = 0;
     bool has_returned_ = false;

@@ -545,10 +545,10 @@ model::Formula* LuaFunction::read() {
     return current == nullptr || current->failed_ ? nullptr : formula(*current, many);
 }
 
-double LuaFunction::next_break(double t) {
+double LuaFunction::next_break(double t, double (model::Formula::*next)(double)) {
     model::Formula* formula = read();
     if (formula == nullptr) return model::never;
-    const double found = formula->next_break(t);
+    const double found = (formula->*next)(t);
     if (formula->gave_up()) reading_->obstacle = "its conditions change at too many times to find them";
     return found;
 }

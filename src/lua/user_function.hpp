@@ -112,7 +112,9 @@ public:
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     model::Formula* read() override;
-    double next_break(double t) override;
+    double next_break(double t) override { return next_break(t, &model::Formula::next_break); }
+    /// The same without the breaks of excitations that it evaluates.
+    [[nodiscard]] double next_condition(double t) { return next_break(t, &model::Formula::next_condition); }
     bool has_pieces() override;
     void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,
                 std::uint64_t again) override;
@@ -143,6 +145,7 @@ public:
 
 private:
     static int fill_protected(lua_State* L);
+    double next_break(double t, double (model::Formula::*next)(double));
     /// The formula if reading it pays for this many values (`many` for breaks), otherwise null.
     model::Formula* formula(const CallState& call, std::size_t values);
     static constexpr std::size_t many = std::size_t{1} << 20U;

@@ -174,6 +174,8 @@ Interval image(Op op, const Interval& a, const Interval& b) {
             return wider(ends(op, {a.hi, a.lo}));
         case Op::atan2:
             return b.lo > 0 ? wider(corners(op, a, b)) : anything;
+        case Op::native:
+            return image(to_excitation(b.lo), a);
         default:
             return anything;
     }
@@ -279,6 +281,8 @@ double radius(Op op, const Disc& a, const Disc& b, double c) {
         }
         case Op::sqrt:
             return a.r < a.c ? a.r / (c + std::sqrt(a.c - a.r)) : never;
+        case Op::native:
+            return bounds::radius(to_excitation(b.c), a);
         default:
             return never;
     }
@@ -305,6 +309,7 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
     const double c = at(op, a.disc.c, b.disc.c);
     Slot result{image(op, a.disc, b.disc, c), {}, 0, false};
     if (!ranges_) return result;
+    if (op == Op::native && to_excitation(b.disc.c).next_break(a.range.lo) <= a.range.hi) result.disc.r = never;
     const bool square = op == Op::multiply && &a == &b;  // a square is never negative
     result.range = square ? image(Op::power, a.range, Interval{2, 2}) : image(op, a.range, b.range);
     if (a.apart > 0 || b.apart > 0) {

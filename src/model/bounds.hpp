@@ -25,6 +25,8 @@ inline constexpr Interval anything{-never, never};
 
 /// Encloses the results of an operation, whole numbers as floats. Not for conditions.
 Interval image(Op op, const Interval& a, const Interval& b);
+/// The values of an excitation of native terms at these times.
+Interval image(const Excitation& excitation, const Interval& times);
 
 /// Returns decision_of() the condition if it is the same for all arguments; none if it differs or is unknown.
 std::optional<double> decision_over(Op op, const Interval& a, const Interval& b);
@@ -34,9 +36,11 @@ struct Disc {
     double c = 0, r = 0;
 };
 
+inline constexpr double roundings_of_a_step = 16;
+
 /// Enlarges r by its own rounding and that of the centre c.
 inline double outward(double r, double c) {
-    constexpr double few = 16 * std::numeric_limits<double>::epsilon();
+    constexpr double few = roundings_of_a_step * std::numeric_limits<double>::epsilon();
     const double more = r * (1 + few) + few * std::fabs(c) + std::numeric_limits<double>::min();
     if (std::isnan(more)) return never;
     return more;
@@ -44,6 +48,8 @@ inline double outward(double r, double c) {
 
 /// Encloses the results of an operation whose result at the centres is c; not finite if it may not be analytic.
 Disc image(Op op, const Disc& a, const Disc& b, double c);
+/// The radius of the values of an excitation at these times, continued from the piece at their centre.
+double radius(const Excitation& excitation, const Disc& times);
 
 /// Runs a program on discs. Conditions are decided by real intervals, or by a piece that fixes them. A value that
 /// hardly changes on the stretch although its disc is huge, such as the foot of a narrow pulse, is replaced by a

@@ -43,6 +43,8 @@ struct RelayController final : Controller {
     Of of = Of::theta;
     std::string state;  ///< the state's name, for Of::state
     bool starts_on = true;
+
+    double next_break(double t) override { return function == nullptr ? never : function->next_break(t); }
 };
 
 /// A copy of the relay with `own` as its function.
@@ -57,6 +59,8 @@ inline std::shared_ptr<RelayController> copied(const RelayController& relay, std
 /// A function of the state at the time t - `by`; before the start that is the initial state.
 struct DelayedController final : Controller {
     double by = 0;
+
+    double next_break(double t) override { return function->next_break(t); }
 };
 
 /// The component as a controller of this class, or nullptr.

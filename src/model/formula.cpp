@@ -109,6 +109,10 @@ bool rounded(double x, double& to) {
         case Op::fmod:
             to = std::fmod(a, b);
             return true;
+        case Op::native:
+            if (!std::isfinite(a)) return false;
+            to = to_excitation(b).value(a);
+            return true;
         case Op::add_whole:
             to = from_bits(bits(a) + bits(b));
             return true;
@@ -189,16 +193,18 @@ double decision_of(Op op, double a, double b, double result) {
 }
 
 Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
-                 std::size_t state_count, bool timeless)
+                 std::size_t state_count, bool timeless, Excitations excitations)
     : steps_(std::move(steps)),
       registers_(std::move(registers)),
+      excitations_(std::move(excitations)),
       motion_(motion),
       states_(states),
       state_count_(state_count),
       timeless_(timeless),
-      has_conditions_(std::any_of(steps_.begin(), steps_.end(),
+      has_conditions_(!excitations_.empty() ||
+                      std::any_of(steps_.begin(), steps_.end(),
                                   [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })),
-      of_motion_(has_conditions_ && compares_the_motion()) {}
+      of_motion_(has_conditions_ && depends_on_motion([](Op op) { return is_comparison(op) || is_fold(op); })) {}
 
 void Formula::start(double t, const State& state, std::span<const double> states) {
     registers_[0] = t;
@@ -319,7 +325,8 @@ std::vector<std::uint64_t> Formula::sources() const {
     return of;
 }
 
-bool Formula::compares_the_motion() const {
+/// Whether a step with such an operation depends on theta, velocity or a state.
+bool Formula::depends_on_motion(bool (*wanted)(Op op)) const {
     using Sources = std::vector<std::uint64_t>;
     std::map<std::size_t, Sources> ways;  // what comes to a step
     const auto lead = [&ways](std::size_t to, const Sources& of) {
@@ -332,7 +339,7 @@ bool Formula::compares_the_motion() const {
         ways.erase(ways.begin());
         const Step& s = steps_[at];
         const std::uint64_t both = of[s.a] | of[s.b];
-        if ((is_comparison(s.op) || is_fold(s.op)) && both != 0) return true;
+        if (wanted(s.op) && both != 0) return true;
         if (is_comparison(s.op)) lead(s.no, of);
         if (is_comparison(s.op) || s.op == Op::jump) {
             lead(s.yes, of);
@@ -425,7 +432,7 @@ struct Formula::Range : bounds::Interval {
 /// One look at the program for all t of an interval: which way it goes, if that is the same way for all of them.
 class Formula::Look {
 public:
-    explicit Look(const Formula& formula) : formula_(formula) {
+    Look(const Formula& formula, Breaks which) : formula_(formula), which_(which) {
         for (const double x : formula.registers_) ranges_.push_back({{x, x}});
         const Range unknown{{}, true};
         if (formula.motion_) ranges_[1] = ranges_[2] = unknown;
@@ -521,6 +528,7 @@ private:
             fails_ = !operate(op, a.lo, b.lo, r.lo);
             r.hi = r.lo;
             if (is_fold(op)) r.piece = piece_of(decision_of(op, a.lo, b.lo, r.lo));
+            if (op == Op::native && !fails_) fold(to_excitation(b.lo), a, r);
             return r;
         }
         if (op == Op::move) return {{a.lo, a.hi}};
@@ -530,6 +538,7 @@ private:
         if (gives_whole && !r.is_anything()) {
             r.lo = from_whole(static_cast<std::int64_t>(r.lo)), r.hi = from_whole(static_cast<std::int64_t>(r.hi));
         }
+        if (op == Op::native) fold(to_excitation(b.lo), a, r);
         if (!is_fold(op)) return r;
         if (const auto decision = bounds::decision_over(op, a, b)) {
             r.piece = piece_of(*decision);
@@ -542,6 +551,15 @@ private:
             part_ = (next_fold(op, a.lo, b.lo, first) - a.lo) / (a.hi - a.lo);
         }
         return r;
+    }
+    /// An excitation has a piece between two breaks.
+    void fold(const Excitation& excitation, const Range& time, Range& r) {
+        constexpr double end_of_time = 1e300;
+        if (which_ == Breaks::own) return;
+        const double from = std::max(time.lo, -end_of_time), next = excitation.next_break(from);
+        r.folds = next <= time.hi;
+        r.piece = piece_of(next);
+        if (r.folds && !time.folds) part_ = (next - from) / (time.hi - from);
     }
     static std::uint64_t piece_of(double decision) { return bits(decision + 0.0) + 1; }
     /// Where the piece ends for rising values.
@@ -563,6 +581,7 @@ private:
     }
 
     const Formula& formula_;
+    Breaks which_;
     std::vector<Range> ranges_{};
     double part_ = 0;
     std::uint64_t seen_ = 0;
@@ -597,9 +616,13 @@ double cut(double from, double to, double part, int turn) {
 }  // namespace
 
 double Formula::next_break(double t) {
+    return next_break(t, Breaks::all);
+}
+
+double Formula::next_break(double t, Breaks which) {
     constexpr double end_of_time = 1e300;
     if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
-    const double found = search(t + 0.0);  // not -0
+    const double found = search(t + 0.0, which);  // not -0
     // Breaks that come on and on where nothing much changes are roundings, or digits that somebody has cut off: no
     // events, but roughness.
     constexpr int most_alike = 30;
@@ -607,7 +630,7 @@ double Formula::next_break(double t) {
     for (int n = 0; is_dubious(last, next); ++n) {
         if (n == most_alike) gave_up_ = true;
         if (gave_up_) return never;
-        last = next, next = search(next);
+        last = next, next = search(next, which);
     }
     if (gave_up_) return never;
     return found;
@@ -616,7 +639,7 @@ double Formula::next_break(double t) {
 /// The next change is next to this one, or next to nothing.
 bool Formula::is_dubious(double t, double found) {
     constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
-    if (found == never) return false;
+    if (found == never || is_of_excitation(found)) return false;
     if (found - t < std::max(close * std::fabs(t), span_ / most_breaks)) return true;
     const double jump = std::fabs(value(found, {}, {}) - value(std::nextafter(found, -never), {}, {}));
     if (!(jump > 0)) return false;
@@ -629,17 +652,26 @@ bool Formula::is_dubious(double t, double found) {
     return jump < small * greatest_ && jump > rounding * greatest_;
 }
 
+/// Whether only an excitation breaks there, as its author has said.
+bool Formula::is_of_excitation(double found) const {
+    if (excitations_.empty()) return false;
+    Look look(*this, Breaks::own);
+    const double before = std::nextafter(found, -never);
+    return look.over(before, before) == look.over(found, found);
+}
+
 // The interval from t on is divided, the earlier part first, until the program goes one way in each part.
-double Formula::search(double t) {
+double Formula::search(double t, Breaks which) {
     constexpr double end_of_time = 1e300, least = 1e-300, rounding = std::numeric_limits<double>::epsilon();
     constexpr int most_looks = 4000, most_unfinished = 20, most_flips = 60;
-    const auto behind = known_.upper_bound(t);
-    if (behind != known_.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
+    std::map<double, double>& known = known_[which == Breaks::all ? 1 : 0];
+    const auto behind = known.upper_bound(t);
+    if (behind != known.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
     // What changes a hair later has changed already; and where a comparison changes, rounding may make it flicker.
-    const bool at_break = behind != known_.begin() && std::prev(behind)->second == t;
+    const bool at_break = behind != known.begin() && std::prev(behind)->second == t;
     const double flicker = t + std::max(least, (at_break ? 64 : 4) * rounding * std::fabs(t));
 
-    Look look(*this);
+    Look look(*this, which);
     std::optional<std::uint64_t> way = look.over(t, t);
     std::vector<std::pair<double, double>> parts{{t, end_of_time}};
     int looks = 0, flips = 0;
@@ -666,8 +698,8 @@ double Formula::search(double t) {
     }
     if (!way || gave_up_) return gave_up_ = true, never;
     constexpr std::size_t most_known = 10000;
-    if (known_.size() > most_known) known_.clear();
-    return known_[t] = found;
+    if (known.size() > most_known) known.clear();
+    return known[t] = found;
 }
 
 }  // namespace dinal::model

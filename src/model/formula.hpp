@@ -2,17 +2,19 @@
 // without its language, and open to questions. Whoever reads the function (lua/reader) writes the program.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "model/terms.hpp"
 
 namespace dinal::model {
 
@@ -42,6 +44,7 @@ enum class Op : std::uint16_t {
     sqrt,
     abs,
     fmod,
+    native,  ///< the value at a time (a) of the excitation whose address b holds; fails at a time that is not finite
     // whole numbers
     add_whole,
     subtract_whole,
@@ -90,6 +93,13 @@ inline double from_whole(std::int64_t whole) {
 inline std::int64_t to_whole(double bits) {
     return std::bit_cast<std::int64_t>(bits);
 }
+/// Or the address of an excitation of native terms, which the formula owns.
+inline double from_excitation(const Excitation& excitation) {
+    return std::bit_cast<double>(&excitation);
+}
+inline const Excitation& to_excitation(double bits) {
+    return *std::bit_cast<const Excitation*>(bits);
+}
 
 /// Steps only lead forward, so that a program is bounded by its length.
 class Formula {
@@ -99,11 +109,12 @@ public:
         std::uint16_t to = 0, a = 0, b = 0;
         std::uint32_t yes = 0, no = 0;
     };
+    using Excitations = std::vector<std::shared_ptr<const Excitation>>;
     /// Registers at the start: t comes into the first, with `motion` theta and velocity into the next two, and so many
     /// states from `states` on.
-    /// `timeless`: t is a speed.
+    /// `timeless`: t is a speed. `excitations` are those whose addresses stand in registers.
     Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
-            std::size_t state_count, bool timeless = false);
+            std::size_t state_count, bool timeless = false, Excitations excitations = {});
 
     /// NaN where the function must be asked.
     [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
@@ -115,17 +126,20 @@ public:
                                   std::span<const double> states, std::vector<double>* margins);
 
     /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
-    /// ceil, // or %. It is the very double at which the function itself sees the change.
+    /// ceil, // or %, or at which an excitation in it breaks. It is the very double at which the function itself sees
+    /// the change.
     [[nodiscard]] double next_break(double t);
+    /// The same without the breaks of excitations.
+    [[nodiscard]] double next_condition(double t) { return next_break(t, Breaks::own); }
     /// So long a time is of interest now: conditions that change far more often are noise, and no breaks.
     void begin(double span) {
         if (span != span_) knows_greatest_ = false, greatest_ = 0;
         span_ = span, gave_up_ = false, unfinished_ = 0;
     }
 
-    /// Native terms whose sum it is, to rounding, from a time on, as long as its conditions are what they are at the
-    /// time `inside`; none where it is no such sum.
-    [[nodiscard]] std::vector<Term> terms(double from, double inside) const;
+    /// The native terms whose sum it is, to rounding, from a time on, as long as its conditions are what they are at
+    /// the time `inside`; none if it is no such sum.
+    [[nodiscard]] std::optional<Excitation> terms(double from, double inside) const;
     /// After which time it is proven to repeat; 0 when that is not known, or when it is constant.
     [[nodiscard]] double period() const;
 
@@ -140,26 +154,34 @@ public:
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }
     /// Such a condition depends on theta, velocity or a state.
     [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
+    /// Whether an excitation in it is evaluated at a time that depends on these.
+    [[nodiscard]] bool moves_excitations() const {
+        return !excitations_.empty() && depends_on_motion([](Op op) { return op == Op::native; });
+    }
     /// The times of its conditions could not be found in bounded work: next_break() says `never`.
     [[nodiscard]] bool gave_up() const { return gave_up_; }
 
 private:
     struct Range;
     class Look;
-    double search(double t);
+    enum class Breaks { own, all };
+    double next_break(double t, Breaks which);
+    double search(double t, Breaks which);
     [[nodiscard]] std::vector<std::uint64_t> sources() const;
-    [[nodiscard]] bool compares_the_motion() const;
+    [[nodiscard]] bool depends_on_motion(bool (*wanted)(Op op)) const;
     void start(double t, const State& state, std::span<const double> states);
     bool is_dubious(double t, double found);
+    [[nodiscard]] bool is_of_excitation(double found) const;
 
     std::vector<Step> steps_;
     std::vector<double> registers_;
+    Excitations excitations_;
     bool motion_;
     std::size_t states_, state_count_;
     bool timeless_, has_conditions_, of_motion_, gave_up_ = false;
-    std::map<double, double> known_;  ///< from a time to the next break
-    int unfinished_ = 0;              ///< searches that ended before they found one
-    double span_ = 1, greatest_ = 0;  ///< value at some times
+    std::array<std::map<double, double>, 2> known_;  ///< from a time to the next break, of its own and of all
+    int unfinished_ = 0;                             ///< searches that ended before they found one
+    double span_ = 1, greatest_ = 0;                 ///< value at some times
     bool knows_greatest_ = false;
 };
 

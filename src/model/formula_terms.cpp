@@ -19,8 +19,11 @@ struct TermSum {
     std::vector<double> powers{};
     std::vector<Harmonic> sines{};
     std::vector<Grown> exponentials{};
+    Excitation others{};  ///< of the time itself
 
-    [[nodiscard]] bool is_polynomial() const { return sines.empty() && exponentials.empty(); }
+    [[nodiscard]] bool is_polynomial() const {
+        return sines.empty() && exponentials.empty() && others.components().empty();
+    }
     [[nodiscard]] bool is_line() const { return is_polynomial() && powers.size() <= 2; }
     [[nodiscard]] bool is_constant() const { return is_polynomial() && powers.size() <= 1; }
     [[nodiscard]] double power(std::size_t n) const { return n < powers.size() ? powers[n] : 0; }
@@ -33,6 +36,7 @@ struct TermSum {
             add(sine);
         }
         for (const Grown& one : other.exponentials) exponentials.push_back({gain * one.amplitude, one.rate});
+        if (!other.others.components().empty()) others = others + other.others.scaled(gain);
     }
     /// Sines of one pace are one.
     void add(const Harmonic& sine) {
@@ -125,6 +129,17 @@ std::optional<Repeating> in_steps(Repeating x, double step) {
     return x;
 }
 
+/// After which time an excitation repeats: none if it does not, 0 if it is constant.
+std::optional<double> period_of(const Excitation& excitation) {
+    std::optional<double> all = 0;
+    for (const Component& c : excitation.components()) {
+        const double own = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
+        if (!all || (own == 0 && constant_from(c) != -never) || c.from != -never || c.to != never) return {};
+        all = common_period(*all, own);
+    }
+    return all;
+}
+
 std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) {
     const auto common = common_period(a.period, b.period);
     if (!common) return {};
@@ -165,8 +180,11 @@ std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) 
         }
         case Op::sin:
         case Op::cos:
-        case Op::tan: {
-            const auto turned = in_steps(a, 2 * std::numbers::pi);
+        case Op::tan:
+        case Op::native: {
+            const auto turn = op == Op::native ? period_of(to_excitation(*b.constant)) : 2 * std::numbers::pi;
+            if (turn == 0) return Repeating{};
+            const auto turned = turn ? in_steps(a, *turn) : std::nullopt;
             if (!turned) return {};
             return Repeating{0, turned->period};
         }
@@ -231,7 +249,18 @@ double Formula::period() const {
     return all.value_or(0);
 }
 
-std::vector<Term> Formula::terms(double from, double inside) const {
+namespace {
+
+/// The excitation at a time that is a line of the slope 1, as a sum.
+std::optional<TermSum> delayed(const Excitation& excitation, const TermSum& time, double from) {
+    if (!time.is_line() || time.power(1) != 1) return {};
+    const double by = from - time.power(0);
+    return TermSum{.others = by == 0 ? excitation : excitation.delayed(by)};
+}
+
+}  // namespace
+
+std::optional<Excitation> Formula::terms(double from, double inside) const {
     if (motion_ || state_count_ != 0) return {};
     std::vector<std::optional<TermSum>> registers;
     for (const double x : registers_) registers.push_back(TermSum{.powers = {x}});
@@ -269,6 +298,8 @@ std::vector<Term> Formula::terms(double from, double inside) const {
             if (!b->is_constant()) return {};
             made = a;
             made->add({.powers = {decision_of(s.op, x, y, result) * y}}, -1);
+        } else if (a && s.op == Op::native && !a->is_constant()) {
+            made = delayed(to_excitation(y), *a, from);
         } else if (a && b) {
             made = result_of(s.op, *a, *b);
         }
@@ -279,6 +310,7 @@ std::vector<Term> Formula::terms(double from, double inside) const {
         ++at;
     }
     std::vector<Term> made;
+    const bool alone = sum.others.components().empty();
     if (sum.is_constant()) {
         made.emplace_back(Constant{sum.power(0)});
     } else if (sum.powers.size() > 1 || sum.power(0) != 0) {
@@ -291,7 +323,14 @@ std::vector<Term> Formula::terms(double from, double inside) const {
     for (const auto& [amplitude, rate] : sum.exponentials) {
         made.emplace_back(Exponential{.amplitude = amplitude, .tau = -1 / rate, .at = from});
     }
-    return made;
+    if (made.empty() && alone) return {};
+    Excitation all = sum.others;
+    for (const Term& term : made) {
+        const auto one = Excitation::make(term);
+        if (!one) return {};
+        all = all + *one;
+    }
+    return all;
 }
 
 }  // namespace dinal::model

@@ -49,6 +49,25 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
 
+/// Keeps an answer at a later time than all before, so that a long search about one time leaves those of other times.
+void Witness::keep_milestone(const Answer& answer, std::span<const double> states) {
+    latest_ = answer.t;
+    if (ahead_++ % way_ != 0) return;
+    std::size_t place = first_milestone + static_cast<std::size_t>((ahead_ - 1) / way_);
+    if (place == first_milestone + milestones) {  // keeps every second one
+        const std::size_t count = states_.size() / places;
+        for (std::size_t i = 1; i < milestones / 2; ++i) {
+            const std::size_t to = first_milestone + i, from = first_milestone + 2 * i;
+            answers_[to] = answers_[from];
+            std::copy_n(states_.begin() + static_cast<std::ptrdiff_t>(from * count), count,
+                        states_.begin() + static_cast<std::ptrdiff_t>(to * count));
+        }
+        way_ *= 2;
+        place = first_milestone + milestones / 2;
+    }
+    keep(place, answer, states);
+}
+
 /// Repeats an evaluation; returns whether the answer is the same. A failure now would also have occurred without the
 /// witness.
 bool Witness::repeats_answer(std::size_t place) {
@@ -67,9 +86,9 @@ bool Witness::repeats_answer(std::size_t place) {
 /// Repeats an evaluation of varying age.
 bool Witness::repeat_one() {
     next_ = asked_ + questions_between;
-    for (std::size_t i = 0; i <= 2 * ages; ++i) {
-        constexpr std::size_t stride = 7;  // coprime to the number of places, 37
-        turn_ = (turn_ + stride) % (2 * ages + 1);
+    for (std::size_t i = 0; i < asked_in_turn; ++i) {
+        constexpr std::size_t stride = 7;  // coprime to the number of these places, 45
+        turn_ = (turn_ + stride) % asked_in_turn;
         if ((known_ >> turn_ & 1U) != 0) return repeats_answer(turn_);
     }
     return true;
@@ -89,7 +108,8 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     }
     keep(last_, answer, states);
     keep_for_later(answer, states);
-    if (!jumped) return asked_ < next_ || repeat_one();
+    if (answer.t > latest_) keep_milestone(answer, states);
+    if (!jumped) return true;
     ++jumps_asked_;
     // A relay in a closure no longer returns what it returned before it switched, and random numbers do not repeat.
     return repeats_answer(before_jump_) && repeats_answer(last_);
@@ -97,7 +117,8 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
-    if (testimony_->found) return no_number;
+    // The repetition comes first, so that what the function leaves behind for others is that of the latest call.
+    if (testimony_->found || (asked_ >= next_ && !repeat_one())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
     return heard({t, state, value}, states) ? value : no_number;
@@ -109,15 +130,19 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
         const std::size_t good = function_->fill(times, out);
         if (good < times.size()) return good;
         std::size_t i = 0;
-        while (i < good && heard({times[i], {}, out[i]}, {})) ++i;
+        while (i < good && heard({times[i], {}, out[i]}, {}) && (asked_ < next_ || repeat_one())) ++i;
         if (i == good) return good;
     }
     out[0] = no_number;
     return 0;
 }
 
-void Witness::repeat_first() {
-    if (asked_ > 1 && !testimony_->found) repeats_answer(first_place);
+/// All other functions have run, and may have changed what this one depends on.
+void Witness::repeat_kept() {
+    if (asked_ < 2 || testimony_->found || !repeats_answer(first_place)) return;
+    for (std::size_t place = first_milestone; place < asked_in_turn; ++place) {
+        if ((known_ >> place & 1U) != 0 && !repeats_answer(place)) return;
+    }
 }
 
 namespace {
@@ -187,7 +212,7 @@ UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
 
 std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
-        for (const auto& witness : witnesses_) witness->repeat_first();
+        for (const auto& witness : witnesses_) witness->repeat_kept();
     }
     testimony_->over = true;
     return testimony_->found;

@@ -54,7 +54,7 @@ public:
     void forget_failure() override { function_->forget_failure(); }
 
     /// Repeats the first evaluation at the end of the run.
-    void repeat_first();
+    void repeat_kept();
 
 private:
     /// The arguments and result of an evaluation.
@@ -63,12 +63,16 @@ private:
         model::State state;
         double value = 0;
     };
-    static constexpr std::size_t ages = 18;  ///< answers from 4, 8, 16 ... evaluations ago are kept
-    // The places: two for each age; the very first answer; the last one and the one before a jump, which swap.
-    static constexpr std::size_t first_place = 2 * ages, places = first_place + 3;
+    static constexpr std::size_t ages = 18;       ///< answers from 4, 8, 16 ... evaluations ago are kept
+    static constexpr std::size_t milestones = 8;  ///< answers at times all over the run are kept as well
+    // The places: two for each age; the very first answer; milestones; the last one and the one before a jump, which
+    // swap.
+    static constexpr std::size_t first_place = 2 * ages, first_milestone = first_place + 1,
+                                 asked_in_turn = first_milestone + milestones, places = asked_in_turn + 2;
 
     void keep(std::size_t place, const Answer& answer, std::span<const double> states);
     void keep_for_later(const Answer& answer, std::span<const double> states);
+    void keep_milestone(const Answer& answer, std::span<const double> states);
     bool repeats_answer(std::size_t place);
     bool repeat_one();
     bool heard(const Answer& answer, std::span<const double> states);
@@ -80,9 +84,11 @@ private:
 
     std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the next one after which one is repeated
     std::uint64_t jumps_asked_ = 0;       ///< jumps that caused two repetitions
-    std::size_t turn_ = 0, last_ = first_place + 1, before_jump_ = first_place + 2;
-    double usual_ = 0;         ///< moving average of the change between evaluations
-    std::uint64_t known_ = 0;  ///< one bit for each filled place
+    std::size_t turn_ = 0, last_ = asked_in_turn, before_jump_ = asked_in_turn + 1;
+    double latest_ = -model::never;      ///< latest time of an evaluation
+    std::uint64_t ahead_ = 0, way_ = 1;  ///< evaluations later than all before; their number between two milestones
+    double usual_ = 0;                   ///< moving average of the change between evaluations
+    std::uint64_t known_ = 0;            ///< one bit for each filled place
     std::array<Answer, places> answers_;
     std::vector<double> states_;  ///< states of each place
 };

@@ -73,6 +73,30 @@ test("a smooth motion that dies out follows its closed form down to rounding, an
     end
 end)
 
+test("a smooth motion that starts near the rounding of its functions, or below it, reaches the end", function()
+    local z = { q = { start = 0, rate = function(_, _, v, z) return math.log(1 + v) - 2 * z.q end } }
+    local cases = {
+        { { k = 1 }, { M = function(_, _, v) return 1 - (1 + v) ^ 2 end } },
+        { { k = 0, C = 0.5, spring = function(x) return 10 * (1 - (1 + x) ^ -1.4) end }, {} },
+        { { k = 1, C = 0.5, spring = function(x) return math.exp(x) - 1 end }, {} },
+        { { k = 1, friction = function(speed) return math.exp(speed) - 1 end }, {} },
+        { { k = 1 }, { M = function(_, _, _, z) return -z.q end, states = z } },
+    }
+    for i, case in ipairs(cases) do
+        case[1].I, case[2].t_end, case[2].times = 1, 50, { 5, 50 }
+        for _, start in ipairs { 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 1e-20 } do
+            case[2].theta0 = start
+            local run = system(case[1]):simulate(case[2])
+            local what = ("case %d from %g: %s"):format(i, start, run.outcome)
+            equal(run.t_end, 50, what)
+            equal(run.status, "end", what)
+            -- So small it is linear; the first one is critically damped.
+            if i == 1 then near(run.theta[1], 6 * math.exp(-5) * start, 1e-15) end
+            near(run.theta[2], 0, 1e-4 * start + 2e-15)
+        end
+    end
+end)
+
 test("an M of few digits is followed within its noise when the motion has died out", function()
     local function rounded(x) return math.floor(x * 1e10 + 0.5) / 1e10 end
     local M = unread(function(_, _, v) return rounded(1 - (1 + v) ^ 2) end)

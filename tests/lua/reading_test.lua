@@ -228,19 +228,6 @@ test("functions of several bodies, of the speed, and rates of states are read, w
     assert(#x.events > 3 and #one.events > 3)
 end)
 
-test("an error keeps its line", function()
-    raises_here(function()
-        local f = function(t)
-            if t > 3 then error("too late") end
-            return t
-        end
-        system { I = 1, k = 1 }:simulate { M = f, t_end = 5, dt = 1 }
-    end, "too late")
-
-end)
-
--- ---- conditions are breaks
-
 local function before(x)
     local n = string.unpack("i8", string.pack("d", x))
     return x > 0 and string.unpack("d", string.pack("i8", n - 1)) or x - 5e-324
@@ -254,6 +241,109 @@ local function breaks(f, from, to)
     until t >= to
     return list
 end
+
+-- ---- excitations inside functions
+
+local points = { t = {}, M = {} }
+for i = 0, 40 do points.t[i + 1], points.M[i + 1] = 0.25 * i, math.sin(i * i) end
+local function samples(o)
+    return excitation.samples { t = points.t, M = points.M, interpolation = o.interpolation, period = o.period }
+end
+local natives = {
+    samples {}, samples { interpolation = "cubic" }, samples { interpolation = "hold" },
+    samples { interpolation = "cubic", period = 11 }, excitation.harmonic { omega = 3, phase = 1 },
+    excitation.gaussian { at = 3.3, sigma = 1e-4, amplitude = 1e4 }, excitation.chirp { from = 0, to = 2, duration = 3, at = 1 },
+    excitation.square { period = 0.77, duty = 0.3 }, excitation.sawtooth { period = 0.77 }, excitation.triangle { period = 0.7 },
+    excitation.exponential { tau = 0.5, at = 1 }, excitation.half_sine { at = 1, width = 1e-3, amplitude = 1e3 },
+    excitation.pulse { at = 2, width = 1e-4, amplitude = 1e4 }, excitation.ramp { at = 1 }, excitation.step { at = 0.5 },
+    excitation.polynomial { coefficients = { 1, -1, 0.1 } },
+    2 * excitation.harmonic { omega = 3 }:window(1, 2) + excitation.step { at = 5 } - 0.3,
+}
+
+test("an excitation inside a function is read as itself: its bits, its breaks, its motion", function()
+    local sys, own = system { I = 1, k = 4, C = 0.2, Rd = 0.1 }, { gain = 0.5 }
+    for i, e in ipairs(natives) do
+        own.e = e
+        for _, f in ipairs { function(t) return e(t) end, function(t) return own.e:value(t - 0.5) * own.gain end,
+            function(t) return e(2 * t) + e(math.floor(t)) + e(3) end, function(t) return own.e(t % 2) * t end,
+            function(t) if e(t) > 0.25 then return e(t) end return -t end } do
+            same_values(f, "excitation " .. i)
+        end
+        local list, t = breaks(function(x) return e(x) * (1 + x) end, 0.01, 9), 0.01
+        for _, found in ipairs(list) do
+            t = e:next_break(t)
+            equal(found, t, i)
+        end
+        assert(e:next_break(list[#list] or t) >= 9, i)
+        local function run(M, method)
+            return sys:simulate { M = M, theta0 = 0.5, t_end = 8, dt = 0.5, integrator = method }
+        end
+        local wanted = run(0.5 * e:delay(0.25) - 0.1)
+        for _, method in ipairs { false, integrator.spectral {} } do
+            local found = run(function(x) return own.gain * e(x - 0.25) - 0.1 end, method or nil)
+            equal(found.gap, nil, i)
+            near(found.theta, wanted.theta, 2e-11)
+        end
+        equal(run(function(x) return e(x) * (2 + math.sin(x) ^ 3) end).gap, nil, i)
+    end
+end)
+
+test("samples less a number inside a function run as the samples do, however many", function()
+    local t, M = {}, {}
+    for i = 0, 20000 do t[i + 1], M[i + 1] = i * 1e-3, math.sin(i * 1e-3) + 0.1 * math.sin(i) end
+    local lin, p, sys = excitation.samples { t = t, M = M }, { of = 0.1 }, system { I = 1, k = 4, C = 0.2, Rd = 0.1 }
+    local run = sys:simulate { M = function(x) return lin(x) - p.of end, t_end = 20, dt = 1 }
+    equal(tostring(run.integrator), "integrator.exact{}")
+    near(run.theta, sys:simulate { M = lin - 0.1, t_end = 20, dt = 1 }.theta, 1e-13)
+    local function square(x) return lin(x) ^ 2 end
+    local found = sys:simulate { M = square, t_end = 5, dt = 1 }
+    equal(found.gap, nil)
+    near(found.theta, sys:simulate { M = square, t_end = 5, dt = 1, integrator = integrator.rk4 { h = 1e-3 } }.theta, 1e-10)
+    -- and a fit takes no longer
+    local record = sys:simulate { M = lin - 0.1, t_end = 15, dt = 0.1, theta0 = 1 }
+    local fit = identify { data = { t = record.t, theta = record.theta }, M = function(x) return lin(x) - p.of end, I = 1 }
+    near(fit.system.C, 0.2, 1e-9)
+end)
+
+test("an excitation at a time that depends on the motion, with more arguments or with a function in it is not read", function()
+    local e = natives[1]
+    local scripted = excitation.scripted(math.sin)
+    not_read(function(t) return scripted(t) end, "an excitation that has a function in it")
+    not_read(function(t) return e(t, 1) end, "an excitation with more than the time")
+    not_read(function(t) return e:delay(t) end, "it calls a method")
+    equal(excitation.scripted(function(t, theta) return e(theta) end):obstacle(),
+        "it evaluates an excitation at a time that depends on the motion")
+end)
+
+test("proof tells what is known between the samples, and why not", function()
+    local function proof(M) return (M + excitation.step {}):proof() end
+    equal(excitation.step {}:proof(), "native terms")
+    equal(proof(math.pi * excitation.scripted(function(t) return math.sin(t) * t end)), "read: bounded on every stretch")
+    equal(proof(function(t) return t % 2 < 1 and 1 or 0 end), "read: 2 conditions, bounded on every stretch")
+    equal(proof(function(t) return natives[1](t) > 0 and 1 or 0 end), "read: 1 condition, bounded on every stretch")
+    assert(proof(function(t) return #tostring(t) end):find "^sampled: .*reading_test.lua:%d+: it ")
+    local function held(t, theta, v) return -v end
+    equal(excitation.sampled(held, { every = 1 }):proof(), "called at its instants only")
+    equal(excitation.delayed(held, { by = 1 }):proof(), "sampled: it depends on the past")
+    local function relay(of) return excitation.relay { on = 0, off = 1, amplitude = 1, of = of }:proof() end
+    equal(relay("theta"), "native terms")
+    equal(relay(held), "read: bounded on every stretch")
+    equal(relay(function(t, theta, v) return theta > 0 and 1 or 0 end), "sampled: a relay's function has conditions on the motion")
+    equal(proof(excitation.delayed(held, { by = 1 }) + function(t) return t end), "sampled: it depends on the past; read: bounded on every stretch")
+end)
+
+test("an error keeps its line", function()
+    raises_here(function()
+        local f = function(t)
+            if t > 3 then error("too late") end
+            return t
+        end
+        system { I = 1, k = 1 }:simulate { M = f, t_end = 5, dt = 1 }
+    end, "too late")
+
+end)
+
+-- ---- conditions are breaks
 
 test("breaks are the very times at which Lua sees the change", function()
     local third = 0.3

@@ -13,6 +13,15 @@ end
 local shapes = {
     { area = root, at = function(p, w) return function(x) return exp(-((x - p) / w) ^ 2) / w end end },
     { area = math.pi, at = function(p, w) return function(x) return 2 / (exp((x - p) / w) + exp(-(x - p) / w)) / w end end },
+    -- An excitation inside a function: of theta it is not read, so the gap is told.
+    { area = root, at = function(p, w)
+        local bump = excitation.gaussian { at = p, sigma = w / math.sqrt(2), amplitude = 1 / w }
+        return function(x) return bump(x) end
+    end },
+    { area = 1, at = function(p, w)
+        local pulse = excitation.pulse { at = p, width = w }
+        return function(x) return pulse(x) / w end
+    end },
 }
 local t_end = 2.5
 local free = { I = 1, k = 0 }
@@ -37,6 +46,19 @@ local kinds = {
     Rd = function(f, area) return 1 - .1 * area, glide { I = 1, k = 0, Rd = function(t) return .1 * f(t) end } end,
     normal = function(f, area) return 1 - .1 * area, glide { I = 1, k = 0, Rd = .1, normal = function(t) return f(t) end } end,
     base = function(f, area) return 1 - .1 * area, glide(free, { base = function(t) return .1 * f(t) end }) end,
+    delayed = function(f, area)
+        return 1 + area, glide(free, { M = excitation.delayed(function(t, theta, v) return f(t) end, { by = .1 }) })
+    end,
+    relay = function(f, area, w)
+        local run = system(free):simulate { t_end = t_end, dt = .5, M = excitation.relay { on = .3, off = .2, amplitude = 1,
+            start = "off", of = function(t, theta, v) return w * f(t) end } }
+        return 2, #of_kind(run, "switch"), run
+    end,
+    moved = function(f, area)
+        local bodies = { m = { theta = function(t) return .1 * f(t) end }, b = { I = 1 } }
+        local run = system { bodies = bodies, links = { s = { "m", "b", k = 1e-3 } } }:simulate { t_end = t_end, dt = .5 }
+        return 1e-4 * area, run.b.velocity[#run.b.velocity], run
+    end,
 }
 
 test("a narrow smooth pulse is found in every kind of function", function()
@@ -46,14 +68,25 @@ test("a narrow smooth pulse is found in every kind of function", function()
     for _, kind in ipairs(names) do
         local of = kinds[kind]
         for n = 1, 24 do
-            local shape = shapes[n % 2 + 1]
+            local shape = shapes[n % #shapes + 1]
             local p, w = lot(.3, 1.5), 10 ^ lot(-6, -2)
-            local want, got, run = of(shape.at(p, w), shape.area)
+            local want, got, run = of(shape.at(p, w), shape.area, w)
             local what = ("%s: w %g p %g got %.10g want %.10g gap %s"):format(kind, w, p, got, want, run.gap)
             assert(math.abs(got - want) < 2e-6 or (run.gap and run.gap > w), what)
             if kind == "M" then assert(math.abs(got - want) < 1e-8, what) end
         end
     end
+end)
+
+test("what is sampled in a delayed excitation or a relay is told as the gap, and what is sampled at instants only is not", function()
+    local function gap(M) return system(free):simulate { M = M, velocity0 = 1, t_end = 1, dt = .5 }.gap end
+    local function narrow(t, theta, v) return exp(-((theta - .5) / 1e-6) ^ 2) end
+    assert(gap(excitation.delayed(narrow, { by = .01 })) > 0)
+    assert(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = function(...) return narrow(...) end }) > 0)
+    equal(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = narrow }), nil)
+    equal(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = "theta" }), nil)
+    equal(gap(excitation.sampled(narrow, { every = .1 })), nil)
+    equal(gap(excitation.sampled(narrow, { every = .1 }) + function(t) return math.sin(t) end), nil)
 end)
 
 test("a small narrow pulse beside a sine is found", function()
@@ -85,7 +118,7 @@ test("conditions of springs and events are located, however narrow", function()
         local a, w = lot(.3, 1.5), 10 ^ lot(-6, -1)
         -- A step of the potential by 3/8 takes three quarters of the energy 1/2.
         local got = glide { I = 1, k = 0, spring = function(theta) if theta > a and theta < a + w then return .375 / w end return 0 end }
-        assert(math.abs(got - .5) < 1e-9 + 1e-13 / w, ("w %g: %.12g"):format(w, got))
+        assert(math.abs(got - .5) < 1e-9 + 2e-13 / w, ("w %g: %.12g"):format(w, got))
         local run = system(free):simulate { velocity0 = 1, t_end = t_end, dt = 1,
             events = { { when = function(t, theta) if theta > a and theta < a + w then return 1 end return -1 end } } }
         local told = run.events:filter(function(e) return e.kind == "user" end)

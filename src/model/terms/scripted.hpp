@@ -162,10 +162,10 @@ inline constexpr TermText Scripted::about{
     "is called with all three. breaks are times at which it jumps or kinks, so integrators do "
     "not step across them; with a period they repeat. M may also be the function itself. A "
     "function that is a formula (arithmetic, comparisons, if, for with constant bounds, math, "
-    "numbers that it only reads) is read: it runs without Lua, with the same bits, and the "
-    "times at which its conditions change are breaks; see e:obstacle. Runs with "
+    "numbers and excitations that it only reads) is read: it runs without Lua, with the same bits, and "
+    "the times at which its conditions change are breaks; see e:obstacle. Runs with "
     "integrator.spectral{} also locate its conditions on theta, velocity and states. A function "
-    "that is a sum of constants, powers of t, sines and exponentials between its breaks runs as "
+    "that is a sum of constants, powers of t, sines, exponentials and excitations between its breaks runs as "
     "native terms do, equal to rounding, where the run names no integrator.",
     "M = excitation.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 "
     "})\nprint(M(7), M:next_break(7))  --> 1.0\t8.0"};

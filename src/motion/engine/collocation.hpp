@@ -35,7 +35,7 @@ public:
     [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved because of noise, which need not be smoother from now on.
     bool found_noise(const Segment& segment, const Mode& mode) {
-        return noise_.found(segment, mode, tolerance_, sizes_.all);
+        return noise_.found(segment, mode, tolerance_, sizes_.all, proofs_);
     }
     /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
     [[nodiscard]] bool tells_rests() const {

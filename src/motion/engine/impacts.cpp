@@ -146,6 +146,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         const bool named = problem_.system.named;
         const std::span<double> all(now_.y);
         const std::span<double> given = all.first(asking_.told);
+        mechanics_.call_unread(now_.here(), now_.mode);
         if (!wanted.act->act(now_.t.hi, state, named ? given : given.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
         }

@@ -652,6 +652,31 @@ void Mechanics::each_function(const std::function<void(model::UserFunction&)>& c
     }
 }
 
+void Mechanics::call_unread(const Moment& at, const Mode& mode) const {
+    const auto is_unread = [](const Asked& asked) {
+        return asked.function != nullptr && asked.function->read() == nullptr;
+    };
+    for_each_signal([&](const Signal& s) { s.call_unread(at); });
+    for (const model::Body& body : system_.bodies) {
+        if (!body.moved) continue;
+        body.moved->motion.each_function([&](model::UserFunction& function) {
+            if (function.read() == nullptr) static_cast<void>(function.value(at.t, {}));
+        });
+    }
+    for (std::size_t k = 0; k < rates_.size(); ++k) {
+        if (is_unread(asked_rate(k))) static_cast<void>(rates_[k].value(at));
+    }
+    for (std::size_t e = 0; e < whens_.size(); ++e) {
+        if (is_unread(asked_when(e))) static_cast<void>(when(e, at));
+    }
+    for (std::size_t j = 0; j < joints(); ++j) {
+        if (!is_unread(asked_spring(j)) && !is_unread(asked_law(j))) continue;
+        static_cast<void>(joint_torque(j, at, mode, belt(j, at.t, at.side)));
+        const bool sticks = mode.rubs[j] != 0 && mode.friction[j].way == model::Motion::stuck;
+        if (sticks && is_unread(asked_law(j))) static_cast<void>(holding(j, model::Motion::forward, at));
+    }
+}
+
 bool Mechanics::may_go_on() const {
     bool may = true;
     each_function([&](model::UserFunction& function) { may = may && function.may_go_on(); });

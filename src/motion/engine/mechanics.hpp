@@ -290,6 +290,9 @@ public:
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
     }
+    /// Calls every function that is not read, so that variables shared by several functions are those of this moment,
+    /// as in a program that calls each of them once, in order.
+    void call_unread(const Moment& at, const Mode& mode) const;
     /// A user function and its current piece, for the inspection of formulas.
     struct Asked {
         model::UserFunction* function = nullptr;

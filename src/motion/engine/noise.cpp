@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/engine/unseen.hpp"
 #include "motion/roughness.hpp"
 
 namespace dinal::motion::engine {
@@ -41,8 +42,10 @@ double Noise::clear(double tolerance) const {
     return most;
 }
 
-bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes) {
-    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3;
+bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes,
+                  Proofs& proofs) {
+    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
+    std::vector<double> known;
     const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
     bool any = false;
     std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m);
@@ -62,7 +65,12 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
                             : i < n ? most_noise_of_motion * ever
                                     : most_noise_of_rate * tolerance * ever;
         double& noise = floor_.noise[i];
-        if (!(tail > tolerance * size) || !(tail <= most)) continue;
+        if (!(tail > tolerance * size)) continue;
+        if (!(tail <= most)) {  // the motion is nothing beside the numbers that its functions calculate with
+            if (known.empty()) known = proofs.roundings(s, mode);
+            if (tail <= few_roundings * known[i] && noise < 2 * tail) noise = std::max(2 * tail, known[i]), any = true;
+            continue;
+        }
         if (noise > 0 && tail <= varies * noise) {
             any = any || 2 * tail > noise;
             noise = std::max(noise, 2 * tail);

@@ -9,6 +9,8 @@
 
 namespace dinal::motion::engine {
 
+class Proofs;
+
 /// Measures it, and remembers it for the run. It resolves nothing itself.
 class Noise {
 public:
@@ -16,8 +18,9 @@ public:
 
     /// Returns whether a stretch that was not resolved, nor a longer one before it, is as rough on far shorter
     /// stretches, at one place as at another. From then on it need not be smoother than that. `sizes`: of the torques
-    /// on each body.
-    bool found(const Segment& segment, const Mode& mode, double tolerance, const std::vector<double>& sizes);
+    /// on each body. `proofs` know the rounding of functions that are read.
+    bool found(const Segment& segment, const Mode& mode, double tolerance, const std::vector<double>& sizes,
+               Proofs& proofs);
     /// Notes what has acted on a stretch that was resolved.
     void pass(const Segment& segment);
     [[nodiscard]] const Floor& floor() const { return floor_; }

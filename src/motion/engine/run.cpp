@@ -90,9 +90,7 @@ void Engine::begin() {
     for (const model::OwnState& state : problem_.drive.states) names.push_back(state.name);
     if (problem_.before == nullptr) {
         mechanics_.for_each_signal([&](Signal& s) { s.begin(now_.here(), names); });
-        bool good = true;
-        mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
-        if (!good) fail(Outcome::excitation_not_finite);
+        if (!sample_controllers()) fail(Outcome::excitation_not_finite);
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
         press_stops();
@@ -339,12 +337,20 @@ bool Engine::arrive(double x, bool whole) {
     if (!whole || (now_.after_break && !echoed)) breaks_.echo(now_.t.hi, 1);
     find_belt_slopes(now_.after_break ? std::nullopt : std::optional(x));
     project(now_.after_break ? Side::before : Side::at);
-    bool good = true;
-    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
-    if (!good) return fail(Outcome::excitation_not_finite);
+    if (!sample_controllers()) return fail(Outcome::excitation_not_finite);
     const bool changed = open_and_close();
     if (now_.after_break) return ask_after_break();
     return !changed || (decide(true) && goes_on());
+}
+
+/// The controllers that sample do so now if it is time. Returns false if one failed.
+bool Engine::sample_controllers() {
+    bool samples = false, good = true;
+    mechanics_.for_each_signal([&](const Signal& s) { samples = samples || s.has_sampled(); });
+    if (!samples) return true;
+    mechanics_.call_unread(now_.here(), now_.mode);
+    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
+    return good;
 }
 
 /// Loads, limits and belts may have jumped: what holds is asked again.

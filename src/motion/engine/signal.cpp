@@ -15,7 +15,8 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         if (!controller) part.function = std::get_if<model::Scripted>(&c.term);
         part.of_motion = part.function != nullptr && part.function->feedback;
         asks_the_motion_ |= part.of_motion;
-        asks_functions_ |= part.function != nullptr || part.delayed != nullptr;
+        const bool switches_by_function = part.relay != nullptr && part.relay->function != nullptr;
+        asks_functions_ |= part.function != nullptr || part.delayed != nullptr || switches_by_function;
         asks_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
         if (part.of_motion) {
             const Piecewise made(asking_, part.function->function.get(), part.function->delay);
@@ -100,6 +101,18 @@ double Signal::next_break(double t) const {
         if (!memory_[i].pending.empty()) first = std::min(first, memory_[i].pending.front().first);
     }
     return first;
+}
+
+void Signal::call_unread(const Moment& at) const {
+    const auto is_unread = [](const auto& owner) {
+        return owner != nullptr && owner->function != nullptr && owner->function->read() == nullptr;
+    };
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (is_unread(parts_[i].function) || is_unread(parts_[i].delayed)) static_cast<void>(value_of(i, at));
+    }
+    for (std::size_t r = 0; r < relays_.size(); ++r) {
+        if (is_unread(parts_[relays_[r]].relay)) static_cast<void>(until_switch(r, at));
+    }
 }
 
 void Signal::begin(const Moment& at, const std::vector<std::string>& names) {

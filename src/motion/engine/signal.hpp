@@ -220,12 +220,25 @@ public:
         }
     }
 
+    /// Calls its functions that are not read, whatever they give.
+    void call_unread(const Moment& at) const;
+
     // Controllers.
+    [[nodiscard]] bool has_sampled() const {
+        return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.sampled != nullptr; });
+    }
     /// Starts a run.
     void begin(const Moment& at, const std::vector<std::string>& names);
     /// Applies pending outputs and sampling instants at the time of `at`. Returns false if one failed.
     bool arrive(const Moment& at);
     [[nodiscard]] std::size_t relays() const { return relays_.size(); }
+    /// Visits the functions of relays that have one.
+    template <class F>
+    void for_each_relay_function(F f) const {
+        for (const std::size_t i : relays_) {
+            if (parts_[i].relay->function != nullptr) f(*parts_[i].relay->function);
+        }
+    }
     /// Positive until the relay must switch.
     [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }

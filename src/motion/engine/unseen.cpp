@@ -74,6 +74,13 @@ bool Unseen::is_told(double allowed, double part) {
            enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
+/// Discs grow by the roundings of each step.
+double Unseen::rounded() {
+    walk_.begin(*formula_, piece_, false);
+    for (const Input& input : inputs_) walk_.set(input.place, {cheb::value(input.series, 0), 0}, Interval{});
+    return walk_.run().disc.r / model::bounds::roundings_of_a_step;
+}
+
 double Unseen::value(double x) {
     for (const Input& input : inputs_) walk_.set(input.place, cheb::value(input.series, x));
     return walk_.run(condition_).disc.c;
@@ -294,6 +301,13 @@ void StretchProof::events() {
     for (std::size_t e = 0; e < mechanics_.events(); ++e) {
         if (begin(mechanics_.asked_when(e), time(0))) look(0, smallest, of_last_iteration);
     }
+    for (const Signal& load : mechanics_.loads()) {
+        load.for_each_relay_function([&](model::UserFunction& function) {
+            const model::Formula* formula = function.read();
+            if (formula == nullptr || formula->has_conditions_of_motion()) return;
+            if (begin({&function}, time(0))) look(0, smallest, of_last_iteration);
+        });
+    }
 }
 
 /// The belt, the friction and the spring of a joint.
@@ -339,6 +353,53 @@ bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside) {
     if (proof.place()) seen_ = s.time(*proof.place());
     if (proof.good()) failed_in_a_row_ = s.proven ? 0 : failed_in_a_row_ + 1;
     return proof.good();
+}
+
+std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> of(n + mechanics_.states());
+    const bool named = mechanics_.system().named;
+    const std::size_t told = 2 * n + mechanics_.states_of_user(), from = named ? 0 : 2;
+    const auto constant = [](double x) { return Series{x}; };
+    const auto add_of = [&](std::size_t k, double gain, model::Formula& formula, const model::terms::Piece* piece,
+                            double first, const double* speed) {
+        unseen_.begin(formula, piece);
+        unseen_.give(0, constant(first));
+        if (formula.takes_motion() && !named) {
+            unseen_.give(1, constant(s.y[0][0])), unseen_.give(2, constant(s.y[n][0]));
+        }
+        std::size_t place = formula.first_state();
+        const std::size_t behind = place + formula.state_count();
+        if (speed != nullptr && place < behind) unseen_.give(place++, constant(*speed));
+        for (std::size_t i = from; i < told && place < behind; ++i) unseen_.give(place++, constant(s.y[i][0]));
+        const double rounded = std::fabs(gain) * unseen_.rounded();
+        if (std::isfinite(rounded)) of[k] += rounded;
+    };
+    const auto add_asked = [&](std::size_t k, const Mechanics::Asked& asked, double first, const double* speed) {
+        model::Formula* formula = asked.function != nullptr ? asked.function->read() : nullptr;
+        if (formula != nullptr) add_of(k, 1, *formula, asked.piece, first, speed);
+    };
+    const double t = s.start.hi;
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        add_asked(n + k, mechanics_.asked_rate(k), t, nullptr);
+    }
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        double angle = 0, slip = -s.belts[j][0];
+        for (const auto& [body, by] : joint.of) angle += by * s.y[body][0], slip += by * s.y[n + body][0];
+        slip *= model::sign_of(mode.friction[j].way);
+        const bool alone = joint.friction.function == nullptr;
+        for (const auto& [body, by] : joint.of) {
+            mechanics_.loads()[j].for_each_read(
+                t, [&, k = body, per = by](model::Formula& formula, const auto* piece, double delay, double gain) {
+                    add_of(k, per * gain, formula, piece, t - delay, nullptr);
+                });
+            add_asked(body, mechanics_.asked_spring(j), angle, nullptr);
+            if (mode.friction[j].way != model::Motion::stuck)
+                add_asked(body, mechanics_.asked_law(j), alone ? slip : t, alone ? nullptr : &slip);
+        }
+    }
+    return of;
 }
 
 }  // namespace dinal::motion::engine

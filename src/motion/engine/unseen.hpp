@@ -40,6 +40,9 @@ public:
         return search(allowed(series_), budget);
     }
     [[nodiscard]] const model::terms::Piece* piece() const { return piece_; }
+    /// What the function may be off in the middle of the stretch by the rounding of its steps; not finite if that is
+    /// not known.
+    [[nodiscard]] double rounded();
 
 private:
     struct Input {
@@ -79,6 +82,9 @@ public:
 
     /// Returns false if one does something else, at seen(). The stretch is marked if that could not be proven.
     bool hides_nothing(Segment& segment, const Mode& mode, const Beside& beside);
+    /// Returns the rounding of functions that are read, at the beginning of the stretch: of the torques on each body
+    /// and of the rate of each state.
+    std::vector<double> roundings(const Segment& segment, const Mode& mode);
     /// The time at which a load did what its series does not: it is looked at until it is behind.
     [[nodiscard]] double seen() const { return seen_; }
     void see(double t) { seen_ = t; }
