@@ -213,11 +213,6 @@ bool sees_all(const model::System& system, const model::Drive& drive, bool locat
     };
     for (const auto* acting : {&drive.loads, &drive.belts}) std::for_each(acting->begin(), acting->end(), see_in);
     see_in(drive.base);
-    for (const model::Body& body : system.bodies) {
-        if (!body.moved) continue;
-        see_in(body.moved->motion);
-        all = all && !(body.moved->by_angle && body.moved->motion.has_script());  // its velocity is sampled
-    }
     for (const model::OwnState& state : drive.states) see(*state.rate);
     for (const model::WantedEvent& event : drive.events) see(*event.when);
     for (const model::Body& body : system.bodies) {
