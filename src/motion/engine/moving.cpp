@@ -65,7 +65,9 @@ private:
     std::pair<double, Piece> make(double t) {
         constexpr double enough = 8;  // times the rounding of the angles and of the times at which they are asked
         constexpr int most_looks = 40, patience = 12;
-        auto [from, to, next] = part_around(t);
+        const std::array<double, 3> part = part_around(t);
+        double from = part[0], to = part[1];
+        const double next = part[2];
         const auto halve = [&, t] {
             const double middle = from + (to - from) / 2;
             (t < middle ? to : from) = middle;
@@ -90,9 +92,9 @@ private:
             const bool smooth = tail <= enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
             if (told == Told::strays) least = model::never;  // a series that hid something is no measure
             ++in_vain;
-            const double part = smooth ? 0 : tail / size;
-            if (!std::isfinite(size) || smooth || part < least / 2) {
-                least = part, in_vain = 0;
+            const double off = smooth ? 0 : tail / size;
+            if (!std::isfinite(size) || smooth || off < least / 2) {
+                least = off, in_vain = 0;
                 cheb::Series<node_count - 1> slope = cheb::derivative(series);
                 for (double& c : slope) c /= h;
                 best = {from, {to, h, slope}};
