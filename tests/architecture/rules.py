@@ -211,6 +211,10 @@ def documents_make_a_path():
     for path, most in (("README.md", 650), ("docs/theory.md", 4000), ("docs/architecture.md", 900), ("docs/bodies.md", 2700)):
         if words(path) > most:
             complain(path, 1, f"{words(path)} words, {most} are the limit: move what belongs elsewhere")
+    with open(os.path.join(ROOT, "CHANGELOG.md"), encoding="utf-8") as file:
+        newest = len(re.split(r"^## ", file.read(), flags=re.M)[1].split())
+    if newest > 600:
+        complain("CHANGELOG.md", 1, f"the newest version has {newest} words, 600 are the limit: say what users must know")
     total = sum(words(path) for path in files((".md",)) if re.match(r"(README|CHANGELOG)\.md$|docs/(?!es/)", path))
     if total > 50000:
         complain("docs/README.md", 1, f"the documents have {total} words, 50000 are the limit: say each thing once")
