@@ -74,7 +74,7 @@ for _, x in ipairs{ 0.1, 0.2, 0.4, 0.6 } do
 end
 assert(stops(0.4) == 1 and stops(0.6) == 0)
 
-fig:quote{ 0.5, 1.35, moving, linear, 100 * (linear / moving - 1), math.pi / 4, top, at, 0.8, edge, 0.9575, foot, 0.965,
+fig:quote{ 0.5, 1.35, moving, linear, 100 * (linear / moving - 1), math.pi / 4, top, at,
   0.4, stops(0.1), 0.1, stops(0.2), 0.2, 0.4, 0.6 }
 return fig:draw(picture)
 

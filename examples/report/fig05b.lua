@@ -48,7 +48,7 @@ fig:line("gamma = 0.6, r = 0.7", early / degree, "", below / degree)
 fig:line("gamma = 0.6, r = 1.35", "", "", above / degree)
 
 fig:quote{ 0.5, 1.35, peak / degree, fundamental / degree, viscous / degree, 0.6, below / degree, above / degree,
-  early / degree, 0.7, 0.8 }
+  early / degree, 0.7 }
 return fig:draw(picture)
 
 --[[ prints

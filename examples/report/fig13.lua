@@ -6,10 +6,8 @@ local fig = case.figure("13", "zeta = 0.02387, h = 0.4, 20 steps with the slip o
 local number, picture = case.raised_step(0.4, 20)
 fig:raised_step(number)
 
-local weak = case.raised_step(0.3, 80) -- of figure 12
 fig:quote{ 13, 0.4, number.slip, number.rk4, number.exact, -- and what is said below the table
-  number.slip_limit, 0.4, number.slip_end, 20, number.rk4_limit,
-  0.3, 80, weak.rk4_end, weak.exact_end }
+  number.slip_limit, 0.4, number.slip_end, 20, number.rk4_limit }
 return fig:draw(picture)
 
 --[[ prints

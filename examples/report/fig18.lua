@@ -19,7 +19,7 @@ fig:line("at t/T0 =", "", "", t[1] / sys.T0)
 fig:line("within 0.01 from t =", "", "", settled)
 fig:line("largest error", missed)
 
-fig:quote{ 18, 2.387, top[1], t[1] / sys.T0, settled, missed, math.exp(-1), 1 / (2 * math.pi) }
+fig:quote{ 18, 2.387, top[1], t[1] / sys.T0, settled, missed }
 return fig:draw{
   case.response{ { run.t, run.theta }, xlim = { 0, 3 }, ylim = { -0.6, 0.8 }, yticks = 0.2 },
   case.plane(run, 1.1),

@@ -25,8 +25,7 @@ local coarse = case.run{ gamma = 0.167, velocity0 = 1, t_end = 3, h = 0.01 }
 fig:line("at rest with h = 0.01", coarse.theta[#coarse])
 
 fig:quote{ 0.167, 0.001, known[1], known[2], known[3], 0.334, known_t[1] / sys.T0, known[4], known_t[4] / sys.T0,
-  0.167 - known[4], old.theta[#old], known[4] - old.theta[#old], 0.01, known[4] - coarse.theta[#coarse],
-  1, from_one, (1 - left) / (4 * 0.167), left }
+  0.167 - known[4], old.theta[#old], known[4] - old.theta[#old], 0.01, known[4] - coarse.theta[#coarse] }
 return fig:draw{
   case.columns(run, { "theta", "friction/k" }, { ylim = { -0.6, 1 }, yticks = 0.2 }),
   case.plane(run, 1.1),

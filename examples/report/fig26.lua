@@ -20,7 +20,7 @@ fig:line("from turn to turn, in T0", "", half, math.pi / sys.omega1 / sys.T0)
 fig:line("zeta, gamma from extremes", "", zeta, x_f)
 
 fig:quote{ 0.119, 0.06, known[1], known[2], known[3], known[4], known_t[4] / sys.T0, half, 0.002,
-  old.theta[#old], zeta, x_f }
+  old.theta[#old] }
 return fig:draw{
   case.columns(run, { "theta", "friction/k" }, { ylim = { -0.6, 1 }, yticks = 0.2 }),
   case.plane(run, 1.1),

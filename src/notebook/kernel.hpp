@@ -1,4 +1,20 @@
-// The prompt for other programs: requests and answers as lines of JSON. docs/notebook.md describes them.
+// The prompt for other programs: requests and answers as lines of JSON.
+//
+// `dinal --kernel=N` reads requests from standard input, one JSON object a line, and writes answers, one JSON object a
+// line, to the open file descriptor N. Scripts print to standard output and standard error; this output is written
+// before the answer. SIGINT interrupts the current request; the end of standard input ends the program.
+//
+//     {"id": 1, "do": "execute", "code": "x = 2\nx"}
+// is answered by {"done": 1, "ok": true, "notice": ""}, or by "ok": false with an "error". Before that come, while the
+// code runs, {"show": FORMS} for each picture and {"progress": "a line"} ("" in the end), and {"value": FORMS} for the
+// value of the last line. FORMS maps MIME types to text: text/plain always, also text/html or image/svg+xml.
+//     {"id": 2, "do": "complete", "before": "run:pl"}
+// is answered by {"done": 2, "names": ["plot{"], "word": 2}: the names that may replace the last 2 bytes.
+//     {"id": 3, "do": "inspect", "before": "sys", "after": "tem"}
+// is answered by {"done": 3, "text": "..."}: the help for the name around the cursor.
+//     {"id": 4, "do": "check", "code": "for i = 1, 3 do"}
+// is answered by {"done": 4, "state": "incomplete"}, or complete, or invalid.
+// A line has at most 16 MiB. Any other line is answered by {"done": ..., "wrong": "a sentence"}.
 #pragma once
 
 #include <string>

@@ -211,6 +211,10 @@ def documents_make_a_path():
     for path, most in (("README.md", 650), ("docs/theory.md", 4000), ("docs/architecture.md", 900), ("docs/bodies.md", 2700)):
         if words(path) > most:
             complain(path, 1, f"{words(path)} words, {most} are the limit: move what belongs elsewhere")
+    with open(os.path.join(ROOT, "CHANGELOG.md"), encoding="utf-8") as file:
+        newest = len(re.split(r"^## ", file.read(), flags=re.M)[1].split())
+    if newest > 600:
+        complain("CHANGELOG.md", 1, f"the newest version has {newest} words, 600 are the limit: say what users must know")
     total = sum(words(path) for path in files((".md",)) if re.match(r"(README|CHANGELOG)\.md$|docs/(?!es/)", path))
     if total > 50000:
         complain("docs/README.md", 1, f"the documents have {total} words, 50000 are the limit: say each thing once")
@@ -224,6 +228,26 @@ def documents_name_what_is_there():
         for name in re.findall(r"`([\w/.-]+\.(?:[ch]pp|lua|py|sh))`", line):
             if "NAME" not in name and not any(file.endswith("/" + name) for file in known):
                 complain(path, number, f"there is no {name}")
+
+
+def the_tour_leads_through_the_code():
+    """Each source that the tour names exists, and each function or type occurs in a source of the same item."""
+    path, names = "docs/tour.md", 0
+    text = "\n".join(line for _, line in lines(path))
+    text = re.sub(r"```.*?```", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
+    for item in re.finditer(r"\S(?:.|\n(?!\n|\d+\. |- ))*", text):
+        number, words, sources = text.count("\n", 0, item.start()) + 1, re.findall(r"`([^`]+)`", item[0]), ""
+        for source in (word for word in words if word.startswith("src/")):
+            if os.path.exists(os.path.join(ROOT, source)):
+                sources += "\n".join(line for _, line in lines(source))
+            else:
+                complain(path, number, f"there is no {source}")
+        for name in (word for word in words if re.fullmatch(r"[A-Za-z]\w*(::\w+)*", word)):
+            names += 1
+            if not re.search(rf"\b{name}\b", sources):
+                complain(path, number, f"{name} is in none of the sources named beside it")
+    if names < 40:
+        complain(path, 1, f"the tour names {names} functions and types: is it read right?")
 
 
 def retired_words_are_gone():
@@ -249,7 +273,7 @@ def anchors(goal):
 for rule in (includes_point_down, rooms_are_namespaces, forbidden_things_are_absent, decompositions_are_compiled_once,
              headers_say_what_they_hold, headers_have_two_users, lua_tests_can_fail, tests_are_namespaces,
              catch_is_included_once, nothing_is_left_for_later, links_lead_somewhere, documents_make_a_path,
-             documents_name_what_is_there, retired_words_are_gone):
+             documents_name_what_is_there, the_tour_leads_through_the_code, retired_words_are_gone):
     rule()
 if not any(True for _ in files((".hpp",))):
     complaints.append("no headers found: is the folder right?")
