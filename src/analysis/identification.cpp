@@ -1133,7 +1133,7 @@ private:
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors are those of a motion, and there may be none
             found.error.fill(0);
-            found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
+            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) ratio->error = 0;
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
             found.low.fill(-INFINITY), found.high.fill(INFINITY);
         }
@@ -1242,9 +1242,7 @@ private:
     void ratios(const Eigen::MatrixXd& covariance, double spread, Identified& found) const {
         const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
         const double Rd = at(found.value, Unknown::Rd);
-        found.omega0 = omega0_of(found.value);
-        found.zeta = zeta_of(found.value);
-        found.Rd_over_k = dry_of(found.value);
+        const double omega0 = omega0_of(found.value), zeta = zeta_of(found.value);
         using Value = double (*)(const Parameters&);
         const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
             if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
@@ -1252,10 +1250,10 @@ private:
             by.head(4) << by_I, by_k, by_C, by_Rd;
             return std::max(least_error(value), spread * std::sqrt(std::max(0.0, by.dot(covariance * by))));
         };
-        found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
-        found.zeta_error =
-            error(Unknown::C, zeta_of, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
-        found.Rd_over_k_error = error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k);
+        found.omega0 = {omega0, error(Unknown::k, omega0_of, -omega0 / (2 * I), omega0 / (2 * k), 0, 0)};
+        found.zeta = {zeta,
+                      error(Unknown::C, zeta_of, -zeta / (2 * I), -zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0)};
+        found.Rd_over_k = {dry_of(found.value), error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k)};
     }
 
     const IdentifyQuestion& question_;
