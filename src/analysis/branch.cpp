@@ -177,6 +177,21 @@ private:
         Vector x = {}, slope = {};  // slope by p
         double p = 0;
     };
+    struct Progress {
+        const Spot& first;
+        const Vector& first_ahead;
+        Spot now;
+        Vector ahead;                       // tangent at `now`, in the direction of the walk
+        double longest = first_step;        // limit of the next step
+        int creeps = 0;                     // short steps since the last long one
+        std::optional<Passed> passed = {};  // none after a corner
+        bool recentred = false;             // whether `first` lies on a section that the walk has left
+    };
+    struct Step {
+        double target, left;  // the next requested parameter value, and the distance to it in ranges
+        bool reaches;         // whether the step ends there
+        double length;
+    };
     /// The last point at which a test function exceeded its rounding.
     struct Anchor {
         Spot spot;
@@ -209,122 +224,153 @@ private:
 
     [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
 
-    BranchPath followed(Spot now, Vector ahead) {
-        const Spot first = now;
-        const Vector first_ahead = ahead;
-        double longest = first_step;
+    BranchPath followed(const Spot& first, const Vector& first_ahead) {
+        Progress walk{.first = first, .first_ahead = first_ahead, .now = first, .ahead = first_ahead};
         const double smallest = units_.maxCoeff();
-        int creeps = 0;
-        bool recentred = false;
-        std::optional<Passed> passed;
-        orientation_ = orientation(now.slopes, ahead);
-        specials_before(now, ahead);  // sets the anchors
+        orientation_ = orientation(first.slopes, first_ahead);
+        specials_before(first, first_ahead);  // sets the anchors
         const std::size_t most_points = 2000 + 20 * values_.size();
         path_.end = WalkEnd::lost;
-        const Eigen::Index n = now.x.size();
         while (path_.points.size() < most_points) {
-            rescale(now, ahead);
-            if (greatest_.maxCoeff() > boundless * smallest) {
-                path_.end = WalkEnd::vanished;
-                return path_;
+            rescale(walk.now, walk.ahead);
+            if (greatest_.maxCoeff() > boundless * smallest) return ended(WalkEnd::vanished);
+            const Step step = next_step(walk);
+            if (step.left * range_ <= slack_) return ended(WalkEnd::range);
+            auto spot = end_of_step(walk, step);
+            if (circuit_.stopped()) return ended(WalkEnd::stopped);
+            const Vector moved = spot ? Vector(scaled(*spot) - scaled(walk.now)) : Vector::Zero(walk.now.x.size() + 1);
+            const Vector on = spot ? tangent(*spot, moved) : walk.ahead;
+            const bool close =
+                spot && moved.norm() <= 2 * step.length && moved.dot(walk.ahead) > straight / 2 * moved.norm();
+            if (!close || on.dot(walk.ahead) <= straight) {
+                const Bend bend = meet_bend(walk, step.length, close);
+                if (bend == Bend::lost) return path_;
+                if (bend == Bend::retry) continue;
             }
-            const double target = next_value(now.p, ahead[n]);
-            const double left = std::fabs(target - now.p) / range_;
-            if (left * range_ <= slack_) {
-                path_.end = WalkEnd::range;
-                return path_;
-            }
-            const bool reaches = left <= longest * std::fabs(ahead[n]);
-            const double step = reaches ? left / std::fabs(ahead[n]) : longest;
-            reach_ = step;
-            Vector guess = scaled(now) + step * ahead;
-            if (reaches) {
-                if (passed) curve_on(guess, *passed, now, ahead, target);
-                guess[n] = target / range_;
-            }
-            rough_ = true;
-            auto spot = correct(guess, reaches ? across() : ahead, now.slopes);
-            rough_ = false;
-            if (circuit_.stopped()) {
-                path_.end = WalkEnd::stopped;
-                return path_;
-            }
-            const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(n + 1);
-            const Vector on = spot ? tangent(*spot, moved) : ahead;
-            const bool close = spot && moved.norm() <= 2 * step && moved.dot(ahead) > straight / 2 * moved.norm();
-            if (!close || on.dot(ahead) <= straight) {
-                const bool corner = close && step < corner_step;
-                const bool stalls = step / 2 <= shortest_step || creeps > most_creeps;
-                if ((corner || stalls) && round_corner(now, ahead, step)) {
-                    longest = first_step, creeps = 0;
-                    passed.reset();
-                    continue;
-                }
-                if (stalls) return path_;
-                longest = step / 2;
-                if (!corner) continue;
-            }
-            if (step > corner_step) orientation_ = orientation(spot->slopes, on);
-            creeps = step < creeping ? creeps + 1 : 0;
-            longest = std::min(longest_step, 1.5 * longest);
+            if (step.length > corner_step) orientation_ = orientation(spot->slopes, on);
+            walk.creeps = step.length < creeping ? walk.creeps + 1 : 0;
+            walk.longest = std::min(longest_step, 1.5 * walk.longest);
             find_motion(*spot);
-            if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
-            std::vector<Special> specials = specials_before(*spot, ahead);
-            // At a Hopf point the branch is vertical, and the sign of its slope is rounding.
-            if (on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright) {
-                const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
-                if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
-                    const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
-                        return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
-                    });
-                    specials.insert(after, {std::move(*fold), BranchKind::fold});
-                }
-            }
-            bool inside = true;
-            const Spot* from = &now;
-            for (const Special& special : specials) {
-                if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // at the present point, to rounding
-                    add(special.spot, special.kind);
-                    continue;
-                }
-                inside = inside && add_way(*from, special.spot, special.kind);
-                from = &special.spot;
-            }
-            if (!inside || !add_way(*from, *spot, BranchKind::point)) {
-                path_.end = WalkEnd::range;
-                return path_;
-            }
+            if (!circuit_.is_half() && becomes_symmetric(walk.now.motion, spot->motion)) return path_;
+            if (!add_step(walk, *spot, specials_of_step(walk, *spot, on, moved))) return ended(WalkEnd::range);
             if (goes_back()) return path_;
-            if (!recentred && path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
-                on.dot(first_ahead) > straight) {
-                path_.end = WalkEnd::closed;
-                return path_;
-            }
-            if (circuit_.cycles() &&
-                circuit_.units(spot->x, spot->lap, spot->motion).cwiseQuotient(greatest_).maxCoeff() < vanishes) {
-                path_.end = WalkEnd::vanished;
-                return path_;
-            }
-            passed = Passed{now.x, slope_by_p(ahead), now.p};
-            ahead = on;
-            if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
-                recentred = true;
-                seen_.clear();
-                passed.reset();
-                anchors_.clear();
-                now.x = places->front();
-                const Vector before = scaled(now);
-                spot->x = places->back();
-                spot->lap = circuit_.lap(spot->x, spot->p);
-                if (!spot->lap.finished) return path_;
-                differentiate(*spot);
-                if (spot->slopes.size() == 0) return path_;
-                ahead = tangent(*spot, scaled(*spot) - before);
-                specials_before(*spot, ahead);
-            }
-            now = std::move(*spot);
+            if (is_closed(walk, *spot, on, step.length)) return ended(WalkEnd::closed);
+            if (has_vanished(*spot)) return ended(WalkEnd::vanished);
+            walk.passed = Passed{walk.now.x, slope_by_p(walk.ahead), walk.now.p};
+            walk.ahead = on;
+            if (!recentre(walk, *spot)) return path_;
+            walk.now = std::move(*spot);
         }
         return path_;
+    }
+
+    BranchPath ended(WalkEnd end) {
+        path_.end = end;
+        return path_;
+    }
+
+    [[nodiscard]] Step next_step(const Progress& walk) const {
+        const double by_p = walk.ahead[walk.now.x.size()];
+        const double target = next_value(walk.now.p, by_p);
+        const double left = std::fabs(target - walk.now.p) / range_;
+        const bool reaches = left <= walk.longest * std::fabs(by_p);
+        return {target, left, reaches, reaches ? left / std::fabs(by_p) : walk.longest};
+    }
+
+    /// The point of the branch at the end of a step; none if the correction of the guess fails.
+    std::optional<Spot> end_of_step(const Progress& walk, const Step& step) {
+        reach_ = step.length;
+        Vector guess = scaled(walk.now) + step.length * walk.ahead;
+        if (step.reaches) {
+            if (walk.passed) curve_on(guess, *walk.passed, walk.now, walk.ahead, step.target);
+            guess[walk.now.x.size()] = step.target / range_;
+        }
+        rough_ = true;
+        auto spot = correct(guess, step.reaches ? across() : walk.ahead, walk.now.slopes);
+        rough_ = false;
+        return spot;
+    }
+
+    /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step. A short
+    /// step across a corner that was not rounded stands.
+    enum class Bend { stands, retry, lost };
+    Bend meet_bend(Progress& walk, double length, bool close) {
+        const bool corner = close && length < corner_step;
+        const bool stalls = length / 2 <= shortest_step || walk.creeps > most_creeps;
+        if ((corner || stalls) && round_corner(walk.now, walk.ahead, length)) {
+            walk.longest = first_step, walk.creeps = 0;
+            walk.passed.reset();
+            return Bend::retry;
+        }
+        if (stalls) return Bend::lost;
+        walk.longest = length / 2;
+        return corner ? Bend::stands : Bend::retry;
+    }
+
+    /// The special points of a step to `spot`, where the tangent is `on`, in order.
+    std::vector<Special> specials_of_step(const Progress& walk, const Spot& spot, const Vector& on,
+                                          const Vector& moved) {
+        const Vector& ahead = walk.ahead;
+        const Eigen::Index n = spot.x.size();
+        std::vector<Special> specials = specials_before(spot, ahead);
+        // At a Hopf point the branch is vertical, and the sign of its slope is rounding.
+        const bool turns = on[n] * ahead[n] < 0 && std::max(std::fabs(on[n]), std::fabs(ahead[n])) > upright;
+        if (!turns) return specials;
+        const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
+        if (auto fold = zero_between(walk.now, spot, ahead[n], on[n], slope)) {
+            const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
+                return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
+            });
+            specials.insert(after, {std::move(*fold), BranchKind::fold});
+        }
+        return specials;
+    }
+
+    /// Adds the points of a step. Returns whether the branch continues inside the range.
+    bool add_step(const Progress& walk, const Spot& spot, const std::vector<Special>& specials) {
+        bool inside = true;
+        const Spot* from = &walk.now;
+        for (const Special& special : specials) {
+            if (walk.ahead.dot(scaled(special.spot) - scaled(walk.now)) < 0) {  // at the present point, to rounding
+                add(special.spot, special.kind);
+                continue;
+            }
+            inside = inside && add_way(*from, special.spot, special.kind);
+            from = &special.spot;
+        }
+        return inside && add_way(*from, spot, BranchKind::point);
+    }
+
+    /// Returns whether the walk is back at its first point.
+    [[nodiscard]] bool is_closed(const Progress& walk, const Spot& spot, const Vector& on, double length) const {
+        return !walk.recentred && path_.points.size() > 10 && (scaled(spot) - scaled(walk.first)).norm() < length &&
+               on.dot(walk.first_ahead) > straight;
+    }
+
+    [[nodiscard]] bool has_vanished(const Spot& spot) const {
+        return circuit_.cycles() &&
+               circuit_.units(spot.x, spot.lap, spot.motion).cwiseQuotient(greatest_).maxCoeff() < vanishes;
+    }
+
+    /// Moves the section of a cycle if the motion has drifted away from it. Returns false if the motion cannot be
+    /// continued there.
+    bool recentre(Progress& walk, Spot& spot) {
+        const auto places = circuit_.recentred(spot.motion, {{walk.now.x, walk.now.p}, {spot.x, spot.p}});
+        if (!places) return true;
+        walk.recentred = true;
+        seen_.clear();
+        walk.passed.reset();
+        anchors_.clear();
+        walk.now.x = places->front();
+        const Vector before = scaled(walk.now);
+        spot.x = places->back();
+        spot.lap = circuit_.lap(spot.x, spot.p);
+        if (!spot.lap.finished) return false;
+        differentiate(spot);
+        if (spot.slopes.size() == 0) return false;
+        walk.ahead = tangent(spot, scaled(spot) - before);
+        specials_before(spot, walk.ahead);
+        return true;
     }
 
     [[nodiscard]] Vector slope_by_p(const Vector& tangent) const {

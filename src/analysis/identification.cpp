@@ -43,7 +43,7 @@ bool is_sought(const IdentifyQuestion& question, Unknown which) {
     return which != Unknown::Re && (which != Unknown::I || is_given(Unknown::k));
 }
 
-/// By so much of the sum of squares two fits may differ that are one.
+/// Two fits count as one if their sums of squares differ by no more than this part.
 constexpr double same_fit = 1e-6;
 bool is_same(const LeastSquares& a, const LeastSquares& b) {
     return std::fabs(a.sum - b.sum) <= same_fit * a.sum;
@@ -56,7 +56,7 @@ constexpr double suspected = 3;
 /// A residual that is less, in ranges of the record, is rounding.
 constexpr double least_noise = 1e-7;
 
-/// What is held so stays where it is.
+/// A parameter that is held by this stays where it is.
 constexpr double firmly = 1e8;
 
 /// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
@@ -96,7 +96,7 @@ struct Decay {
     double extremes = 0;  // infinity when it swings for ever
     double zeta = 0, shift = 0;
 
-    /// How far out the turn is, at which the mass may be made to rest; below 0 on the other side.
+    /// The amplitude at a turn, where the mass may be made to rest; negative if the turn lies beyond the middle.
     [[nodiscard]] double size_at(double turn) const {
         const double theta = theory::HalfCycles(zeta, shift).after(turn, first.theta);
         const bool below = (first.theta < 0) != (std::fmod(turn, 2) != 0);
@@ -115,18 +115,41 @@ std::optional<Decay> decay_of(const Parameters& p) {
     return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
 }
 
+/// The measured angles, and what they show without a system.
+struct Record {
+    explicit Record(const IdentifyQuestion& question)
+        : theta(question.theta.size()),
+          cut(cut_off(question.theta)),
+          span(question.t.back() - question.t.front()),
+          noise(noise_of(question.theta)) {
+        std::copy(question.theta.begin(), question.theta.end(), theta.data());
+        range = theta.maxCoeff() - theta.minCoeff();
+        turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
+    }
+
+    /// Returns whether the last samples differ by no more than noise.
+    [[nodiscard]] bool ends_at_rest() const {
+        const Eigen::Index n = theta.size();
+        const auto tail = theta.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
+        return tail.maxCoeff() - tail.minCoeff() <= 8 * noise + 1e-6 * range;
+    }
+    /// The natural frequency of a swing in each sample.
+    [[nodiscard]] double highest_omega0() const {
+        constexpr double a_sample = 2 * std::numbers::pi;
+        return a_sample * static_cast<double>(theta.size() - 1) / span;
+    }
+
+    Eigen::VectorXd theta;
+    CutOff cut;
+    double range, span, noise;
+    std::vector<std::size_t> turns;  // places of the turning points
+};
+
 /// Fits from several starts, of which the best one is kept.
 class Identification {
 public:
     Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
-        : question_(question), monitor_(monitor), measured_(question.theta.size()) {
-        std::copy(question.theta.begin(), question.theta.end(), measured_.data());
-        const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
-        range_ = *high - *low;
-        span_ = question.t.back() - question.t.front();
-        cut_ = cut_off(question.theta);
-        noise_ = noise_of(question.theta);
-        turns_ = turning_points(question.theta, std::clamp(6 * noise_, 0.04 * range_, 0.4 * range_));
+        : question_(question), monitor_(monitor), record_(question) {
         choose_unknowns();
     }
 
@@ -173,7 +196,7 @@ private:
         if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
         return all;
     }
-    /// What is fitted of these parameters. Of Re that is what it exceeds Rd by: below Rd nothing would depend on it.
+    /// The fitted ones of these parameters. Re is fitted as Re - Rd: below Rd nothing would depend on it.
     [[nodiscard]] Eigen::VectorXd fitted_of(const Parameters& all) const {
         Eigen::VectorXd p(count());
         for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
@@ -187,24 +210,20 @@ private:
     /// Each swing has samples, and the first velocity is one that the samples show: beyond that, where a search may fly
     /// to, runs have no end and fits no meaning.
     [[nodiscard]] bool is_seen(const Parameters& p) const {
-        const double highest = highest_omega0();
+        const double highest = record_.highest_omega0();
         constexpr double most = 10;  // ranges of the record from one sample to the next
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
         return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
-               (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * range_ * highest);
+               (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * record_.range * highest);
     }
 
-    [[nodiscard]] double highest_omega0() const {
-        constexpr double a_sample = 2 * std::numbers::pi;
-        return a_sample * static_cast<double>(question_.t.size() - 1) / span_;
-    }
-    /// What the instrument shows of the motion with these parameters.
+    /// The motion with these parameters as the instrument shows it.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows) {
         return shown(moved(p, rows));
     }
     [[nodiscard]] std::optional<Eigen::VectorXd> shown(std::optional<Eigen::VectorXd> theta) const {
-        if (theta && cut_.at_low > 0) *theta = theta->cwiseMax(cut_.low);
-        if (theta && cut_.at_high > 0) *theta = theta->cwiseMin(cut_.high);
+        if (theta && record_.cut.at_low > 0) *theta = theta->cwiseMax(record_.cut.low);
+        if (theta && record_.cut.at_high > 0) *theta = theta->cwiseMin(record_.cut.high);
         return theta;
     }
 
@@ -282,19 +301,19 @@ private:
                     break;
                 case Unknown::Rd:
                 case Unknown::Re:
-                    scale.typical[i] = 0.01 * k * range_;
+                    scale.typical[i] = 0.01 * k * record_.range;
                     scale.least[i] = 0;
-                    scale.whole[i] = question_.M ? std::max(k * range_, at(start, which)) : k * range_;
+                    scale.whole[i] = question_.M ? std::max(k * record_.range, at(start, which)) : k * record_.range;
                     break;
                 case Unknown::theta0:
                 case Unknown::offset:
-                    scale.typical[i] = 0.1 * range_;
-                    scale.hold[i] = noise_ / (loosely * range_);
-                    scale.whole[i] = range_;
+                    scale.typical[i] = 0.1 * record_.range;
+                    scale.hold[i] = record_.noise / (loosely * record_.range);
+                    scale.whole[i] = record_.range;
                     break;
                 case Unknown::velocity0:
-                    scale.typical[i] = 0.1 * range_ * omega;
-                    scale.whole[i] = std::max(range_ * omega, std::fabs(at(start, which)));
+                    scale.typical[i] = 0.1 * record_.range * omega;
+                    scale.whole[i] = std::max(record_.range * omega, std::fabs(at(start, which)));
                     break;
             }
         }
@@ -332,7 +351,7 @@ private:
             at(base_, Unknown::velocity0) = 0;
             const FitScale scale = scale_of(base_);
             FitScale held = scale;
-            held.hold[place] = firmly * range_ / scale.typical[place];
+            held.hold[place] = firmly * record_.range / scale.typical[place];
             const auto let_go = fit(fitted_of(base_), question_.t.size(), held, 40);
             const auto all = let_go ? fit(let_go->parameters, question_.t.size(), scale, 40) : std::nullopt;
             if (all && all->sum < best_->sum) moving_ = all->parameters;
@@ -351,9 +370,9 @@ private:
         best_breakaway_ = breakaway_;
     }
 
-    /// How many samples are fitted one after another; the last of a free decay end at its last turn, for behind it the
-    /// motion may end.
-    /// A swing cannot be taken for the next one where what came before is known already.
+    /// The numbers of samples that are fitted one after another. A fit of a longer part takes no swing for the next
+    /// one, because it begins with the fit of a shorter part. A free decay ends at its last turn, behind which it may
+    /// rest.
     [[nodiscard]] std::vector<std::size_t> stages(double period) const {
         std::vector<std::size_t> rows;
         const double first = question_.t.front();
@@ -364,22 +383,26 @@ private:
             if (!question_.M) break;
             length *= 2;
         }
-        if (!question_.M && turns_.size() > left_out_) rows.push_back(turns_[turns_.size() - 1 - left_out_] + 1);
+        if (!question_.M && record_.turns.size() > left_out_)
+            rows.push_back(record_.turns[record_.turns.size() - 1 - left_out_] + 1);
         return rows;
     }
 
     [[nodiscard]] std::optional<LeastSquares> fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
                                                   int steps) {
         const auto model = [this, rows](const Eigen::VectorXd& q) { return predicted(filled(q), rows); };
-        return least_squares(model, measured_.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
+        return least_squares(model, record_.theta.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
     }
 
     [[nodiscard]] double deviation() const {
-        const auto told = measured_.size() - static_cast<Eigen::Index>(cut_.at_low + cut_.at_high) - count();
+        const auto told =
+            record_.theta.size() - static_cast<Eigen::Index>(record_.cut.at_low + record_.cut.at_high) - count();
         return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, told)));
     }
     /// As good as the noise, which is known to a few parts of its root from a record of this length.
-    [[nodiscard]] bool is_settled() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
+    [[nodiscard]] bool is_settled() const {
+        return deviation() <= std::max(1.06 * record_.noise, 1e-9 * record_.range);
+    }
     [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
 
     // ---- where to start: from the extremes of a free decay, or by the weak form of the driven equation
@@ -400,7 +423,7 @@ private:
         at(p, Unknown::theta0) = given(Unknown::theta0, tangent.value - at(p, Unknown::offset));
         // A slope that noise could have made is none: a mass that stands is mostly one that was let go.
         const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
-        const double unsure = 3 * noise_ * std::sqrt(12 / samples) / a_while;
+        const double unsure = 3 * record_.noise * std::sqrt(12 / samples) / a_while;
         at(p, Unknown::velocity0) = given(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
         return p;
     }
@@ -409,45 +432,47 @@ private:
     [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const {
         const double ratio = -std::log(q) / std::numbers::pi, zeta = ratio / std::hypot(1, ratio);
         double zero = 0;
-        for (std::size_t i = 0; i + 1 < turns_.size(); ++i) {
-            const double a = question_.theta[turns_[i]], b = question_.theta[turns_[i + 1]];
-            zero += ((b + q * a) / (1 + q) - (a > b ? dry : -dry)) / static_cast<double>(turns_.size() - 1);
+        for (std::size_t i = 0; i + 1 < record_.turns.size(); ++i) {
+            const double a = question_.theta[record_.turns[i]], b = question_.theta[record_.turns[i + 1]];
+            zero += ((b + q * a) / (1 + q) - (a > b ? dry : -dry)) / static_cast<double>(record_.turns.size() - 1);
         }
         return common_start(omega1 / std::sqrt(1 - zeta * zeta), zeta, dry, zero);
     }
 
     [[nodiscard]] std::vector<Parameters> free_starts() const {
         std::vector<Parameters> starts;
-        const std::size_t n = turns_.size();
+        const std::size_t n = record_.turns.size();
         if (n < 2) {
             const double rest = question_.theta.back();
             for (const double half : {0.5, 0.25, 1.0, 0.1, 2.0}) {
                 for (const double zeta : {0.05, 0.5}) {
-                    starts.push_back(common_start(std::numbers::pi / (half * span_), zeta, 0.1 * range_, rest));
+                    starts.push_back(
+                        common_start(std::numbers::pi / (half * record_.span), zeta, 0.1 * record_.range, rest));
                 }
-                starts.push_back(common_start(std::numbers::pi / (half * span_), 1.5, 0.02 * range_, rest));
+                starts.push_back(
+                    common_start(std::numbers::pi / (half * record_.span), 1.5, 0.02 * record_.range, rest));
             }
             return starts;
         }
-        const double omega1 =
-            std::numbers::pi * static_cast<double>(n - 1) / (question_.t[turns_.back()] - question_.t[turns_.front()]);
+        const double omega1 = std::numbers::pi * static_cast<double>(n - 1) /
+                              (question_.t[record_.turns.back()] - question_.t[record_.turns.front()]);
         std::vector<double> swings;
         for (std::size_t i = 0; i + 1 < n; ++i) {
-            swings.push_back(std::fabs(question_.theta[turns_[i]] - question_.theta[turns_[i + 1]]));
+            swings.push_back(std::fabs(question_.theta[record_.turns[i]] - question_.theta[record_.turns[i + 1]]));
         }
         const double steps = std::max(1.0, static_cast<double>(swings.size() - 1));
         const double q = std::clamp(std::pow(swings.back() / swings.front(), 1 / steps), 0.02, 0.9999);
         const double loss = std::max(0.0, (swings.front() - swings.back()) / (4 * steps));
         if (swings.size() >= 3) {
             const auto [slope, lost] = line_through(swings);
-            if (slope > 0.05 && slope < 1.02 && lost > -0.02 * range_) {
+            if (slope > 0.05 && slope < 1.02 && lost > -0.02 * record_.range) {
                 const double kept = std::min(slope, 0.9999);
                 starts.push_back(start_of(kept, std::max(0.0, lost / (2 * (1 + kept))), omega1));
             }
         }
         starts.push_back(start_of(std::sqrt(q), loss / 2, omega1));
-        starts.push_back(start_of(0.995, swings.size() > 1 ? loss : 0.05 * range_, omega1));
-        starts.push_back(start_of(swings.size() > 1 ? q : 0.7, 1e-3 * range_, omega1));
+        starts.push_back(start_of(0.995, swings.size() > 1 ? loss : 0.05 * record_.range, omega1));
+        starts.push_back(start_of(swings.size() > 1 ? q : 0.7, 1e-3 * record_.range, omega1));
         return starts;
     }
 
@@ -469,12 +494,12 @@ private:
     [[nodiscard]] Parameters weak_form() const {
         std::vector<std::array<double, 6>> rows;
         std::vector<std::size_t> edges{0};
-        edges.insert(edges.end(), turns_.begin(), turns_.end());
+        edges.insert(edges.end(), record_.turns.begin(), record_.turns.end());
         edges.push_back(question_.t.size() - 1);
         for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
             const std::size_t n = edges[i + 1] - edges[i];
             const double rise = question_.theta[edges[i + 1]] - question_.theta[edges[i]];
-            if (n < 8 || std::fabs(rise) < 0.04 * range_) continue;
+            if (n < 8 || std::fabs(rise) < 0.04 * record_.range) continue;
             const std::size_t margin = n / 10;  // about a turn or a stop the sign of the velocity is not sure
             const std::size_t begin = edges[i] + margin, end = edges[i + 1] - margin, third = (end - begin) / 3;
             const double sign = rise > 0 ? 1 : -1;
@@ -504,20 +529,21 @@ private:
                 for (std::size_t c = 0; c < 5; ++c) b[i] -= row[c] * x[c];
                 for (Eigen::Index j = 0; j < m; ++j) A(i, j) = row[columns[static_cast<std::size_t>(j)]];
             }
-            // Of one length each: which of them says nothing is not for the units to decide.
+            // Columns of one length: units must not decide which of them determines nothing.
             const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
             const Eigen::VectorXd solved = algebra::solve_least_squares(A * lengths.cwiseInverse().asDiagonal(), b);
             for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
         }
-        const double omega = turns_.size() >= 2 ? std::numbers::pi * static_cast<double>(turns_.size() - 1) /
-                                                      (question_.t[turns_.back()] - question_.t[turns_.front()])
-                                                : 2 * std::numbers::pi / span_;
-        // Where noise or stops leave nothing, a system that could be.
+        const double omega = record_.turns.size() >= 2
+                                 ? std::numbers::pi * static_cast<double>(record_.turns.size() - 1) /
+                                       (question_.t[record_.turns.back()] - question_.t[record_.turns.front()])
+                                 : 2 * std::numbers::pi / record_.span;
+        // If noise or stops leave no estimate: a system of the size of the record.
         double most = 0;
         for (const double t : question_.t) most = std::max(most, std::fabs(question_.M->value(t)));
-        if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / range_;
+        if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / record_.range;
         if (!(x[0] > 0)) x[0] = x[1] / (omega * omega);
-        if (x[1] > x[0] * highest_omega0() * highest_omega0()) {
+        if (x[1] > x[0] * record_.highest_omega0() * record_.highest_omega0()) {
             (is_given(Unknown::I) ? x[1] : x[0]) = is_given(Unknown::I) ? x[0] * omega * omega : x[1] / (omega * omega);
         }
         x[2] = std::max(x[2], 0.0);
@@ -563,28 +589,21 @@ private:
 
     // ---- at which turn a free decay comes to rest
     //
-    // Whether one more swing comes about depends on the parameters, and each number of swings is a valley of its own,
+    // The number of swings before the rest depends on the parameters, and each number is a valley of its own,
     // whose walls the many samples at rest make steep. When the number is prescribed the place of rest is a smooth
     // function of the parameters: so each number near the best one is fitted by itself, and counts when some Re >= Rd
     // lets the mass move at the turn before and holds it at this one. The sum of squares is not all: a way to come to
     // rest that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each
     // counts by exp(-sum / 2 noise^2) times the volume that its errors leave open.
 
-    /// The last samples differ by no more than noise makes them.
-    [[nodiscard]] bool ends_at_rest() const {
-        const Eigen::Index n = measured_.size();
-        const auto tail = measured_.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
-        return tail.maxCoeff() - tail.minCoeff() <= 8 * noise_ + 1e-6 * range_;
-    }
-
     void try_rests() {
-        if (!ends_at_rest()) return;
+        if (!record_.ends_at_rest()) return;
         number_turns(filled_best());
         try_rest_at(std::numeric_limits<double>::infinity());
         const auto decay = decay_of(filled_best());
         if (!decay) return;
         // The last turn that stands out of the noise is the first where it may rest.
-        const double seen = std::max(0.0, static_cast<double>(turns_.size()) - 2);
+        const double seen = std::max(0.0, static_cast<double>(record_.turns.size()) - 2);
         const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 + turns_before(filled_best()) : seen;
         // As far to both sides as the record leaves it open, and some turns more.
         constexpr double open = 12;
@@ -607,9 +626,8 @@ private:
         starts_at_turn_ = std::fabs(swift) < std::fabs(at(p, Unknown::theta0));
     }
 
-    /// Where the start is near a turn, that one has number 0, whether it is still to come or has just been: so no
-    /// number changes where the velocity of a mass that was let go is found to be a little more or a little less than
-    /// none.
+    /// A turn near the start has number 0, whether it is still to come or has just been: so no number changes if the
+    /// velocity of a mass that was let go is found to be a little more or a little less than 0.
     [[nodiscard]] double turns_before(const Parameters& p) const {
         return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
     }
@@ -624,7 +642,7 @@ private:
             if (other && (!found || other->sum < found->sum)) found = other;
         }
         constexpr double few = 4, much = 0.02;  // with less noise the moving part leads to the right one
-        const bool is_open = turn <= few && noise_ > much * range_;
+        const bool is_open = turn <= few && record_.noise > much * record_.range;
         for (const Parameters& start : is_open ? shares_of_loss() : std::vector<Parameters>()) {
             const auto other = fit(fitted_of(start), question_.t.size(), best_scale_, 30);
             if (other && (!found || other->sum < found->sum)) found = other;
@@ -686,14 +704,14 @@ private:
         return filled(best_->parameters);
     }
 
-    // ---- what no slope leads to in a driven motion
+    // ---- steps of the sum of squares in a driven motion
     //
     // Re counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes about, lasts over
     // a whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked at, and fits go
     // on from wherever that is best. What the slopes there say of the errors is not all, then: each motion that was
     // looked at and is about as near to the record shows how far off the parameters may be.
 
-    /// What no slope leads to, as long as it makes the fit better.
+    /// Tries systems that no slope leads to, as long as the fit improves.
     void try_jumps() {
         constexpr int rounds = 3;
         bool better = true;
@@ -748,14 +766,14 @@ private:
             Eigen::VectorXd q = now;
             q[0] = part * whole + (first.front() == Unknown::theta0 ? now[0] : 0);
             constexpr int steps = 10;
-            auto one = least_squares(model, measured_.head(head), q, of_first, steps);
+            auto one = least_squares(model, record_.theta.head(head), q, of_first, steps);
             if (one) found.push_back(std::move(*one));
         }
         std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.sum < b.sum; });
         const double told = best_->residual.head(head).squaredNorm();
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, found.size()) && !stopped_; ++i) {
-            if (is_settled() && found[i].sum > told - noise_ * noise_) break;
+            if (is_settled() && found[i].sum > told - record_.noise * record_.noise) break;
             if (i > 0 && is_same(found[i], found[i - 1])) continue;
             base_ = with(found[i].parameters);
             const FitScale from = scale_of(base_);
@@ -769,7 +787,7 @@ private:
     [[nodiscard]] bool try_other_breakaways() {
         const Parameters best = filled_best();
         const double before = best_->sum, Rd = at(best, Unknown::Rd);
-        const double whole = std::max(4 * Rd, 0.5 * at(best, Unknown::k) * range_);
+        const double whole = std::max(4 * Rd, 0.5 * at(best, Unknown::k) * record_.range);
         std::vector<std::pair<double, double>> sums;
         constexpr int looks = 24;
         for (int i = 0; i <= looks && !stopped_; ++i) {
@@ -778,7 +796,7 @@ private:
             at(p, Unknown::Re) = Rd + whole * part * part;
             const auto theta = predicted(p, question_.t.size());
             if (!theta) continue;
-            sums.emplace_back((measured_ - *theta).squaredNorm(), at(p, Unknown::Re));
+            sums.emplace_back((record_.theta - *theta).squaredNorm(), at(p, Unknown::Re));
             seen_.emplace_back(sums.back().first, p);
         }
         std::sort(sums.begin(), sums.end());
@@ -807,7 +825,7 @@ private:
         for (const double part : {1.0, 0.5, 0.25}) {
             const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);
             const auto theta = stopped_ ? std::nullopt : predicted(filled(p), question_.t.size());
-            if (!theta || !((measured_ - *theta).squaredNorm() < before - 0.01 * noise * noise)) continue;
+            if (!theta || !((record_.theta - *theta).squaredNorm() < before - 0.01 * noise * noise)) continue;
             keep_if_better(fit(p, question_.t.size(), best_scale_, 30), best_scale_);
             break;
         }
@@ -834,8 +852,8 @@ private:
                 if (is_given(Unknown::I) && !is_given(Unknown::k)) at(p, Unknown::k) = k * faster * faster;
                 const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
                 const double speed =
-                    range_ * omega0 * std::numbers::pi / 8;  // the mean one of a swing over half the range
-                const double least = 0.02 * k * range_, most = k * range_;
+                    record_.range * omega0 * std::numbers::pi / 8;  // the mean one of a swing over half the range
+                const double least = 0.02 * k * record_.range, most = k * record_.range;
                 const double lost = std::clamp(at(from, Unknown::C) * speed + at(from, Unknown::Rd), least, most);
                 for (const double more : {0.5, 1.0, 2.0}) {
                     for (const double dry : {0.05, 0.35, 0.65, 0.95}) {
@@ -844,7 +862,7 @@ private:
                             at(p, Unknown::C) = given(Unknown::C, (1 - dry) * more * lost / speed);
                             at(p, Unknown::Re) = given(Unknown::Re, breakaway * at(p, Unknown::Rd));
                             const auto theta = stopped_ ? std::nullopt : predicted(p, rows);
-                            if (theta) looks.emplace_back((measured_ - *theta).squaredNorm(), p);
+                            if (theta) looks.emplace_back((record_.theta - *theta).squaredNorm(), p);
                         }
                     }
                 }
@@ -867,7 +885,7 @@ private:
         base_ = best_base_;
         const Eigen::Index place = place_of(which);
         FitScale scale = best_scale_;
-        scale.hold[place] = firmly * range_ / scale.typical[place];
+        scale.hold[place] = firmly * record_.range / scale.typical[place];
         Eigen::VectorXd start = best.parameters;
         start[place] = 0;
         const auto without = fit(start, question_.t.size(), scale, 40);
@@ -880,7 +898,8 @@ private:
         Eigen::VectorXd more = without->parameters;
         more[place] = little * scale.typical[place];
         const auto theta = predicted(filled(more), question_.t.size());
-        const bool is_flat = theta && (measured_ - *theta - without->residual).cwiseAbs().maxCoeff() <= same * range_;
+        const bool is_flat =
+            theta && (record_.theta - *theta - without->residual).cwiseAbs().maxCoeff() <= same * record_.range;
         if (rise > 0 && !is_flat) return;
         if (!freest_) freest_ = best;
         best_ = without;
@@ -908,7 +927,7 @@ private:
                 };
                 constexpr int steps = 4;
                 const auto found =
-                    least_squares(model, measured_, Eigen::VectorXd::Constant(1, angle), of_angle, steps);
+                    least_squares(model, record_.theta, Eigen::VectorXd::Constant(1, angle), of_angle, steps);
                 if (!found) break;
                 at(p, Unknown::theta0) = angle = found->parameters[0];
                 seen_.emplace_back(found->sum, p);
@@ -921,13 +940,13 @@ private:
     /// A record that stands at its least or greatest value may be cut off there, or show where the mass stood: then the
     /// fit goes beyond it nowhere.
     void tell_stops_from_cuts() {
-        if (cut_.at_low + cut_.at_high == 0) return;
+        if (record_.cut.at_low + record_.cut.at_high == 0) return;
         const auto whole = moved(filled_best(), question_.t.size());
         if (!whole) return;
-        const double beyond = 3 * deviation() + 1e-6 * range_;
-        if (whole->maxCoeff() < cut_.high + beyond) cut_.at_high = 0;
-        if (whole->minCoeff() > cut_.low - beyond) cut_.at_low = 0;
-        if (cut_.at_low + cut_.at_high > 0) return;
+        const double beyond = 3 * deviation() + 1e-6 * record_.range;
+        if (whole->maxCoeff() < record_.cut.high + beyond) record_.cut.at_high = 0;
+        if (whole->minCoeff() > record_.cut.low - beyond) record_.cut.at_low = 0;
+        if (record_.cut.at_low + record_.cut.at_high > 0) return;
         if (const auto uncut = fit(best_->parameters, question_.t.size(), best_scale_, 15)) best_ = uncut;
     }
 
@@ -960,7 +979,7 @@ private:
         return std::min(motion.extremes() - 1, last) + turns_before(p);
     }
 
-    /// Where a small change would add or take away a swing slopes by differences say nothing: the turn of rest is kept.
+    /// The turn of rest is kept, since differences across a change of the number of swings are no slopes.
     [[nodiscard]] Eigen::MatrixXd slopes_at(const Rest& rest, double noise) {
         breakaway_ = rest.breakaway;
         const Parameters p = filled(rest.fit.parameters);
@@ -968,12 +987,12 @@ private:
         const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
                                   rest.fit.parameters, scale_of(p), noise);
         rests_at_.reset();
-        return J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count()));
+        return J.value_or(Eigen::MatrixXd::Zero(record_.theta.size(), count()));
     }
     [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise) {
         const Eigen::MatrixXd J = slopes_at(rest, noise);
         Covariance covariance = covariance_of(J, scale_of(filled(rest.fit.parameters)).whole, noise);
-        add_steps(J, measured_ - rest.fit.residual, noise, covariance.matrix);
+        add_steps(J, record_.theta - rest.fit.residual, noise, covariance.matrix);
         return covariance;
     }
 
@@ -1039,7 +1058,7 @@ private:
     /// Rounding and the steps of an instrument count as white.
     [[nodiscard]] bool is_left_white() const {
         const std::span<const double> left(best_->residual.data(), question_.t.size());
-        return !(deviation() > least_noise * range_) || stopped_ || is_within_a_step() ||
+        return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step() ||
                (is_white(left) && !may_drift(question_.t, left));
     }
 
@@ -1063,7 +1082,7 @@ private:
         const std::size_t n = question_.t.size();
         for (const Follows what : {Follows::velocity, Follows::theta}) {
             auto found = responses(pushed, question_.t, missing_torques(what, {theta.data(), n}, {velocity.data(), n}),
-                                   at(best_filled_, Unknown::k) * range_, deviation());
+                                   at(best_filled_, Unknown::k) * record_.range, deviation());
             if (found) structures.push_back({what, *std::move(found), {}});
         }
         return misfit_of(best_->residual, columns, J, scale_of(best_filled_).whole, structures);
@@ -1088,7 +1107,7 @@ private:
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
         // Samples whose noise is alike tell less than as many that are independent.
-        if (found.noise > least_noise * range_) {
+        if (found.noise > least_noise * record_.range) {
             found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
         }
         const double spread = found.widening * found.noise;
@@ -1133,15 +1152,15 @@ private:
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors are those of a motion, and there may be none
             found.error.fill(0);
-            found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
+            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) ratio->error = 0;
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
             found.low.fill(-INFINITY), found.high.fill(INFINITY);
         }
-        const Eigen::VectorXd predicted_all = measured_ - best_->residual;
+        const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
         found.predicted.assign(predicted_all.begin(), predicted_all.end());
         found.runs = runs_;
-        found.cut_low = cut_.at_low;
-        found.cut_high = cut_.at_high;
+        found.cut_low = record_.cut.at_low;
+        found.cut_high = record_.cut.at_high;
         return found;
     }
 
@@ -1171,13 +1190,13 @@ private:
         if (which < Unknown::theta0) low = std::max(low, which == Unknown::Re ? at(found.value, Unknown::Rd) : 0.0);
     }
 
-    /// How far this parameter can be changed alone before the fit is worse by two standard errors.
+    /// The change of this parameter alone, towards `way`, that makes the fit worse by two standard errors.
     [[nodiscard]] double reach(Unknown which, double way, double spread) {
         const auto fits = [&](double step) {
             Parameters p = best_filled_;
             at(p, which) += way * step;
             const auto theta = predicted(p, question_.t.size());
-            return theta && (measured_ - *theta).squaredNorm() <= best_->sum + 4 * spread * spread;
+            return theta && (record_.theta - *theta).squaredNorm() <= best_->sum + 4 * spread * spread;
         };
         const double whole = best_scale_.whole[place_of(which)];
         constexpr double small = 1.0 / 64, wide = 8;
@@ -1193,21 +1212,21 @@ private:
         return at(best_filled_, which) + way * least;
     }
 
-    /// Of a free decay: Re holds the mass where it rests, and let it pass the turn before.
+    /// The range of Re of a free decay: it holds the mass where it rests, and let it pass the turn before.
     [[nodiscard]] std::pair<double, double> breakaways() const {
         const double k = at(best_filled_, Unknown::k), Rd = at(best_filled_, Unknown::Rd);
         const auto decay = decay_of(best_filled_);
         if (!decay) return {Rd, INFINITY};
         const double half = std::numbers::pi / (omega0_of(best_filled_) * std::sqrt(1 - decay->zeta * decay->zeta));
-        const double last = std::floor((span_ - decay->first.t) / half);  // turn of the record
+        const double last = std::floor((record_.span - decay->first.t) / half);  // turn of the record
         const double rest = best_rest_ ? *best_rest_ - turns_before(best_filled_) : decay->extremes - 1;
         if (rest > last) return {Rd, last < 0 ? INFINITY : k * std::fabs(decay->size_at(last))};
         const double before = rest < 1 ? INFINITY : k * decay->size_at(rest - 1);
         return {std::max(Rd, k * std::fabs(decay->size_at(rest))), before};
     }
 
-    /// What noise leaves at a sample has nothing to do with what it leaves at the next one: in square the differences
-    /// of neighbours are then twice as large, with a standard deviation of 2/sqrt(n).
+    /// Returns whether the residual is more alike from sample to sample than noise. That is independent: the squares of
+    /// the differences of neighbours are then twice as large on average, with a standard deviation of 2/sqrt(n).
     [[nodiscard]] bool leaves_pattern(double deviations) const {
         const Eigen::VectorXd& left = best_->residual;
         const Eigen::Index n = left.size() - 1;
@@ -1215,14 +1234,15 @@ private:
         return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
     }
 
-    /// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
+    /// Judges whether the fit explains the record. A search finds a motion in noise as well, which explains some ten
+    /// squares of it.
     void judge(Identified& found) const {
-        const double all = (measured_.array() - measured_.mean()).square().sum(), left = best_->sum;
+        const double all = (record_.theta.array() - record_.theta.mean()).square().sum(), left = best_->sum;
         constexpr double by_search = 2;
         const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
-        const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
+        const double by_chance = by_search * std::log(static_cast<double>(record_.theta.size())) + some;
         found.is_noise = all - left < by_chance * found.noise * found.noise;
-        found.scatter = std::max(noise_, smallest_step(question_.theta));
+        found.scatter = std::max(record_.noise, smallest_step(question_.theta));
         constexpr double much = 5, part = 0.01;
         constexpr double more = 1.25, little = 1e-4, sure = 5;
         found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
@@ -1242,9 +1262,7 @@ private:
     void ratios(const Eigen::MatrixXd& covariance, double spread, Identified& found) const {
         const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
         const double Rd = at(found.value, Unknown::Rd);
-        found.omega0 = omega0_of(found.value);
-        found.zeta = zeta_of(found.value);
-        found.Rd_over_k = dry_of(found.value);
+        const double omega0 = omega0_of(found.value), zeta = zeta_of(found.value);
         using Value = double (*)(const Parameters&);
         const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
             if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
@@ -1252,18 +1270,15 @@ private:
             by.head(4) << by_I, by_k, by_C, by_Rd;
             return std::max(least_error(value), spread * std::sqrt(std::max(0.0, by.dot(covariance * by))));
         };
-        found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
-        found.zeta_error =
-            error(Unknown::C, zeta_of, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
-        found.Rd_over_k_error = error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k);
+        found.omega0 = {omega0, error(Unknown::k, omega0_of, -omega0 / (2 * I), omega0 / (2 * k), 0, 0)};
+        found.zeta = {zeta,
+                      error(Unknown::C, zeta_of, -zeta / (2 * I), -zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0)};
+        found.Rd_over_k = {dry_of(found.value), error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k)};
     }
 
     const IdentifyQuestion& question_;
     const motion::Monitor& monitor_;
-    Eigen::VectorXd measured_;
-    CutOff cut_;
-    double range_ = 0, span_ = 0, noise_ = 0;
-    std::vector<std::size_t> turns_;
+    Record record_;
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
     Parameters base_{}, best_base_{};

@@ -1,5 +1,5 @@
-// Which system made this record: the parameters whose exact motion is nearest to measured angles, and how sure they
-// are.
+// Identification of the system behind a record: the parameters whose exact motion is nearest to measured angles, and
+// their errors.
 //
 // A free decay needs no guess: its extremes say how long a swing lasts and what each one loses. With a known M the weak
 // form of the equation of motion (multiplied by bumps and integrated by parts, so that nothing is differentiated) is
@@ -18,7 +18,8 @@
 
 namespace dinal::analysis {
 
-/// What a record may tell. The last three are of the measured angle, theta + offset, at its first time.
+/// The parameters that a record may determine. The last three are of the measured angle, theta + offset, at its first
+/// time.
 enum class Unknown : int { I, k, C, Rd, Re, theta0, velocity0, offset };
 inline constexpr int unknown_count = 8;
 inline constexpr std::array<std::string_view, unknown_count> unknown_names{"I",  "k",      "C",         "Rd",
@@ -30,14 +31,17 @@ struct IdentifyQuestion {
     std::array<std::optional<double>, unknown_count> given = {};  ///< of those that are not fitted
 };
 
+struct IdentifiedRatio {
+    double value = 0, error = 0;  ///< error: one standard deviation
+};
+
 struct Identified {
     std::array<double, unknown_count> value{}, error{};  ///< error: of one standard deviation; 0 of what was given
     std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: the record says nothing about it
     std::array<double, unknown_count> low{}, high{};  ///< of what is silent: values from low to high fit about as well
-    // Ratios, which a free decay tells.
-    double omega0 = 0, zeta = 0, Rd_over_k = 0, omega0_error = 0, zeta_error = 0, Rd_over_k_error = 0;
-    std::vector<double> predicted;          ///< at the times of the record
-    double noise = 0;                       ///< standard deviation of what is left
+    IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};    ///< a free decay determines these
+    std::vector<double> predicted;                    ///< at the times of the record
+    double noise = 0;                                 ///< standard deviation of what is left
     std::size_t cut_low = 0, cut_high = 0;  ///< samples at the least and the greatest value, where those cut it off
     double scatter = 0;                     ///< what neighbouring samples differ by that a smooth motion would not
     double widening = 1;                    ///< of the errors, because the residual is alike from sample to sample

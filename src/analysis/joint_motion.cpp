@@ -86,8 +86,9 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
             if (time_open(*run) == 0) facts.stuck = 1;
         }
         if (!alone) facts.rest = {facts.low, facts.low};
-        if (whole.begun) facts.asked = begun_at(question, *whole.begun, run->t_start);
-        facts.settled = std::move(run);
+        if (whole.by_returns.drive)
+            facts.by_returns.question = begun_at(question, *whole.by_returns.drive, run->t_start);
+        facts.by_returns.run = std::move(run);
     } else if (whole.is_found()) {
         facts.amplitude = 0;
         facts.low = facts.high = of([](const BodyMotion& body) { return body.begin; });
@@ -95,7 +96,8 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
         facts.rest = alone && facts.start.velocity == 0 && facts.stuck == 1 ? rest_of(question, facts.low)
                                                                             : std::pair(facts.low, facts.low);
         if (alone) facts.unique = facts.rest.first < facts.rest.second ? std::optional(false) : std::nullopt;
-        if (whole.begun) facts.asked = begun_at(question, *whole.begun, question.repeats.start);
+        if (whole.by_returns.drive)
+            facts.by_returns.question = begun_at(question, *whole.by_returns.drive, question.repeats.start);
     }
     // The angle of a rotating body never returns.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
@@ -107,7 +109,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
 
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion) {
     std::shared_ptr<const Trajectory> run;
-    if (const auto& period = motion.of_bodies) {
+    if (const auto& period = motion.by_returns.of_bodies) {
         run = std::make_shared<const Trajectory>(engine::part_with_rows(*question.system, period->drive, period->run,
                                                                         question.joint.value_or(0), question.body));
     }

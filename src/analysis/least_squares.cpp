@@ -124,7 +124,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             const Eigen::VectorXd way = algebra::solve_symmetric(damped, gradient).cwiseProduct(size);
             Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
             for (Eigen::Index i = 0; i < next.size(); ++i) {
-                // What must stay above 0 comes nearer to it by factors: one long step there would not come back.
+                // A positive parameter shrinks by at most a factor a step: one long step to 0 would not come back.
                 if (scale.least[i] > 0) next[i] = std::max(next[i], now.parameters[i] / 4);
             }
             if (!next.allFinite()) continue;

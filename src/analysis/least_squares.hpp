@@ -9,7 +9,7 @@
 
 namespace dinal::analysis {
 
-/// What the model says for these parameters; none where it has nothing to say.
+/// Returns the model's values for these parameters; none if it has none.
 using Prediction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& parameters)>;
 
 struct LeastSquares {
@@ -45,8 +45,8 @@ struct Covariance {
 /// valley that is flat; all parameters that such a valley runs through are silent, not one of them.
 Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise);
 
-/// How many samples count as one: 1 for noise, more where neighbours are alike (Sokal's sum, up to the first lag that
-/// is noise).
+/// The number of samples that count as one: 1 for noise, more if neighbours are alike (Sokal's sum, up to the first lag
+/// that is noise).
 double correlation_length(std::span<const double> residual);
 
 }  // namespace dinal::analysis

@@ -57,17 +57,17 @@ private:
 
     [[nodiscard]] static SteadyQuestion from_motion(SteadyQuestion question, const SteadyMotion& motion, bool states) {
         if (!question.is_plain()) {
-            if (!motion.begun) return question;
-            question.drive.theta0 = motion.begun->theta0;
-            question.drive.velocity0 = motion.begun->velocity0;
-            if (states) question.drive.states = motion.begun->states;
+            if (!motion.by_returns.drive) return question;
+            question.drive.theta0 = motion.by_returns.drive->theta0;
+            question.drive.velocity0 = motion.by_returns.drive->velocity0;
+            if (states) question.drive.states = motion.by_returns.drive->states;
             return question;
         }
         question.drive.start_at(motion.start);
-        if (states && motion.asked) {
-            question.drive.velocity0 = motion.asked->drive.velocity0;
+        if (states && motion.by_returns.question) {
+            question.drive.velocity0 = motion.by_returns.question->drive.velocity0;
             for (std::size_t i = 0; i < question.drive.states.size(); ++i) {
-                question.drive.states[i].start = motion.asked->drive.states[i].start;
+                question.drive.states[i].start = motion.by_returns.question->drive.states[i].start;
             }
         }
         return question;
@@ -83,7 +83,7 @@ private:
 
     /// The circuit of a motion that may not be the only one; null if it has none.
     [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
-        const bool slides = motion.status == SteadyStatus::rest && motion.asked && motion.stuck == 0;
+        const bool slides = motion.status == SteadyStatus::rest && motion.by_returns.question && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
         const SteadyQuestion question = question_.family(p);

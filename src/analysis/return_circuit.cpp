@@ -23,17 +23,19 @@ public:
     ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
                   const motion::Monitor& monitor, const std::optional<Returns::Section>& section = {})
         : family_(family), monitor_(monitor), periods_(periods) {
-        const SteadyQuestion asked = for_returns(*motion.asked);
+        const SteadyQuestion asked = for_returns(*motion.by_returns.question);
         for (const model::Excitation& load : asked.drive.loads) relays_.push_back(relays_of(load));
         Here& here = at(p);
         chart_.emplace(chart_of(here.runs));
         timeless_ = here.question.is_timeless();
         stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
-        offset_ = motion.asked->repeats.start - here.question.repeats.start;
+        offset_ = motion.by_returns.question->repeats.start - here.question.repeats.start;
         period_ = motion.period;
         Moment begin = Runs(asked, monitor).first();
-        if (motion.of_bodies) begin.y = vector_of(motion.of_bodies->run.history->at(motion.of_bodies->run.t_start));
+        if (const auto& period = motion.by_returns.of_bodies) {
+            begin.y = vector_of(period->run.history->at(period->run.t_start));
+        }
         begin.y = there_ = chart_->measured(begin.y);  // rotating bodies begin at 0, where angles are exact
         if (!cycles_) {
             first_ = returns(here, section_).place(there_);
@@ -81,21 +83,21 @@ public:
         motion.multipliers = multipliers_of(derivative);
         motion.differentiable = true;
         motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
-        motion.begun = std::make_shared<const model::Drive>(here.runs.from(begin, start(here)));
+        motion.by_returns.drive = std::make_shared<const model::Drive>(here.runs.from(begin, start(here)));
         if (stands_) {
             const auto velocity = begin.y.segment(here.runs.bodies(), here.runs.bodies());
             const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
             motion.status = rotates ? SteadyStatus::steady : SteadyStatus::rest;
             motion.bodies = bodies_at(begin.y, *chart_, here.runs.bodies());
             motion = seen_from(here.question, motion, {});
-            motion.asked = begun_at(here.question, *motion.begun, start(here));
+            motion.by_returns.question = begun_at(here.question, *motion.by_returns.drive, start(here));
             return motion;
         }
         motion.periods = periods_;
         motion.period = period_ = lap.time;
         note_family(motion);
         constexpr int rows = 64;  // the range is read from them, and turns are searched between them
-        auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.begun, {}});
+        auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.by_returns.drive, {}});
         period->run = here.runs.run(begin, start(here), start(here) + motion.period,
                                     motion::Grid::every(motion.period / rows), true);
         const Runs::Run& run = period->run;
@@ -105,14 +107,14 @@ public:
         motion.bodies = bodies_of(run, *chart_, reach_of_rows(run, *chart_));
         const auto seen = std::make_shared<const motion::Trajectory>(motion::engine::part_with_rows(
             system, period->drive, run, here.question.joint.value_or(0), here.question.body));
-        motion.of_bodies = std::move(period);
+        motion.by_returns.of_bodies = std::move(period);
         return seen_from(here.question, motion, seen);
     }
 
     [[nodiscard]] VectorXd units(const VectorXd& x, const Lap& /*lap*/, const SteadyMotion& motion) const override {
         VectorXd units = VectorXd::Zero(x.size());
         const std::vector<Eigen::Index> own = returns(*here_, section_).own();
-        if (motion.of_bodies) units = reach_of(motion.of_bodies->run, *chart_, 64).range()(own);
+        if (motion.by_returns.of_bodies) units = reach_of(motion.by_returns.of_bodies->run, *chart_, 64).range()(own);
         const auto n = here_->runs.bodies();
         if (stands_) {
             const double natural = here_->runs.natural_period(),
@@ -183,14 +185,16 @@ private:
     /// The range of a measured number.
     [[nodiscard]] std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
         if (chart_->bodies() == 1 && measured == 0) return {motion.low, motion.high};
-        const Reach reach = reach_of(motion.of_bodies->run, *chart_, 64);
+        const Reach reach = reach_of(motion.by_returns.of_bodies->run, *chart_, 64);
         return {reach.low[measured], reach.high[measured]};
     }
     [[nodiscard]] std::optional<Returns::Section> section_of(const SteadyMotion& motion) const {
         Eigen::Index measured = 0;
         if (chart_->bodies() > 1 || !chart_->measures(0)) {
             const auto n = static_cast<Eigen::Index>(chart_->bodies());
-            measured = motion.of_bodies ? widest_of(reach_of(motion.of_bodies->run, *chart_, 64), *chart_, n) : -1;
+            measured = motion.by_returns.of_bodies
+                           ? widest_of(reach_of(motion.by_returns.of_bodies->run, *chart_, 64), *chart_, n)
+                           : -1;
         }
         if (measured < 0) return {};
         const auto [low, high] = range_of(motion, measured);
@@ -234,7 +238,7 @@ private:
 
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor) {
-    if (!motion.asked) return {};
+    if (!motion.by_returns.question) return {};
     auto circuit = std::make_unique<ReturnCircuit>(family, p, motion, periods, monitor);
     if (circuit->first().size() == 0) return {};
     return circuit;
@@ -243,7 +247,7 @@ std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, cons
 std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
                                                  const motion::Monitor& monitor) {
     // NOTE: the smallest cycles of several bodies are not followed: as the bodies turn, the section moves away.
-    if (!rest.asked || !rest.asked->is_plain()) return {};
+    if (!rest.by_returns.question || !rest.by_returns.question->is_plain()) return {};
     ReturnCircuit still(family, p, rest, 1, monitor);
     const VectorXd x = still.first();
     const Circuit::Lap lap = still.lap(x, p);
@@ -278,7 +282,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     SteadyMotion cycle;
     cycle.status = SteadyStatus::steady;
     cycle.period = 2 * std::numbers::pi * lap.time / turn;
-    cycle.asked = still.question_from(x + mode.real(), p);
+    cycle.by_returns.question = still.question_from(x + mode.real(), p);
     auto circuit = std::make_unique<ReturnCircuit>(
         family, p, cycle, 1, monitor,
         Returns::Section{.measured = own[static_cast<std::size_t>(widest)], .place = low + section_at * 2 * swing});

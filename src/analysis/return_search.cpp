@@ -665,7 +665,7 @@ std::optional<VectorXd> ReturnSearch::complete(const Moment& moment, double star
     constexpr double rows = 400;
     Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
-    facts_.begun = std::make_shared<const model::Drive>(runs_.from(moment, start));
+    facts_.by_returns.drive = std::make_shared<const model::Drive>(runs_.from(moment, start));
     return complete_period(moment, std::move(run), period);
 }
 
@@ -686,7 +686,8 @@ void ReturnSearch::complete_rest(const Runs::Run& run, bool stands) {
     if (moves && stuck) facts_.status = SteadyStatus::adheres;  // it adheres to the belt and moves with it
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
-    if (question().settles < 0) facts_.begun = std::make_shared<const model::Drive>(runs_.from(now, run.t_stop));
+    if (question().settles < 0)
+        facts_.by_returns.drive = std::make_shared<const model::Drive>(runs_.from(now, run.t_stop));
     facts_.bodies = bodies_at(now.y, chart_, n());
 }
 
@@ -705,7 +706,7 @@ std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, Runs::
     const std::vector<double> middle = run.history->at(run.t_start + period / 2);
     auto whole = std::make_shared<PeriodOfBodies>();
     whole->drive = runs_.from(from, run.t_start), whole->run = std::move(run);
-    facts_.of_bodies = std::move(whole);
+    facts_.by_returns.of_bodies = std::move(whole);
     return vector_of(middle);
 }
 

@@ -67,6 +67,14 @@ struct PeriodOfBodies {
     motion::engine::Run run;
 };
 
+/// The runs of a motion found by returns; empty for any other.
+struct FoundByReturns {
+    std::shared_ptr<const motion::Trajectory> run = {};    ///< one period of the body or link of interest
+    std::shared_ptr<const SteadyQuestion> question = {};   ///< begins with the motion; null: `run` ends a longer one
+    std::shared_ptr<const model::Drive> drive = {};        ///< of a run that is periodic from its start
+    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
+};
+
 struct SteadyMotion {
     SteadyStatus status = SteadyStatus::none;
     int periods = 1;     ///< periods of M in one of the motion
@@ -85,12 +93,8 @@ struct SteadyMotion {
     double residual = 0;                                     ///< residual of the fixed point, in amplitudes
     model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
-    std::shared_ptr<const motion::Trajectory> settled = {};  ///< run of one period, for motions found by returns
-    std::shared_ptr<const SteadyQuestion> asked = {};  ///< the question whose run is `settled`; null: the end of a run
-    // Set for motions found by returns.
-    std::vector<BodyMotion> bodies = {};
-    std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
-    std::shared_ptr<const model::Drive> begun = {};        ///< drive of a run that is periodic from its start
+    std::vector<BodyMotion> bodies = {};                     ///< set for motions found by returns
+    FoundByReturns by_returns = {};
 
     /// Returns whether a motion or a rest was found.
     [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }

@@ -52,8 +52,8 @@ namespace {
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
                                      const SteadyMotion& motion, const PeriodMap& map, double length) {
     const motion::Trajectory run =
-        motion.settled ? *motion.settled
-                       : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
+        motion.by_returns.run ? *motion.by_returns.run
+                              : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
     if (!model::is_whole(run.outcome)) return {};
     const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
@@ -91,15 +91,15 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     const Repetition repeats =
         question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
     // Half a period of a symmetric motion is enough.
-    const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
+    const double length = motion.symmetric && !motion.by_returns.run ? motion.period / 2 : motion.period;
     const PeriodMap map(question.body, question.load(), repeats.start, length, monitor);
     const bool feedback = question.load().has_feedback() || question.is_timeless();
     const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.load(), repeats, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
-    if (const auto slides = drives && !motion.settled ? sine::ShortSlides::of(question) : std::nullopt) {
+    if (const auto slides = drives && !motion.by_returns.run ? sine::ShortSlides::of(question) : std::nullopt) {
         found = Fundamental{0, slides->fundamental()};
-    } else if (drives && !motion.settled && is_linear_but_for_friction(question)) {
+    } else if (drives && !motion.by_returns.run && is_linear_but_for_friction(question)) {
         const motion::Trajectory run =
             map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
         if (!model::is_whole(run.outcome)) return shape;
@@ -227,7 +227,7 @@ private:
         }
     }
     void tell_memory() {
-        if (!motion_.settled || motion_.asked) return;
+        if (!motion_.by_returns.run || motion_.by_returns.question) return;
         say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
             timeless_ ? "" : fmt::format("of {} periods of M ", motion_.maps));
     }

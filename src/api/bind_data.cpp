@@ -901,17 +901,21 @@ std::vector<std::string> drawable_results(const Data& data, const std::string& x
     return names;
 }
 
-}  // namespace
+/// The columns that a plot draws; z is empty unless it is a map.
+struct DrawnColumns {
+    std::string x;
+    std::vector<std::string> y;
+    std::string z;
+    std::vector<std::string> over;  // parameters with more than one value
+};
 
-int plot(lua_State* L) {
-    const DataHandle data = self(L, "d:plot{ x = \"r\", y = \"A\" }");
-    const lua::Options options(L, 2, plot_data_call);
+/// Selects the columns. Points over two parameters are drawn as a map, by default of the first result, or as a curve
+/// for each value of the first parameter.
+DrawnColumns asked_columns(lua_State* L, const lua::Options& options, const Data& data) {
     std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
     if (x.size() > 1) options.fail("x", "x must be one column");
     std::vector<std::string> z = asked_names(L, options, "z");
-    // Points over two parameters are drawn as a map, by default of the first result, or as a curve for each value of
-    // the first parameter.
-    const std::vector<std::string> over = different_parameters(*data);
+    const std::vector<std::string> over = different_parameters(data);
     const bool curves = !y.empty() || options.has("style");
     const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
     if (is_map && z.empty() && over.size() > 2) {
@@ -920,75 +924,106 @@ int plot(lua_State* L) {
                          fmt::join(over, ", "), over.front())});
     }
     if (x.empty() && !over.empty()) x = {over.size() == 2 && !is_map ? over[1] : over[0]};
-    if (x.empty()) x.push_back(data->points_over.empty() ? data->columns.front().name : data->points_over);
-    const std::vector<std::string> results = drawable_results(*data, x.front());
+    if (x.empty()) x.push_back(data.points_over.empty() ? data.columns.front().name : data.points_over);
+    const std::vector<std::string> results = drawable_results(data, x.front());
     if (y.empty() && results.empty()) options.fail({"there is no other column of numbers to draw"});
     if (is_map && z.empty()) z = {results.front()};
     if (y.empty()) y = {is_map ? over[x.front() == over[1] ? 0 : 1] : results.front()};
-    if (data->size() == 0) options.fail({"there are no rows to draw"});
-    if (!z.empty()) {
-        if (options.has("style")) options.fail("style", "style is for curves: leave it out, or z");
-        if (z.size() > 1) options.fail("z", "z must be one column");
-        if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
-        std::vector<plots::Figure> map{figure_of_map(
-            options, {x.front(), y.front(), z.front()},
-            stable_rows(*data, {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())}))};
-        map.front().x.label = label_of(*data, x.front());
-        map.front().y.label = label_of(*data, y.front());
-        for (const std::string& name : asked_names(L, options, "overlay")) {
-            for (plots::Curve& curve : overlay_curves(options, *data, name, x.front(), y.front())) {
-                curve.colour = vermilion;
-                map.front().curves.push_back(std::move(curve));
-            }
-        }
-        apply_options(L, options, map.front());
-        return deliver(L, options, std::move(map));
-    }
-    for (const char* option : {"zlim", "contours"}) {
-        if (!options.numbers(option).empty()) {
-            options.fail(option, fmt::format("{} is for maps: name a column z, too", option));
+    if (data.size() == 0) options.fail({"there are no rows to draw"});
+    if (z.empty()) return {x.front(), y, "", over};
+    if (options.has("style")) options.fail("style", "style is for curves: leave it out, or z");
+    if (z.size() > 1) options.fail("z", "z must be one column");
+    if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
+    return {x.front(), {y.front()}, z.front(), over};
+}
+
+int plot_map(lua_State* L, const lua::Options& options, const Data& data, const DrawnColumns& columns) {
+    const std::string &x = columns.x, &y = columns.y.front(), &z = columns.z;
+    std::vector<plots::Figure> map{figure_of_map(
+        options, {x, y, z}, stable_rows(data, {drawn(L, data, x), drawn(L, data, y), drawn(L, data, z)}))};
+    map.front().x.label = label_of(data, x);
+    map.front().y.label = label_of(data, y);
+    for (const std::string& name : asked_names(L, options, "overlay")) {
+        for (plots::Curve& curve : overlay_curves(options, data, name, x, y)) {
+            curve.colour = vermilion;
+            map.front().curves.push_back(std::move(curve));
         }
     }
-    plots::Figure figure;
-    figure.x.label = label_of(*data, x.front());
-    plots::Curve curve;
-    if (!data->points_of.empty() && !options.has("y") && x.front() != data->points_of) y = {data->points_of};
-    const bool leaps = over.size() == 2 && x.front() == over[0];  // a line would jump between grid rows
-    if (!data->points_of.empty() || leaps) curve.style = plots::Style::points;
-    figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
-    options.fill(curve);
-    const Data& shown = data->between && curve.style == plots::Style::line ? *data->between : *data;
+    apply_options(L, options, map.front());
+    return deliver(L, options, std::move(map));
+}
+
+/// Adds the curves of all columns y, in the style of `curve`, which becomes the last of them.
+void add_curves(lua_State* L, const Data& data, const DrawnColumns& columns, plots::Curve& curve,
+                plots::Figure& figure) {
+    const auto& [x, y, z, over] = columns;
+    const Data& shown = data.between && curve.style == plots::Style::line ? *data.between : data;
+    const std::string pieces = over.size() == 2 && data.pieces_of.empty() ? over[0] : data.pieces_of;
     for (const std::string& name : y) {
-        curve.x = drawn(L, shown, x.front());
+        curve.x = drawn(L, shown, x);
         curve.y = drawn(L, shown, name);
         curve.label = y.size() == 1 ? "" : name;
-        const std::string pieces = over.size() == 2 && data->pieces_of.empty() ? over[0] : data->pieces_of;
         if (pieces.empty() || curve.style != plots::Style::line) {
             figure.curves.push_back(curve);
         } else {
             for (plots::Curve& piece : curve_in_pieces(shown, pieces, curve)) figure.curves.push_back(std::move(piece));
         }
     }
+}
+
+void add_overlays(lua_State* L, const lua::Options& options, const Data& data, const DrawnColumns& columns,
+                  plots::Figure& figure) {
+    constexpr std::array<plots::Dashes, 3> dashes{plots::Dashes::dashed, plots::Dashes::dash_dotted,
+                                                  plots::Dashes::dotted};
+    const std::string& y = columns.y.front();
     std::size_t overlays = 0;
     for (const std::string& name : asked_names(L, options, "overlay")) {
-        if (figure.curves.front().label.empty()) figure.curves.front().label = label_of(*data, y.front());
-        constexpr std::array<plots::Dashes, 3> dashes{plots::Dashes::dashed, plots::Dashes::dash_dotted,
-                                                      plots::Dashes::dotted};
-        for (plots::Curve& overlay : overlay_curves(options, *data, name, x.front(), y.front())) {
+        if (figure.curves.front().label.empty()) figure.curves.front().label = label_of(data, y);
+        for (plots::Curve& overlay : overlay_curves(options, data, name, columns.x, y)) {
             overlay.dashes = dashes[overlays++ % dashes.size()];
             figure.curves.push_back(std::move(overlay));
         }
     }
-    figure.y.logarithmic = data->is_spectrum;
+}
+
+int plot_curves(lua_State* L, const lua::Options& options, const Data& data, DrawnColumns columns) {
+    for (const char* option : {"zlim", "contours"}) {
+        if (!options.numbers(option).empty()) {
+            options.fail(option, fmt::format("{} is for maps: name a column z, too", option));
+        }
+    }
+    const std::string& x = columns.x;
+    std::vector<std::string>& y = columns.y;
+    plots::Figure figure;
+    figure.x.label = label_of(data, x);
+    plots::Curve curve;
+    if (!data.points_of.empty() && !options.has("y") && x != data.points_of) y = {data.points_of};
+    const bool leaps = columns.over.size() == 2 && x == columns.over[0];  // a line would jump between grid rows
+    if (!data.points_of.empty() || leaps) curve.style = plots::Style::points;
+    figure.y.label = y.size() == 1 ? label_of(data, y.front()) : "";
+    options.fill(curve);
+    add_curves(L, data, columns, curve, figure);
+    add_overlays(L, options, data, columns, figure);
+    figure.y.logarithmic = data.is_spectrum;
     if (y.size() == 1) {
-        figure.x.limits = telling_frequencies(*data, curve);
-        figure.y.limits = telling_limits(*data, curve);
+        figure.x.limits = telling_frequencies(data, curve);
+        figure.y.limits = telling_limits(data, curve);
     }
     apply_options(L, options, figure);
-    if (!options.has("ylim") && figure.y.logarithmic != data->is_spectrum) figure.y.limits.reset();
+    if (!options.has("ylim") && figure.y.logarithmic != data.is_spectrum) figure.y.limits.reset();
     if (!options.has("xlim") && figure.x.logarithmic) figure.x.limits.reset();
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
+}
+
+}  // namespace
+
+int plot(lua_State* L) {
+    const DataHandle data = self(L, "d:plot{ x = \"r\", y = \"A\" }");
+    const lua::Options options(L, 2, plot_data_call);
+    DrawnColumns columns = asked_columns(L, options, *data);
+    return columns.z.empty() ? plot_curves(L, options, *data, std::move(columns))
+                             : plot_map(L, options, *data, columns);
 }
 
 }  // namespace dinal::api::data_functions

@@ -1023,9 +1023,9 @@ void name_values(FitAnswer& fit) {
     };
     const bool absolute = fit.question.M || given(Unknown::I) || given(Unknown::k);
     if (!absolute) fit.units.M.clear();
-    add("omega0", found.omega0, found.omega0_error);
-    add("zeta", found.zeta, found.zeta_error);
-    add("Rd_over_k", found.Rd_over_k, found.Rd_over_k_error);
+    add("omega0", found.omega0.value, found.omega0.error);
+    add("zeta", found.zeta.value, found.zeta.error);
+    add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error);
     for (std::size_t i = absolute ? 0 : static_cast<std::size_t>(Unknown::theta0); i < analysis::unknown_names.size();
          ++i) {
         add(analysis::unknown_names[i], found.value[i], found.error[i]);

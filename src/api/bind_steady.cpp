@@ -41,7 +41,7 @@ SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
 SteadyHandle made(lua_State* L, analysis::SteadyQuestion question, analysis::SteadyMotion motion) {
     auto whole = std::make_shared<Steady>(Steady{.question = std::move(question), .motion = std::move(motion)});
     if (whole->question.is_plain()) return whole;
-    if (const auto& period = whole->motion.of_bodies) {
+    if (const auto& period = whole->motion.by_returns.of_bodies) {
         constexpr double rows = 400;
         source::Task task{.system = whole->question.system,
                           .drive = period->drive,
@@ -398,17 +398,18 @@ namespace {
 /// One period as a run with 400 rows; none at rest.
 std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
-    const analysis::SteadyQuestion& asked = s.motion.asked && s.motion.settled ? *s.motion.asked : s.question;
+    const analysis::SteadyQuestion& asked =
+        s.motion.by_returns.question && s.motion.by_returns.run ? *s.motion.by_returns.question : s.question;
     source::Task task{.system = asked.system,
                       .drive = asked.drive,
                       .window = {},
                       .rows = motion::Grid::every(s.motion.period / rows),
                       .integrator = {}};
-    if (s.motion.settled) {
+    if (s.motion.by_returns.run) {
         // Its origin repeats the approach to the motion, too; the rows are those of the last period.
-        const motion::Trajectory& last = *s.motion.settled;
-        task.window = {.start = s.motion.asked ? last.t_start : asked.repeats.start, .end = last.t_stop};
-        if (s.motion.asked) {
+        const motion::Trajectory& last = *s.motion.by_returns.run;
+        task.window = {.start = s.motion.by_returns.question ? last.t_start : asked.repeats.start, .end = last.t_stop};
+        if (s.motion.by_returns.question) {
             task.integrator = motion::integrator_for(asked.body, asked.drive);
         } else {
             const auto times = last.column(motion::Column::t);

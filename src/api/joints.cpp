@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "api/bind_excitation.hpp"
 #include "api/bind_simulate.hpp"
@@ -396,89 +397,110 @@ model::Friction read_list(lua_State* L, const lua::Options& options, model::Cont
     return model::laws::Sum<false>{.main = {}, .more_sliding = sliding, .more_holding = holding};
 }
 
-}  // namespace
+/// Reads the options of the friction in a joint, and of its normal load.
+class FrictionOptions {
+public:
+    FrictionOptions(lua_State* L, const lua::Options& options, const std::string& call)
+        : L_(L), options_(options), call_(call) {}
 
-model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
-    model::ContactFriction friction;
-    const auto varying = [&](const char* name) -> std::optional<model::Excitation> {
-        if (!options.has(name)) return {};
-        options.push(name);
-        model::Excitation value = to_excitation(L, -1, fmt::format("{}: {}", call, name), name);
-        lua_pop(L, 1);
+    model::ContactFriction read() {
+        friction_.normal = varying("normal");
+        normal_ = number("normal");
+        options_.push("friction");
+        if (lua_istable(L_, -1) && lua_rawlen(L_, -1) > 0) return by_list();
+        if (lua::is_callable(L_, -1) && lua::test<model::Friction>(L_, -1) == nullptr) return by_function();
+        lua_pop(L_, 1);
+        const auto Rd = number("Rd"), Re = number("Re");
+        if (const auto law = asked_law(L_, options_, {"Rd", "Re"}, true)) return by_law(*law);
+        const bool constant = (!options_.has("Rd") || Rd) && (!options_.has("Re") || Re);
+        if (!constant) return by_torques();
+        const model::laws::Coulomb law{Rd.value_or(0), Re.value_or(Rd.value_or(0))};
+        if (auto wrong = law.complaint()) options_.fail(*wrong);
+        return by_law(law.breakaway > 0 ? model::Friction(law) : model::Friction());
+    }
+
+private:
+    std::optional<model::Excitation> varying(const char* name) {
+        if (!options_.has(name)) return {};
+        options_.push(name);
+        model::Excitation value = to_excitation(L_, -1, fmt::format("{}: {}", call_, name), name);
+        lua_pop(L_, 1);
         // Only controllers in M are sampled at their instants.
         if (model::has_memory(value)) {
-            options.fail(name,
-                         fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
+            options_.fail(name,
+                          fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
         }
         return value;
-    };
-    const auto number = [&](const char* name) -> std::optional<double> {
-        options.push(name);
-        const bool is = lua_type(L, -1) == LUA_TNUMBER;
-        lua_pop(L, 1);
-        return is ? std::optional(options.number(name)) : std::nullopt;
-    };
-    friction.normal = varying("normal");
-    const auto normal = number("normal");
-    // A constant load becomes part of the law; with bristles it scales the state.
-    const auto of_law = [&](const model::Friction& law) {
-        friction.law = law;
-        if (const auto* slider = law.as<model::laws::Jenkins>()) friction.sliders = {*slider}, friction.law = {};
-        if ((!friction.sliders.empty() || law.is_one_way()) && friction.normal && !normal) {
-            options.fail("normal", "the normal load of freewheel and jenkins must be a number");
-        }
-        if (!normal || friction.bristle() != nullptr) return friction;
-        friction.law = friction.law.under(*normal);
-        friction.normal.reset();
-        return friction;
-    };
-    options.push("friction");
-    if (lua_istable(L, -1) && lua_rawlen(L, -1) > 0) {
-        for (const char* other : {"Rd", "Re"}) {
-            if (options.has(other)) options.fail(other, "friction and Rd exclude each other; give one of them");
-        }
-        const model::Friction law = read_list(L, options, friction);
-        lua_pop(L, 1);
-        const std::vector<model::laws::Jenkins> sliders = std::move(friction.sliders);
-        of_law(law);
-        friction.sliders = sliders;
-        if (!sliders.empty() && friction.normal) {
-            options.fail("normal", "the normal load of freewheel and jenkins must be a number");
-        }
-        return friction;
     }
-    const bool function = lua::is_callable(L, -1) && lua::test<model::Friction>(L, -1) == nullptr;
-    if (function) {
-        friction.function =
-            std::make_shared<lua::LuaFunction>(L, -1,
+    std::optional<double> number(const char* name) {
+        options_.push(name);
+        const bool is = lua_type(L_, -1) == LUA_TNUMBER;
+        lua_pop(L_, 1);
+        return is ? std::optional(options_.number(name)) : std::nullopt;
+    }
+    void exclude(const char* other) {
+        if (options_.has(other)) options_.fail(other, "friction and Rd exclude each other; give one of them");
+    }
+
+    /// A constant load becomes part of the law; with bristles it scales the state.
+    model::ContactFriction by_law(const model::Friction& law) {
+        friction_.law = law;
+        if (const auto* slider = law.as<model::laws::Jenkins>()) friction_.sliders = {*slider}, friction_.law = {};
+        if ((!friction_.sliders.empty() || law.is_one_way()) && friction_.normal && !normal_) refuse_load();
+        if (!normal_ || friction_.bristle() != nullptr) return friction_;
+        friction_.law = friction_.law.under(*normal_);
+        friction_.normal.reset();
+        return friction_;
+    }
+    void refuse_load() { options_.fail("normal", "the normal load of freewheel and jenkins must be a number"); }
+
+    // The following two pop the option `friction`.
+    model::ContactFriction by_list() {
+        for (const char* other : {"Rd", "Re"}) exclude(other);
+        const model::Friction law = read_list(L_, options_, friction_);
+        lua_pop(L_, 1);
+        const std::vector<model::laws::Jenkins> sliders = std::exchange(friction_.sliders, {});
+        by_law(law);
+        friction_.sliders = sliders;
+        if (!sliders.empty() && friction_.normal) refuse_load();
+        return friction_;
+    }
+    model::ContactFriction by_function() {
+        friction_.function =
+            std::make_shared<lua::LuaFunction>(L_, -1,
                                                lua::FunctionRole{.name = "friction",
                                                                  .may_be_negative = false,
                                                                  .motion = lua::FunctionRole::Motion::always,
                                                                  .of_speed = true});
-        if (options.has("Rd")) options.fail("Rd", "friction and Rd exclude each other; give one of them");
+        exclude("Rd");
+        lua_pop(L_, 1);
+        number("Re");  // fails outside of its range
+        if (auto holding = varying("Re")) friction_.holding = {holding, holding};
+        return friction_;
     }
-    lua_pop(L, 1);
-    const auto Rd = number("Rd"), Re = number("Re");
-    if (function) {
-        if (auto holding = varying("Re")) friction.holding = {holding, holding};
-        return friction;
+
+    /// Torques that vary with time.
+    model::ContactFriction by_torques() {
+        auto sliding = varying("Rd"), holding = varying("Re");
+        if (!sliding) {  // nothing brakes, but something holds
+            sliding = model::Excitation::make(model::Constant{0}).value();
+        }
+        friction_.sliding = {sliding, sliding};
+        if (holding) friction_.holding = {holding, holding};
+        return friction_;
     }
-    if (const auto law = asked_law(L, options, {"Rd", "Re"}, true)) {
-        return of_law(*law);
-    }
-    const bool numbers = (!options.has("Rd") || Rd) && (!options.has("Re") || Re);
-    if (numbers) {
-        const model::laws::Coulomb law{Rd.value_or(0), Re.value_or(Rd.value_or(0))};
-        if (auto wrong = law.complaint()) options.fail(*wrong);
-        return of_law(law.breakaway > 0 ? model::Friction(law) : model::Friction());
-    }
-    auto sliding = varying("Rd"), holding = varying("Re");
-    if (!sliding) {  // nothing brakes, but something holds
-        sliding = model::Excitation::make(model::Constant{0}).value();
-    }
-    friction.sliding = {sliding, sliding};
-    if (holding) friction.holding = {holding, holding};
-    return friction;
+
+    lua_State* L_;
+    const lua::Options& options_;
+    const std::string& call_;
+    model::ContactFriction friction_;
+    std::optional<double> normal_;  ///< a constant load
+};
+
+}  // namespace
+
+model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
+    return FrictionOptions(L, options, call).read();
 }
 
 namespace {

@@ -464,7 +464,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
     }
     const auto moves = [](const RowOfJoint& joint) { return joint.motion.status == analysis::SteadyStatus::steady; };
     if (std::any_of(row.joints.begin(), row.joints.end(), moves)) row.status = analysis::SteadyStatus::steady;
-    for (RowOfJoint& joint : row.joints) joint.motion.settled = {}, joint.motion.of_bodies = {};
+    for (RowOfJoint& joint : row.joints) joint.motion.by_returns.run = {}, joint.motion.by_returns.of_bodies = {};
     return row;
 }
 

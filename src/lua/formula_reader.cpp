@@ -123,7 +123,8 @@ struct Instruction {
     [[nodiscard]] int jump() const { return static_cast<int>(bits >> 7U) - 16777215; }
 };
 
-/// What is known of a register of Lua. A number that is not constant stands in the formula's register of that number.
+/// The reader's knowledge of a register of Lua. A number that is not constant stands in the formula's register of that
+/// number.
 struct Known {
     enum class Kind : std::uint8_t { unknown, nil, no, yes, object, states, whole, number } kind = Kind::unknown;
     bool constant = true;
@@ -252,7 +253,7 @@ constexpr std::array<Arithmetic, 7> arithmetic_of = {{{Op::add, Op::add_whole},
                                                       {Op::divide, Op::move},
                                                       {Op::floor_divide, Op::divide_whole}}};
 
-/// What the libraries brought; those of math without an operation are worked out in `library`.
+/// Functions of Lua's libraries; those of math without an operation are worked out in `library`.
 struct Standard {
     const char *module, *name;
     Op op = Op::fail;
@@ -350,7 +351,8 @@ private:
         const int type = push_kept(holder);
         lua_replace(L_, values_ + 1);
         lua_settop(L_, values_ + 1);
-        // What follows may change without a value that does: the reading holds for no other run.
+        // An obstacle below may disappear while the value stays: until the value is known the holder stands for it,
+        // which no look-up returns, so the reading holds for no other run.
         outside_.push_back({kind, holder, key, holder});
         if (kind != OutsideValue::Kind::variable && type != LUA_TTABLE)
             throw Obstacle{"it indexes a value that is not a table"};
@@ -438,7 +440,7 @@ private:
         if (is_new) constants_.push_back(value);
         return static_cast<int>(place->second);
     }
-    /// Of a number, wherever it is.
+    /// Returns the register that holds a number: that of the constant, or its place.
     int register_of(const Known& known, int place) { return known.constant ? constant_register(known.value) : place; }
     static void need_number(const Known& known) {
         if (!known.is_number()) throw Obstacle{"it calculates with a value that is not a number"};
@@ -539,8 +541,7 @@ private:
         frame.at += 1 + static_cast<std::size_t>(distance);
     }
     void take(Way& way, bool jumps) { jumps ? jump(way) : static_cast<void>(++way.frames.back().at); }
-    /// The instruction that follows is a jump, which is taken where the condition is `wanted`. False when both ways
-    /// wait.
+    /// Takes the jump that follows if the condition is `wanted`. Returns false when both ways wait.
     bool go_on(Way& way, const Condition& condition, bool wanted) {
         if (condition.decided) {
             take(way, *condition.decided == wanted);
@@ -606,7 +607,7 @@ private:
             }
         }
     }
-    /// Where constants differ, they come into registers.
+    /// Constants that differ between ways come into registers.
     void generalise(std::vector<Waiting>& here) {
         std::vector<Waiting> general;
         for (const Waiting& one : here) {
@@ -800,7 +801,7 @@ private:
         }
         return "";
     }
-    /// Which of those that the libraries had at the start it is; null for any other.
+    /// Returns the library function that the object is, as the libraries were at the start; null for any other.
     const Standard* standard_at(int object) {
         const auto [place, is_new] = standards_.try_emplace(object, nullptr);
         for (const Standard& one : standard) {
@@ -998,22 +999,60 @@ private:
         }
     }
 
-    /// Follows one instruction. False when the way has come to an end, or waits.
+    /// An instruction, and the registers that it names.
+    struct Decoded {
+        Way& way;
+        const Function& function;
+        Instruction i;
+        std::size_t& at;  ///< the next instruction
+        int closure, a, b, c;
+
+        [[nodiscard]] Operand in_register(int place) const { return {way[place], place}; }
+    };
+    static Decoded decoded(Way& way, const Function& function) {
+        Frame& frame = way.frames.back();
+        const Instruction i{function.code.instruction(frame.at++)};
+        const int base = frame.base;
+        return {way, function, i, frame.at, frame.closure, base + i.a(), base + i.b(), base + i.c()};
+    }
+    Operand constant_of(const Decoded& now, int number) { return {constant(now.function, number), 0}; }
+    static Operand immediate(int value) { return {constant_whole(value), 0}; }
+
+    /// Follows one instruction. Returns false when the way has come to an end, or waits.
     bool step(Way& way) {
         using enum Code;
-        const std::size_t frame_number = way.frames.size() - 1;
         const std::shared_ptr<const Function> function = way.frames.back().function;
-        std::size_t& at = way.frames[frame_number].at;
-        const int base = way.frames.back().base, closure_place = way.frames.back().closure;
-        const Instruction i{function->code.instruction(at++)};
-        const Code code = i.code();
-        const int a = base + i.a(), b = base + i.b(), c = base + i.c();
-        const auto in_register = [&](int place) { return Operand{way[place], place}; };
-        const auto constant_of = [&](int number) { return Operand{constant(*function, number), 0}; };
-        const auto immediate = [](int value) { return Operand{constant_whole(value), 0}; };
-        switch (code) {
+        const Decoded now = decoded(way, *function);
+        if (load(now) || look_up(now) || do_arithmetic(now) || branch(now)) return true;
+        const auto& [i, a] = std::tie(now.i, now.a);
+        if (const auto condition = comparison(now)) return go_on(way, *condition, i.k());
+        switch (const Code code = i.code()) {
+            case Code::call:
+            case tailcall: {
+                const int given = way.arguments >= 0 ? way.arguments : i.b() > 0 ? i.b() - 1 : way.top - a - 1;
+                way.arguments = -1;
+                return this->call(way, a, given, code == tailcall ? -1 : i.c() - 1);
+            }
+            case return_:
+                return leaves(way, a, i.b() > 0 ? i.b() - 1 : way.top - a);
+            case return0:
+                return leaves(way, a, 0);
+            case return1:
+                return leaves(way, a, 1);
+            default:
+                refuse(code);
+        }
+    }
+
+    // Each of the following functions follows instructions of one kind, and returns false for any other.
+
+    /// Puts constants into registers, or copies one register.
+    bool load(const Decoded& now) {
+        using enum Code;
+        const auto& [way, i, a] = std::tie(now.way, now.i, now.a);
+        switch (i.code()) {
             case move:
-                copy(way, a, b);
+                copy(way, a, now.b);
                 return true;
             case loadi:
                 way[a] = constant_whole(i.signed_bx());
@@ -1022,14 +1061,14 @@ private:
                 way[a] = constant_number(i.signed_bx());
                 return true;
             case loadk:
-                way[a] = constant(*function, i.bx());
+                way[a] = constant(now.function, i.bx());
                 return true;
             case loadfalse:
                 way[a] = {.kind = Known::Kind::no};
                 return true;
             case lfalseskip:
                 way[a] = {.kind = Known::Kind::no};
-                ++at;
+                ++now.at;
                 return true;
             case loadtrue:
                 way[a] = {.kind = Known::Kind::yes};
@@ -1037,32 +1076,60 @@ private:
             case loadnil:
                 for (int j = 0; j <= i.b(); ++j) way[a + j] = nil;
                 return true;
+            default:
+                return false;
+        }
+    }
+
+    /// Reads variables from outside, and tables.
+    bool look_up(const Decoded& now) {
+        using enum Code;
+        const auto& [way, i, a, b] = std::tie(now.way, now.i, now.a, now.b);
+        switch (i.code()) {
             case getupval:
-                way[a] = outside(OutsideValue::Kind::variable, closure_place, i.b() + 1);
+                way[a] = outside(OutsideValue::Kind::variable, now.closure, i.b() + 1);
                 return true;
             case gettabup:
-                way[a] = element(outside(OutsideValue::Kind::variable, closure_place, i.b() + 1),
-                                 constant(*function, i.c()));
+                way[a] = element(outside(OutsideValue::Kind::variable, now.closure, i.b() + 1),
+                                 constant(now.function, i.c()));
                 return true;
             case gettable:
-                way[a] = element(way[b], way[c]);
+                way[a] = element(way[b], way[now.c]);
                 return true;
             case geti:
                 way[a] = element(way[b], constant_whole(i.c()));
                 return true;
             case getfield:
-                field(way, a, b, constant(*function, i.c()));
+                field(way, a, b, constant(now.function, i.c()));
                 return true;
             case self: {
                 // The excitation stands for its method, which is called with itself.
-                const Known name = i.k() ? constant(*function, i.c()) : way[c], own = way[b];
-                if (excitation_at(own) == nullptr || !(name == text("value"))) refuse(code);
+                const Known name = i.k() ? constant(now.function, i.c()) : way[now.c], own = way[b];
+                if (excitation_at(own) == nullptr || !(name == text("value"))) refuse(self);
                 way[a] = way[a + 1] = own;
                 return true;
             }
+            case len:
+                if (way[b].kind != Known::Kind::object) refuse(len);
+                way[a] = outside(OutsideValue::Kind::length, way[b].object, 0);
+                return true;
+            default:
+                return false;
+        }
+    }
+
+    /// Calculates with numbers, or negates. An instruction for values that are no numbers follows one with two
+    /// operands, and is skipped.
+    bool do_arithmetic(const Decoded& now) {
+        using enum Code;
+        const auto& [way, i, a, b] = std::tie(now.way, now.i, now.a, now.b);
+        const auto behind = [&now](Code first) {
+            return static_cast<std::size_t>(now.i.code()) - static_cast<std::size_t>(first);
+        };
+        switch (i.code()) {
             case addi:
-                arithmetic(way, 0, a, in_register(b), immediate(i.signed_c()));
-                ++at;
+                arithmetic(way, 0, a, now.in_register(b), immediate(i.signed_c()));
+                ++now.at;
                 return true;
             case addk:
             case subk:
@@ -1071,9 +1138,8 @@ private:
             case powk:
             case divk:
             case idivk:
-                arithmetic(way, static_cast<std::size_t>(code) - static_cast<std::size_t>(addk), a, in_register(b),
-                           constant_of(i.c()));
-                ++at;
+                arithmetic(way, behind(addk), a, now.in_register(b), constant_of(now, i.c()));
+                ++now.at;
                 return true;
             case add:
             case sub:
@@ -1082,9 +1148,8 @@ private:
             case pow:
             case div:
             case idiv:
-                arithmetic(way, static_cast<std::size_t>(code) - static_cast<std::size_t>(add), a, in_register(b),
-                           in_register(c));
-                ++at;  // over the instruction for values that are no numbers
+                arithmetic(way, behind(add), a, now.in_register(b), now.in_register(now.c));
+                ++now.at;
                 return true;
             case unm: {
                 need_number(way[b]);
@@ -1097,36 +1162,23 @@ private:
                 need_decided(way[b]);
                 way[a] = {.kind = way[b].is_false() ? Known::Kind::yes : Known::Kind::no};
                 return true;
-            case len:
-                if (way[b].kind != Known::Kind::object) refuse(code);
-                way[a] = outside(OutsideValue::Kind::length, way[b].object, 0);
-                return true;
+            default:
+                return false;
+        }
+    }
+
+    /// Jumps, tests of one value, and loops with `for`.
+    bool branch(const Decoded& now) {
+        using enum Code;
+        const auto& [way, i, a, b] = std::tie(now.way, now.i, now.a, now.b);
+        std::size_t& at = now.at;
+        switch (i.code()) {
             case close:
                 return true;
             case jmp:
                 --at;
                 jump(way);
                 return true;
-            case eq:
-                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), in_register(b)), i.k());
-            case lt:
-                return go_on(way, compare(Op::less, Op::less_whole, in_register(a), in_register(b)), i.k());
-            case le:
-                return go_on(way, compare(Op::less_equal, Op::less_equal_whole, in_register(a), in_register(b)), i.k());
-            case eqk:
-                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), constant_of(i.b())), i.k());
-            case eqi:
-                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), immediate(i.signed_b())), i.k());
-            case lti:
-                return go_on(way, compare(Op::less, Op::less_whole, in_register(a), immediate(i.signed_b())), i.k());
-            case lei:
-                return go_on(
-                    way, compare(Op::less_equal, Op::less_equal_whole, in_register(a), immediate(i.signed_b())), i.k());
-            case gti:
-                return go_on(way, compare(Op::less, Op::less_whole, immediate(i.signed_b()), in_register(a)), i.k());
-            case gei:
-                return go_on(
-                    way, compare(Op::less_equal, Op::less_equal_whole, immediate(i.signed_b()), in_register(a)), i.k());
             case test:
                 need_decided(way[a]);
                 take(way, way[a].is_false() != i.k());
@@ -1140,18 +1192,6 @@ private:
                     take(way, true);
                 }
                 return true;
-            case Code::call:
-            case tailcall: {
-                const int given = way.arguments >= 0 ? way.arguments : i.b() > 0 ? i.b() - 1 : way.top - a - 1;
-                way.arguments = -1;
-                return this->call(way, a, given, code == tailcall ? -1 : i.c() - 1);
-            }
-            case return_:
-                return leaves(way, a, i.b() > 0 ? i.b() - 1 : way.top - a);
-            case return0:
-                return leaves(way, a, 0);
-            case return1:
-                return leaves(way, a, 1);
             case forprep: {
                 const std::size_t start = at, end = at + static_cast<std::size_t>(i.bx());
                 if (prepare(way, a)) {
@@ -1165,9 +1205,38 @@ private:
                 if (loops(way, a)) at -= static_cast<std::size_t>(i.bx()), ++way.frames.back().loops.back().round;
                 return true;
             default:
-                refuse(code);
+                return false;
         }
     }
+
+    /// The condition of an instruction that compares two values; none for any other.
+    std::optional<Condition> comparison(const Decoded& now) {
+        using enum Code;
+        const auto& [i, a, b] = std::tie(now.i, now.a, now.b);
+        switch (i.code()) {
+            case eq:
+                return compare(Op::equal, Op::equal_whole, now.in_register(a), now.in_register(b));
+            case lt:
+                return compare(Op::less, Op::less_whole, now.in_register(a), now.in_register(b));
+            case le:
+                return compare(Op::less_equal, Op::less_equal_whole, now.in_register(a), now.in_register(b));
+            case eqk:
+                return compare(Op::equal, Op::equal_whole, now.in_register(a), constant_of(now, i.b()));
+            case eqi:
+                return compare(Op::equal, Op::equal_whole, now.in_register(a), immediate(i.signed_b()));
+            case lti:
+                return compare(Op::less, Op::less_whole, now.in_register(a), immediate(i.signed_b()));
+            case lei:
+                return compare(Op::less_equal, Op::less_equal_whole, now.in_register(a), immediate(i.signed_b()));
+            case gti:
+                return compare(Op::less, Op::less_whole, immediate(i.signed_b()), now.in_register(a));
+            case gei:
+                return compare(Op::less_equal, Op::less_equal_whole, immediate(i.signed_b()), now.in_register(a));
+            default:
+                return std::nullopt;
+        }
+    }
+
     static void need_decided(const Known& known) {
         if (known.kind == Known::Kind::unknown) throw Obstacle{"it uses a variable without a value"};
     }

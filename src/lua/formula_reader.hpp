@@ -26,8 +26,8 @@ struct OutsideValue {
     int value;         ///< likewise
 };
 
-/// What a function is called with: the first `count` of t, theta, velocity and the table of these states, with
-/// `of_speed` behind a speed; with `timeless` a speed is in the place of t. If there are bodies, theta and velocity are
+/// The arguments of a function: the first `count` of t, theta, velocity and the table of these states. With `of_speed`
+/// a speed precedes them; with `timeless` a speed is in the place of t. If there are bodies, theta and velocity are
 /// tables of them. The speed, the angles and velocities of the bodies and the states are the states of its formula, in
 /// this order.
 struct Arguments {
@@ -45,8 +45,7 @@ struct Reading {
     std::vector<OutsideValue> outside;
 };
 
-/// How the callable value at the index is read. All who ask share one reading, until something outside is no longer as
-/// it was.
+/// Reads the callable value at the index. All callers share one reading until a value outside of the function changes.
 std::shared_ptr<Reading> reading_of(lua_State* L, int index, const Arguments& arguments);
 
 }  // namespace dinal::lua

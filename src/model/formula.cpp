@@ -41,6 +41,49 @@ bool rounded(double x, double& to) {
     return true;
 }
 
+/// An operation with whole numbers, or from one kind of number to the other. Returns false if it fails, and for any
+/// other operation.
+inline bool operate_on_whole(Op op, double a, double b, double& to) {
+    switch (op) {
+        case Op::add_whole:
+            to = from_bits(bits(a) + bits(b));
+            return true;
+        case Op::subtract_whole:
+            to = from_bits(bits(a) - bits(b));
+            return true;
+        case Op::multiply_whole:
+            to = from_bits(bits(a) * bits(b));
+            return true;
+        case Op::modulo_whole:
+            if (to_whole(b) == 0) return false;
+            to = from_whole(whole_modulo(to_whole(a), to_whole(b)));
+            return true;
+        case Op::divide_whole:
+            if (to_whole(b) == 0) return false;
+            to = from_whole(whole_quotient(to_whole(a), to_whole(b)));
+            return true;
+        case Op::negate_whole:
+            to = from_bits(0U - bits(a));
+            return true;
+        case Op::abs_whole:
+            to = to_whole(a) < 0 ? from_bits(0U - bits(a)) : a;
+            return true;
+        case Op::to_float:
+            to = static_cast<double>(to_whole(a));
+            return true;
+        case Op::exact:
+            to = static_cast<double>(to_whole(a));
+            return std::fabs(to) < 0x1p53;
+        case Op::floor:
+            return rounded(std::floor(a), to);
+        case Op::ceil:
+            return rounded(std::ceil(a), to);
+        default:
+            return false;
+    }
+}
+
+/// Any operation that is no condition; those with floats are the frequent ones.
 [[gnu::always_inline]] inline bool operate(Op op, double a, double b, double& to) {
     switch (op) {
         case Op::move:
@@ -113,41 +156,8 @@ bool rounded(double x, double& to) {
             if (!std::isfinite(a)) return false;
             to = to_excitation(b).value(a);
             return true;
-        case Op::add_whole:
-            to = from_bits(bits(a) + bits(b));
-            return true;
-        case Op::subtract_whole:
-            to = from_bits(bits(a) - bits(b));
-            return true;
-        case Op::multiply_whole:
-            to = from_bits(bits(a) * bits(b));
-            return true;
-        case Op::modulo_whole:
-            if (to_whole(b) == 0) return false;
-            to = from_whole(whole_modulo(to_whole(a), to_whole(b)));
-            return true;
-        case Op::divide_whole:
-            if (to_whole(b) == 0) return false;
-            to = from_whole(whole_quotient(to_whole(a), to_whole(b)));
-            return true;
-        case Op::negate_whole:
-            to = from_bits(0U - bits(a));
-            return true;
-        case Op::abs_whole:
-            to = to_whole(a) < 0 ? from_bits(0U - bits(a)) : a;
-            return true;
-        case Op::to_float:
-            to = static_cast<double>(to_whole(a));
-            return true;
-        case Op::exact:
-            to = static_cast<double>(to_whole(a));
-            return std::fabs(to) < 0x1p53;
-        case Op::floor:
-            return rounded(std::floor(a), to);
-        case Op::ceil:
-            return rounded(std::ceil(a), to);
         default:
-            return false;
+            return operate_on_whole(op, a, b, to);
     }
 }
 
@@ -267,7 +277,7 @@ bool is_staircase(Op op) {
     return op == Op::floor || op == Op::ceil || op == Op::floor_divide;
 }
 
-/// What a result depends on.
+/// Returns the sources of a result, from those of its operands.
 std::uint64_t sources_of(Op op, std::uint64_t a, std::uint64_t b) {
     return is_staircase(op) ? 0 : a | b;
 }
@@ -287,12 +297,13 @@ double result_on(Op op, double a, double b, double decision) {
     }
 }
 
-/// How many ends the piece has: one, or one below and one above. What is not equal has none: it is equal for no time.
+/// The number of ends of the piece: one, or one below and one above. Values that differ have none, since they are equal
+/// for no time.
 int conditions_of(Op op, double decision) {
     return is_comparison(op) ? (op == Op::equal && decision == 0 ? 0 : 1) : op == Op::abs ? 1 : 2;
 }
 
-/// How far it is to these ends; an equality ends as soon as the two differ.
+/// The distances to these ends; an equality ends as soon as the two differ.
 std::pair<double, double> margins_of(Op op, double a, double b, double decision) {
     switch (op) {
         case Op::less:
@@ -315,7 +326,7 @@ std::pair<double, double> margins_of(Op op, double a, double b, double decision)
 
 }  // namespace
 
-/// What each register depends on at the start.
+/// The sources of each register at the start, as bits.
 std::vector<std::uint64_t> Formula::sources() const {
     std::vector<std::uint64_t> of(registers_.size());
     std::uint64_t bit = 1;
@@ -325,7 +336,7 @@ std::vector<std::uint64_t> Formula::sources() const {
     return of;
 }
 
-/// Whether a step with such an operation depends on theta, velocity or a state.
+/// Returns whether a step with such an operation depends on theta, velocity or a state.
 bool Formula::depends_on_motion(bool (*wanted)(Op op)) const {
     using Sources = std::vector<std::uint64_t>;
     std::map<std::size_t, Sources> ways;  // what comes to a step
@@ -370,7 +381,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
         if (both != 0 && (compares || is_fold(s.op))) {
             double decision = decision_of(s.op, a, b, result);
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
-            // What has jumped along with another condition is not where it was.
+            // A value that has jumped along with another condition is not on its old piece.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
             if ((all & again) == 0 && before == before && is_beside) decision = before;
             if (std::fabs(decision) < whole_numbers) {
@@ -444,7 +455,7 @@ public:
         seen_ = 0xcbf29ce484222325U;
         forks_ = 0;
         part_ = std::numeric_limits<double>::quiet_NaN();
-        // What a register has held before is written again before it is read.
+        // The program writes each register before it reads it, so earlier values do no harm.
         const auto motion = std::pair(ranges_[1], ranges_[2]);
         ranges_[0] = {{from, to}};
         const bool same = follow(0, ranges_);
@@ -504,7 +515,7 @@ private:
     static bool takes_whole(Op op) {
         return (op >= Op::add_whole && op <= Op::exact) || (op >= Op::less_whole && op <= Op::equal_whole);
     }
-    /// Of whole numbers the same as floats.
+    /// The range of an operand; one of whole numbers becomes one of floats.
     static bounds::Interval as_floats(Op op, const Range& r) {
         if (r.is_anything() || !takes_whole(op)) return r;
         return {static_cast<double>(to_whole(r.lo)), static_cast<double>(to_whole(r.hi))};
@@ -562,7 +573,7 @@ private:
         if (r.folds && !time.folds) part_ = (next - from) / (time.hi - from);
     }
     static std::uint64_t piece_of(double decision) { return bits(decision + 0.0) + 1; }
-    /// Where the piece ends for rising values.
+    /// The operand at which the piece ends for rising values.
     static double next_fold(Op op, double a, double b, double result) {
         switch (op) {
             case Op::abs:
@@ -600,8 +611,8 @@ double at_rank(std::int64_t rank) {
     return from_whole(rank < 0 ? std::numeric_limits<std::int64_t>::min() - rank : rank);
 }
 
-/// Where to divide an interval: a little before the place where something is thought to happen, or behind that, and
-/// each third time in its middle.
+/// Returns where to divide an interval: a little before or behind the place at which a change is suspected, and each
+/// third time in its middle.
 double cut(double from, double to, double part, int turn) {
     constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
     const double place = from + (turn % 3 == 1 ? part : 1 - part) * (to - from);
@@ -652,7 +663,7 @@ bool Formula::is_dubious(double t, double found) {
     return jump < small * greatest_ && jump > rounding * greatest_;
 }
 
-/// Whether only an excitation breaks there, as its author has said.
+/// Returns whether only an excitation breaks there, as its author has declared.
 bool Formula::is_of_excitation(double found) const {
     if (excitations_.empty()) return false;
     Look look(*this, Breaks::own);
@@ -667,7 +678,7 @@ double Formula::search(double t, Breaks which) {
     std::map<double, double>& known = known_[which == Breaks::all ? 1 : 0];
     const auto behind = known.upper_bound(t);
     if (behind != known.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
-    // What changes a hair later has changed already; and where a comparison changes, rounding may make it flicker.
+    // A change within rounding of t counts as past, and rounding may make a comparison flicker about its change.
     const bool at_break = behind != known.begin() && std::prev(behind)->second == t;
     const double flicker = t + std::max(least, (at_break ? 64 : 4) * rounding * std::fabs(t));
 

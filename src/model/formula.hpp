@@ -1,5 +1,5 @@
-// What a user's function computes, as a program of a few operations: the same bits as the function itself gives, but
-// without its language, and open to questions. Whoever reads the function (lua/reader) writes the program.
+// A user's function as a program of a few operations: it computes the same bits as the function, but needs no Lua, and
+// can be analysed. lua/formula_reader writes the program.
 #pragma once
 
 #include <array>
@@ -74,8 +74,8 @@ enum class Op : std::uint16_t {
 /// The operation on two registers (of one operand: the same twice); false where it fails, as a whole number // 0 does.
 bool apply(Op op, double a, double b, double& to);
 
-/// Which piece of an operation a result lies on: whether a comparison holds, the sign within abs, the whole part of a
-/// quotient.
+/// The piece of an operation on which a result lies: whether a comparison holds, the sign within abs, the whole part of
+/// a quotient.
 double decision_of(Op op, double a, double b, double result);
 
 inline bool is_comparison(Op op) {
@@ -143,7 +143,7 @@ public:
     /// After which time it is proven to repeat; 0 when that is not known, or when it is constant.
     [[nodiscard]] double period() const;
 
-    // What it is made of, for those who run it on other numbers.
+    // Its parts, for those who run it on other numbers.
     [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
     [[nodiscard]] const std::vector<double>& registers() const { return registers_; }
     [[nodiscard]] bool takes_motion() const { return motion_; }
@@ -154,7 +154,7 @@ public:
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }
     /// Such a condition depends on theta, velocity or a state.
     [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
-    /// Whether an excitation in it is evaluated at a time that depends on these.
+    /// Returns whether an excitation in it is evaluated at a time that depends on these.
     [[nodiscard]] bool moves_excitations() const {
         return !excitations_.empty() && depends_on_motion([](Op op) { return op == Op::native; });
     }

@@ -102,7 +102,7 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
     }
 }
 
-/// What a value adds in each period: x(t + period) = x(t) + slope period. A period of 0 stands for any.
+/// The growth of a value in each period: x(t + period) = x(t) + slope period. A period of 0 stands for any.
 struct Repeating {
     double slope = 0, period = 0;
     std::optional<double> constant = {};
@@ -303,7 +303,7 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         } else if (a && b) {
             made = result_of(s.op, *a, *b);
         }
-        // What has been calculated from constants keeps the bits that it has.
+        // A value calculated from constants keeps its bits.
         if (!made && a && b && a->is_constant() && b->is_constant()) made = TermSum{.powers = {result}};
         registers[s.to] = made;
         r[s.to] = result;

@@ -37,7 +37,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       tolerance_(tolerance),
       longest_(longest),
       step_length_(step),
-      pair_(pair),
+      pair_{pair, {}, {}, {}},
       n_(mechanics.bodies()),
       m_(mechanics.states()),
       allowed_(n_),
@@ -148,7 +148,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
                 torque[j] = mechanics_.joint_torque(joint, at, mode, s.belts[joint][j]);
             });
         }
-        // Of the digits that the angles have rounded off the stiffness takes notice.
+        // The stiffness sees the digits of the motion that the rounding of the angles has cut off.
         for (const auto& [body, by] : own.of) {
             const double k = by * own.stiffness;
             if (k == 0) continue;
@@ -376,7 +376,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     return Attempt::shorten;
 }
 
-/// How wide the motion of each group and state is, and what is left over of its equation, beside that.
+/// Finds the width of the motion of each group and state, and the residual of its equation relative to that.
 Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& frame) {
     const std::size_t groups = frame.groups(), count = unknown_.size();
     Residual found;
@@ -425,11 +425,11 @@ double Collocation::take_step(double h) {
     return change;
 }
 
-/// Where the stages of the pair do not lie on nodes, the first inner nodes are lent for them: what depends on the time
-/// alone is there what the polynomial through its samples is. The stretch is resolved only if that tells all of it.
+/// Stages of the pair that do not lie on nodes borrow the first inner nodes. Functions of the time alone have there the
+/// values of the polynomial through their samples. The stretch is resolved only if that polynomial is.
 template <class Rates>
 bool Collocation::find_stages(Segment& s, const Rates& rates, std::vector<double>& change) {
-    const std::span<const Pair::Stage> stages = pair_->stages;
+    const std::span<const Pair::Stage> stages = pair_.method->stages;
     std::vector<std::pair<Nodes*, Nodes>> lent;
     const auto lend = [&](Nodes& values) {
         const Series series = cheb::fit(lent.emplace_back(&values, values).second);
@@ -444,19 +444,19 @@ bool Collocation::find_stages(Segment& s, const Rates& rates, std::vector<double
     }
     const auto sum_of_stages = [&](const Pair::Weights& weights, std::vector<double>& sum) {
         sum.assign(change.size(), 0);
-        for (std::size_t i = 0; i < stages_.size(); ++i) {
-            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += 2 * s.h * weights[i] * stages_[i][k];
+        for (std::size_t i = 0; i < pair_.stages.size(); ++i) {
+            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += 2 * s.h * weights[i] * pair_.stages[i][k];
         }
     };
-    stages_.resize(1);
-    bool good = rates(0, change, stages_[0]);
+    pair_.stages.resize(1);
+    bool good = rates(0, change, pair_.stages[0]);
     for (std::size_t i = 0; i < stages.size() && good; ++i) {
         sum_of_stages(stages[i].sum, change);
-        stages_.emplace_back();
-        good = rates(stages[i].at < 1 ? i + 1 : node_count - 1, change, stages_.back());
+        pair_.stages.emplace_back();
+        good = rates(stages[i].at < 1 ? i + 1 : node_count - 1, change, pair_.stages.back());
     }
     for (auto& [values, kept] : lent) *values = kept;
-    if (good) sum_of_stages(pair_->error, error_), sum_of_stages(pair_->bulge, bulge_);
+    if (good) sum_of_stages(pair_.method->error, pair_.error), sum_of_stages(pair_.method->bulge, pair_.bulge);
     return good;
 }
 
@@ -475,13 +475,14 @@ double Collocation::error_of_step(const Segment& s, const Frame& frame) const {
     for (std::size_t i = 0; i < n_; ++i) {
         double way = 0, velocity = 0, per_torque = 0;
         for (const auto& [group, by] : frame.bodies[i]) {
-            way += by * error_[group], velocity += by * error_[groups + group];
+            way += by * pair_.error[group], velocity += by * pair_.error[groups + group];
             per_torque += s.h * by * by / frame.inertia[group];
         }
         note(std::max(std::fabs(velocity), of_longest / longest_ * std::fabs(way)), n_ + i,
              per_torque * sizes_.at_start[i]);
     }
-    for (std::size_t k = 0; k < m_; ++k) note(std::fabs(error_[2 * groups + k]), 2 * n_ + k, s.h * fastest_.rates[k]);
+    for (std::size_t k = 0; k < m_; ++k)
+        note(std::fabs(pair_.error[2 * groups + k]), 2 * n_ + k, s.h * fastest_.rates[k]);
     return most;
 }
 
@@ -503,7 +504,7 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
         const Frame::Shape& shape = frame.bodies[i];
         if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offsets_.velocities[i][0]) / shape[0].by;
     }
-    /// Of groups the way and the change of velocity, of states the change.
+    /// Puts changes at a node: the ways of the groups, the changes of their velocities, and those of the states.
     const auto put = [&](std::size_t node, const std::vector<double>& change) {
         for (std::size_t i = 0; i < n_; ++i) {
             const Frame::Shape& shape = frame.bodies[i];
@@ -530,9 +531,9 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
         return change;
     };
     std::vector<double> a, b, c, d, e, z(size, 0);
-    if (pair_ != nullptr) {
+    if (pair_.method != nullptr) {
         if (!find_stages(s, rates, z)) return Attempt::failed;
-        a = stages_.front(), e = stages_.back();
+        a = pair_.stages.front(), e = pair_.stages.back();
     } else {
         if (!rates(0, z, a) || !rates(middle, along(h / 2, a), b) || !rates(middle, along(h / 2, b), c) ||
             !rates(last, along(h, c), d)) {
@@ -542,7 +543,7 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
         if (!rates(last, z, e)) return Attempt::failed;
     }
     // In a small part of a step the places differ by rounding, of which no velocity can be made.
-    const bool quintic = h >= 1e-3 * step_length_ && pair_ == nullptr;
+    const bool quintic = h >= 1e-3 * step_length_ && pair_.method == nullptr;
     const auto cubic = [&](std::size_t k, double x) {
         const double v0 = h * a[k], v1 = h * e[k];
         return x * (v0 + x * ((3 * z[k] - 2 * v0 - v1) + x * (v0 + v1 - 2 * z[k])));
@@ -551,7 +552,8 @@ Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, cons
     for (std::size_t j = 1; j < last; ++j) {
         const double x = (1 + cheb::nodes[j]) / 2;
         for (std::size_t k = 0; k < size; ++k) change[k] = cubic(k, x);
-        for (std::size_t k = 0; k < size && pair_ != nullptr; ++k) change[k] += x * x * (1 - x) * (1 - x) * bulge_[k];
+        for (std::size_t k = 0; k < size && pair_.method != nullptr; ++k)
+            change[k] += x * x * (1 - x) * (1 - x) * pair_.bulge[k];
         for (std::size_t g = 0; g < groups && quintic; ++g) {
             const std::size_t v = groups + g;
             const StepInterpolant motion(h, {0, a[g]}, a[v], {z[g], e[g]}, e[v]);
@@ -571,8 +573,8 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
     find_sizes_at_start(s, begin);
     const bool stepping = step_length_ > 0;
-    const Attempt attempt =
-        stepping || pair_ != nullptr ? runge_kutta(s, mode, frame, departing) : iterate(s, mode, frame, departing);
+    const Attempt attempt = stepping || pair_.method != nullptr ? runge_kutta(s, mode, frame, departing)
+                                                                : iterate(s, mode, frame, departing);
     if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
@@ -588,14 +590,14 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     }
     find_holding(s, mode, frame);
     find_limits(s, mode);
-    const double error = pair_ != nullptr ? error_of_step(s, frame) : 0;
+    const double error = pair_.method != nullptr ? error_of_step(s, frame) : 0;
     const std::vector<double> fastest = fastest_.rates;
     judge(s, mode, frame);
     s.proven = !stepping || !mechanics_.has_functions();
     if (stepping) return Attempt::resolved;
-    if (pair_ != nullptr) {
-        unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_->power));
-        growth_ = std::min(growth_, std::pow(error, -1 / pair_->power));
+    if (pair_.method != nullptr) {
+        unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_.method->power));
+        growth_ = std::min(growth_, std::pow(error, -1 / pair_.method->power));
         if (unresolved_ > 1) fastest_.rates = fastest;  // not those of a step that went far away
     }
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
@@ -610,7 +612,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
 /// last one are added to those that they equal at the nodes.
 void Collocation::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
     for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
-    const bool integrated = step_length_ == 0 && pair_ == nullptr && !mechanics_.has_belts();
+    const bool integrated = step_length_ == 0 && pair_.method == nullptr && !mechanics_.has_belts();
     for (std::size_t i = 0; i < n_ && integrated; ++i) {
         auto w = s.rates[n_ + i];
         for (double& c : w) c *= s.h;
@@ -751,7 +753,8 @@ void Collocation::judge_joints(const Segment& s, const Mode& mode) {
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        // What a limit is compared with must be known as well as the motion, and what moves a body is its input.
+        // The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a
+        // belt moves the body by it.
         if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
             const Series series = cheb::fit(s.holding[joint]);
             const double torques = std::max(size_at(joint), held),
@@ -970,7 +973,7 @@ std::optional<double> Collocation::jump_of_belt(const Segment& s, std::size_t jo
     const std::size_t from = std::max<std::size_t>(first, 2) - 2;
     const auto found = find_break(std::span(s.times).subspan(from, 3), std::span(belts).subspan(from, 3), belt);
     if (!found || !(*found > s.start.hi)) return {};
-    // Of noise a jump is no more than what lies beside it.
+    // A jump of noise is no greater than the differences beside it.
     const double right_before = std::min(std::nextafter(*found, -model::never), *found - nearest_jump * s.h);
     const double before = belt(std::max(right_before, s.start.hi)), after = belt(*found);
     const double jump = std::fabs(after - before);

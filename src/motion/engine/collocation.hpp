@@ -43,23 +43,23 @@ public:
     }
     [[nodiscard]] const Noise& noise() const { return noise_; }
     void know(const Floor& floor) { noise_.know(floor); }
-    /// What the velocity of a body may be off by on a stretch that was resolved.
+    /// The possible error of a body's velocity on a stretch that was resolved.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
     }
     /// The longest time between two looks at a function of the time in a stretch.
     [[nodiscard]] double gap(const Segment& segment) const;
-    /// Where a function of the time breaks in the last one; none when none does.
+    /// The time at which a function of the time breaks in the last one; none if none does.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// The belt of a joint has clearly different velocities before and at this time.
     [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
-    /// Where the belt of a joint jumps in a stretch, and does not say so; none where that is noise.
+    /// The time of an undeclared jump of the belt of a joint in a stretch; none if there is only noise.
     [[nodiscard]] std::optional<double> jump_of_belt(const Segment& segment, std::size_t joint) const;
     /// All stand where they are, for any length of time.
     void stand_still(Segment& segment, const std::vector<double>& y) const;
     /// A stretch too short to matter is a straight line.
     void pass_over(Segment& segment) const;
-    /// What torques may be off by because the slopes of belts are differences.
+    /// The possible error of torques that results from the slopes of belts, which are differences.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
     /// The multipliers of what holds, at the nodes.
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
@@ -106,9 +106,12 @@ private:
 
     const Mechanics& mechanics_;
     double tolerance_, longest_, step_length_;
-    const Pair* pair_;
-    std::vector<std::vector<double>> stages_;  ///< of the pair: how the groups and states change there
-    std::vector<double> error_, bulge_;        ///< of the last step of the pair
+    /// The embedded pair of Runge-Kutta methods, and its last step.
+    struct {
+        const Pair* method;                       ///< null: another method
+        std::vector<std::vector<double>> stages;  ///< slopes of the groups and states
+        std::vector<double> error, bulge;
+    } pair_;
     std::size_t n_, m_;
     bool tells_rests_ = true;  ///< the loads
     double bad_time_ = 0, unresolved_ = 0, growth_ = 1;
@@ -124,7 +127,7 @@ private:
         std::vector<Nodes> velocities, rates, ways;
     } offsets_;                           ///< of each body against its group
     std::vector<Nodes> unknown_, found_;  ///< accelerations of the groups and rates, and new ones
-    /// Of the last stretch: its end, and there each of the unknowns with its first three derivatives.
+    /// The end of the last stretch, and there each of the unknowns with its first three derivatives.
     struct {
         double t = -model::never, h = 0;
         std::vector<Frame::Shape> groups{};

@@ -33,35 +33,30 @@ public:
     using Jet = std::array<double, jet_order + 1>;
 
     // Terms are added again for each arc; usually the frequencies and rates are those of the arc before.
-    void clear() {
-        powers_.clear(), way_powers_.clear(), resonances_.clear();
-        sines_ = rates_ = 0;
-        free_part_ = false;
-    }
-    void add_power(double c) { powers_.push_back(c); }
+    void clear() { sum_.clear(); }
+    void add_power(double c) { sum_.powers.push_back(c); }
     /// For a velocity: powers of the way, the integrals of its own powers plus a constant.
-    void add_way_power(double c) { way_powers_.push_back(c); }
+    void add_way_power(double c) { sum_.way_powers.push_back(c); }
     /// Im(turning exp(i omega tau))
     void add_sine(double omega, Complex turning) {
-        place_for(omega, sines_, omega_);
-        if (start_.sines.size() < sines_) start_.sines.resize(sines_);
-        start_.sines[sines_ - 1] = turning;
+        sum_.place_for(omega, sum_.sines, sum_.omega);
+        if (start_.sines.size() < sum_.sines) start_.sines.resize(sum_.sines);
+        start_.sines[sum_.sines - 1] = turning;
     }
     void add_exponential(double rate, double amount) {
-        place_for(rate, rates_, rate_);
-        if (start_.amounts.size() < rates_) start_.amounts.resize(rates_);
-        start_.amounts[rates_ - 1] = amount;
+        sum_.place_for(rate, sum_.rates, sum_.rate);
+        if (start_.amounts.size() < sum_.rates) start_.amounts.resize(sum_.rates);
+        start_.amounts[sum_.rates - 1] = amount;
     }
-    void add_resonance(const Resonance& resonance) { resonances_.push_back(resonance); }
+    void add_resonance(const Resonance& resonance) { sum_.resonances.push_back(resonance); }
     /// The velocity of a free motion from this state.
-    void add_free(double theta, double velocity) { start_.free = free_.parts(theta, velocity), free_part_ = true; }
+    void add_free(double theta, double velocity) { start_.free = free_.parts(theta, velocity), sum_.has_free = true; }
     /// Ends the definition; the walk begins at 0.
     void begin();
 
     /// The value at tau, to rounding; does not move the walk.
     Value at(double tau) {
-        aside_ = 0;
-        asked_ = &other_, asked_place_ = tau;
+        asked_.set(other_, tau);
         return turn(start_, turn_by(tau), other_, tau);
     }
     /// The same with three derivatives; derive() adds the others.
@@ -71,13 +66,12 @@ public:
     const Jet& jet_ahead(double length) {
         next_place_ = place_ + length;
         there_ = turn(*now_, turn_by(length), *next_, next_place_);
-        aside_ = 0;
-        asked_ = next_, asked_place_ = next_place_;
+        asked_.set(*next_, next_place_);
         return derive(there_);
     }
-    [[nodiscard]] bool asked_ahead() const { return asked_ != &other_; }
+    [[nodiscard]] bool asked_ahead() const { return asked_.moment != &other_; }
     /// Moves the point of way() this far from the last point of jet().
-    void step_aside(double further) { aside_ = further; }
+    void step_aside(double further) { asked_.aside = further; }
     /// For a velocity: the way from the beginning to the last point of at() or jet().
     [[nodiscard]] double way() const;
 
@@ -86,12 +80,12 @@ public:
     [[nodiscard]] const Value& here() const { return here_; }
     /// look() looks ahead by the length of a level, look_at() to any time; accept_look() moves there.
     static constexpr int levels = 40;
-    [[nodiscard]] double length(int level) const { return longest_ * halved[static_cast<std::size_t>(level)]; }
+    [[nodiscard]] double length(int level) const { return table_.longest * halved[static_cast<std::size_t>(level)]; }
     const Value& look(int level) {
-        std::uint8_t& slot = slots_[static_cast<std::size_t>(level)];
+        std::uint8_t& slot = table_.of_levels[static_cast<std::size_t>(level)];
         if (slot == none) slot = new_turn(length(level));
         next_place_ = place_ + length(level);
-        return there_ = turn(*now_, turns_[slot], *next_, next_place_);
+        return there_ = turn(*now_, table_.turns[slot], *next_, next_place_);
     }
     const Value& look_at(double tau) {
         next_place_ = tau;
@@ -111,21 +105,21 @@ public:
     }
     /// A bound of |f''''| from here to `until`.
     [[nodiscard]] double fourth_bound(double until) const {
-        const double bound = free_part_ ? sines_fourth_ + free_.fourth_bound(now_->free) : sines_fourth_;
+        const double bound = sum_.has_free ? sines_fourth_ + free_.fourth_bound(now_->free) : sines_fourth_;
         return may_grow() ? bound + growing_bound(until) : bound;
     }
     /// Returns whether that bound grows with `until`.
     [[nodiscard]] bool may_grow() const { return !only_swings_; }
     /// An estimate of the rate at which higher derivatives grow.
     [[nodiscard]] double fastest() const {
-        if (powers_.size() > jet_order + 1) return too_fast;
+        if (sum_.powers.size() > jet_order + 1) return too_fast;
         return fastest_;
     }
     /// A bound of the sixth derivative, given one of the fourth. Near resonance it has six products of five factors
     /// each, the fourth four of three.
     [[nodiscard]] double sixth_bound(double fourth_bound) const {
-        if (powers_.size() > 6) return too_fast;
-        return fourth_bound * fastest_ * fastest_ * (resonances_.empty() ? 1 : 2);
+        if (sum_.powers.size() > 6) return too_fast;
+        return fourth_bound * fastest_ * fastest_ * (sum_.resonances.empty() ? 1 : 2);
     }
     /// The size of the terms of the sum, from here to `until`.
     [[nodiscard]] double size(double until) const;
@@ -154,50 +148,95 @@ private:
         double along, moved, kept, bent;  // coefficients of the free motion
     };
     static constexpr std::uint8_t none = 255;
-    static constexpr std::size_t habits = 4;
 
-    /// Registers the next frequency or rate.
-    void place_for(double rate, std::size_t& count, std::vector<double>& rates) {
-        if (count == rates.size()) {
-            rates.push_back(rate);
-            changed_ = true;
-        } else if (rates[count] != rate) {
-            rates[count] = rate;
-            changed_ = true;
+    /// The terms of the sum. Their amounts at the beginning are in `start_`.
+    struct Sum {
+        std::vector<double> powers{}, way_powers{}, omega{}, rate{};
+        std::vector<Resonance> resonances{};
+        bool has_free = false;             // whether a free motion is part of it
+        bool changed = true;               // whether frequencies or rates changed since the table was made
+        std::size_t sines = 0, rates = 0;  // numbers of frequencies and rates in use
+
+        void clear() {
+            powers.clear(), way_powers.clear(), resonances.clear();
+            sines = rates = 0;
+            has_free = false;
         }
-        ++count;
-    }
+        /// Registers the next frequency or rate.
+        void place_for(double value, std::size_t& count, std::vector<double>& values) {
+            if (count == values.size()) {
+                values.push_back(value);
+                changed = true;
+            } else if (values[count] != value) {
+                values[count] = value;
+                changed = true;
+            }
+            ++count;
+        }
+    };
+    /// Turns by level, made on demand, and for the latest other lengths, as motions repeat their steps.
+    struct Table {
+        double longest;             // length of the first level
+        bool has_free = false;      // whether the turns include free motions
+        std::vector<Complex> mu{};  // exponents of the resonances
+        std::array<std::uint8_t, levels> of_levels;
+        std::array<std::uint8_t, 4> latest;
+        std::size_t oldest = 0;  // place in `latest`
+        std::vector<Turn> turns{};
+        std::vector<Complex> sine_rows{};
+        std::vector<double> growth_rows{};
+        std::vector<std::array<Complex, 2>> resonance_rows{};
+
+        explicit Table(double longest_look) : longest(longest_look) { of_levels.fill(none), latest.fill(none); }
+        void clear() {
+            of_levels.fill(none), latest.fill(none);
+            mu.clear(), turns.clear(), sine_rows.clear(), growth_rows.clear(), resonance_rows.clear();
+        }
+    };
+    /// The last point of at() or jet().
+    struct Asked {
+        const Moment* moment;
+        double place = 0;
+        Jet jet{};  // derivatives there, as far as they were computed
+        std::size_t jet_size = 0;
+        double aside = 0;
+
+        void set(const Moment& there, double tau) { aside = 0, moment = &there, place = tau; }
+        /// The way from there to the point aside.
+        [[nodiscard]] double further_way() const;
+    };
+
     [[nodiscard]] bool same_resonances() const;
     void make_table();
     std::uint8_t new_turn(double tau);
     void make_turn(double tau, Turn& to);
-    /// The factors of a step; the last few are cached, as motions repeat their steps.
+    /// The factors of a step of any length.
     const Turn& turn_by(double tau) {
-        for (const std::uint8_t slot : kept_) {
-            if (slot != none && turns_[slot].tau == tau) return turns_[slot];
+        for (const std::uint8_t slot : table_.latest) {
+            if (slot != none && table_.turns[slot].tau == tau) return table_.turns[slot];
         }
-        oldest_ = (oldest_ + 1) % habits;
-        std::uint8_t& slot = kept_[oldest_];
+        table_.oldest = (table_.oldest + 1) % table_.latest.size();
+        std::uint8_t& slot = table_.latest[table_.oldest];
         if (slot == none) {
             slot = new_turn(tau);
         } else {
-            make_turn(tau, turns_[slot]);
+            make_turn(tau, table_.turns[slot]);
         }
-        return turns_[slot];
+        return table_.turns[slot];
     }
     /// Advances every part and sums them.
     Value turn(const Moment& from, const Turn& by, Moment& to, double place) const {
         Value y;
-        const Complex *factor = sine_rows_.data() + by.row * sines_, *part = from.sines.data();
-        const double* omega = omega_.data();
+        const Complex *factor = table_.sine_rows.data() + by.row * sum_.sines, *part = from.sines.data();
+        const double* omega = sum_.omega.data();
         Complex* turned = to.sines.data();
-        for (std::size_t j = 0; j < sines_; ++j) {
+        for (std::size_t j = 0; j < sum_.sines; ++j) {
             const Complex z = times(part[j], factor[j]);
             turned[j] = z;
             y.f += z.imag();
             y.slope += omega[j] * z.real();
         }
-        if (free_part_) {
+        if (sum_.has_free) {
             const FreeParts free{by.along * from.free.first + by.moved * from.free.second,
                                  by.kept * from.free.second - by.bent * from.free.first};
             to.free = free;
@@ -214,36 +253,18 @@ private:
     void derive_others(std::size_t from, std::size_t to);
 
     const LinearMotion& free_;
-    std::vector<double> powers_, way_powers_, omega_, rate_;
-    std::vector<Resonance> resonances_;
-    bool free_part_ = false;
-    bool turns_free_ = false;  // whether the tables include free motions
-    bool only_swings_ = true;  // whether it has no powers, exponentials and resonances
-    bool changed_ = true;      // whether frequencies or rates changed since the tables were made
-    std::size_t sines_ = 0, rates_ = 0;
-    double sines_fourth_ = 0, sines_size_ = 0;
-
-    double longest_;
+    Sum sum_;
+    bool only_swings_ = true;  // whether the sum has no powers, exponentials and resonances
     double fastest_;
-    std::vector<Complex> table_mu_;
-    // Tables by level, made on demand, and the latest other lengths.
-    std::array<std::uint8_t, levels> slots_;
-    std::array<std::uint8_t, habits> kept_;
-    std::vector<Turn> turns_;
-    std::vector<Complex> sine_rows_;
-    std::vector<double> growth_rows_;
-    std::vector<std::array<Complex, 2>> resonance_rows_;
-    std::size_t oldest_ = 0;
+    double sines_fourth_ = 0, sines_size_ = 0;
+    Table table_;
 
     Moment start_, first_, second_, other_;  // two alternate for the walk, one for at()
     const Moment* now_ = &start_;
     Moment* next_ = &first_;
-    const Moment* asked_ = &other_;  // the point of jet() and way()
-    double place_ = 0, next_place_ = 0, asked_place_ = 0;
-    Jet jet_{};  // derivatives at asked_, as far as they were computed
-    std::size_t jet_size_ = 0;
-    double aside_ = 0;
+    double place_ = 0, next_place_ = 0;
     Value here_, there_;
+    Asked asked_{&other_};
 };
 
 }  // namespace dinal::motion::exact

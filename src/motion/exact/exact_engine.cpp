@@ -41,16 +41,15 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
     find_record();
     const double T0 = 2 * std::numbers::pi / arc_.free().w0();
     const double half = arc_.free().swings() ? std::numbers::pi / arc_.free().root().imag() : 0;
-    moves_ = {Habit(half), Habit(half)}, swings_ = Habit(half);
+    habits_.moves = {Habit(half), Habit(half)}, habits_.swings = Habit(half);
     creep_ = {.damping = system_.damping(), .inertia = system_.inertia(), .shortest = creeps_over * T0};
-    creep_hold_ = creep_.damping + creep_.inertia / creep_.shortest;
 }
 
 model::Outcome ExactEngine::run() {
     update_M();
     bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
-        if (cost_ >= cost_between_questions && asked_to_stop(clock_.hi)) {
+        if (cost_.is_due() && asked_to_stop(clock_.hi)) {
             if (standstill_.phase() == Standstill::Phase::arrived) decide();
             break;
         }
@@ -61,7 +60,7 @@ model::Outcome ExactEngine::run() {
 }
 
 bool ExactEngine::asked_to_stop(double t) {
-    cost_ = 0;
+    cost_.spent = 0;
     if (!monitor_ || monitor_(t)) return false;
     outcome_ = model::Outcome::interrupted;
     return true;
@@ -125,7 +124,7 @@ bool ExactEngine::move() {
     if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
     if (comes_from_afar()) asked_ = std::min(asked_, decay_of_an_arc / arc_.free().decay());
     const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
-    cost_ += cost * length + cost_between_questions / arcs_between_questions;
+    cost_.spent += cost * length + Cost::between_calls / arcs_between_questions;
     bound_ = arc_.velocity().fourth_bound(length);
     if (!within_range(bound_)) {
         return fail(std::isfinite(formula_.value(length)) ? model::Outcome::state_not_finite
@@ -178,12 +177,12 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     exit.bounded(bound_);
     const double held = system_.stiffness() * std::fabs(y_.theta);
     creep_.least = 4 * epsilon * std::max(std::max(std::fabs(M_), held), system_.greatest_holding());
-    creep_.fastest = creep_.least / creep_hold_;
+    creep_.fastest = creep_.least / creep_.resistance();
     exit.watch(creep_);
     double under_way = 0;
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    Habit& usual = moves_[motion == model::Motion::forward ? 1 : 0];
-    rest_ = &rests_[motion == model::Motion::forward ? 1 : 0];
+    Habit& usual = habits_.moves[motion == model::Motion::forward ? 1 : 0];
+    habits_.rest = &habits_.rests[motion == model::Motion::forward ? 1 : 0];
     if (const double guess = leaving ? usual.length() : 0; guess > 0) {
         if (const auto found = exit.at_once(0, start_from_rest(start_pull), guess, length)) {
             usual.kept(found->tau);
@@ -249,13 +248,13 @@ void ExactEngine::record_turns(double start_pull, double length) {
         std::optional<Exit> found;
         if (exit.end().slope != 0) {
             const WalkedCurve::End start = exit.end();
-            const double swing = swings_.length();
+            const double swing = habits_.swings.length();
             constexpr double near_by = 1e-4;
             if (swing > 0 && turn + swing < length) {
                 const bool there = behind && std::fabs(turn - velocity.place()) <= near_by * swing;
                 found = exit.at_once(turn, start, swing, length,
                                      there ? FirstExit::By::a_look : FirstExit::By::the_beginning);
-                found ? swings_.kept(found->tau - turn) : swings_.missed();
+                found ? habits_.swings.kept(found->tau - turn) : habits_.swings.missed();
             }
             if (!found && behind) exit.depart(turn, start, length);
             behind = found.has_value();

@@ -2,6 +2,7 @@
 // first; standstill.hpp decides at velocity zero.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -91,9 +92,18 @@ private:
     bool tell_line(double h, double M, model::State end, double start_pull);
     bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
 
-    /// The cost of arcs between two calls of the monitor, in radians of their parts; a line is cheap.
-    static constexpr double cost_between_questions = 1e7;
-    static constexpr double cost_of_a_line = cost_between_questions / 65536;
+    /// The cost of arcs since the last call of the monitor, in radians of their parts; a line is cheap.
+    struct Cost {
+        static constexpr double between_calls = 1e7, of_a_line = between_calls / 65536;
+        double spent = std::numeric_limits<double>::infinity();
+        [[nodiscard]] bool is_due() const { return spent >= between_calls; }
+    };
+    /// The usual lengths of stretches.
+    struct Habits {
+        std::array<Habit, 2> moves{}, rests{};  // backward and forward: intervals between standstills
+        Habit swings{};                         // intervals between turns without a standstill
+        Habit* rest = rests.data();             // of the present or next rest
+    };
     /// Limits the growth of M on an arc, in e-folds: the end of an arc determines the lengths of all its looks.
     static constexpr double growth_of_an_arc = 4;
 
@@ -106,15 +116,12 @@ private:
 
     Clock clock_;
     model::State y_;
-    double theta_rest_ = 0;                   // rounding error of theta
-    double M_ = 0;                            // limit from the right
-    double piece_end_;                        // the next break of M, or the end of the run
-    double asked_ = 0;                        // requested length of the present arc
-    std::array<Habit, 2> moves_{}, rests_{};  // backward and forward: intervals between standstills
-    Habit swings_;
-    Habit* rest_ = rests_.data();
+    double theta_rest_ = 0;  // rounding error of theta
+    double M_ = 0;           // limit from the right
+    double piece_end_;       // the next break of M, or the end of the run
+    double asked_ = 0;       // requested length of the present arc
+    Habits habits_;
     Creep creep_;
-    double creep_hold_;
     double bound_ = 0;  // bound of the velocity's fourth derivative
     std::optional<double> pull_at_release_ = {};
     Standstill standstill_;
@@ -132,7 +139,7 @@ private:
     Arc arc_;
     LineStep line_;
     WalkedCurve load_;
-    double cost_ = std::numeric_limits<double>::infinity();  // since the last call of the monitor
+    Cost cost_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

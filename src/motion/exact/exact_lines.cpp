@@ -78,10 +78,10 @@ void ExactEngine::rest_along(double until) {
     const double low = k_theta - system_.holding(model::Motion::backward) + rounding;
     const double high = k_theta + system_.holding(model::Motion::forward) - rounding;
     if (!(M_ > low && M_ < high)) return;
-    for (; record_.goes_on(until) && cost_ < cost_between_questions; ++record_.place) {
+    for (; record_.goes_on(until) && !cost_.is_due(); ++record_.place) {
         const double M = record_.torque(1);
         if (!(M > low && M < high) || !end_line(record_.length(), M, y_, true)) return;
-        cost_ += cost_of_a_line;
+        cost_.spent += Cost::of_a_line;
     }
 }
 
@@ -94,7 +94,7 @@ void ExactEngine::move_along(double until) {
     const bool kept = arcs_ != nullptr;
     const double *t = record_.samples->t.data(), *samples = record_.samples->M.data();
     const std::size_t count = record_.samples->t.size(), began = record_.place;
-    const double affordable = std::ceil(std::max((cost_between_questions - cost_) / cost_of_a_line, 0.0));
+    const double affordable = std::ceil(std::max((Cost::between_calls - cost_.spent) / Cost::of_a_line, 0.0));
     const std::size_t last = std::min(count - 1, began + static_cast<std::size_t>(affordable));
     double theta = y_.theta, rest = theta_rest_, velocity = y_.velocity, M = M_, next_row = rows_.next_time();
     const auto round = [&] {
@@ -128,7 +128,7 @@ void ExactEngine::move_along(double until) {
         theta = sum, velocity = y.velocity, M = next_M;
         if (i % lines_between_roundings == 0) round();
     }
-    cost_ += static_cast<double>(i - began) * cost_of_a_line;
+    cost_.spent += static_cast<double>(i - began) * Cost::of_a_line;
     stand();
 }
 

@@ -27,7 +27,7 @@ bool ExactEngine::stay() {
     const double cost = formula_.fastest() * static_cast<double>(1 + formula_.turning_parts());
     const double length =
         std::min({clock_.until(piece_end_), greatest_cost_at_rest / cost, formula_.grows_in() * growth_of_an_arc});
-    cost_ += cost * length + cost_of_a_line;
+    cost_.spent += cost * length + Cost::of_a_line;
     const bool held = standstill_.phase() == Standstill::Phase::held;
     if (!held) {
         const model::Motion towards = standstill_.pulled(M_, y_.theta);
@@ -43,16 +43,16 @@ bool ExactEngine::stay() {
     FirstExit exit(load_, band, 8 * epsilon * (system_.greatest_holding() + std::fabs(k_theta)));
     exit.bounded(bound);
     std::optional<Exit> found;
-    if (const double guess = rest_->length(); guess > 0) {
+    if (const double guess = habits_.rest->length(); guess > 0) {
         found = exit.at_once(0, {M_, formula_.slope(), formula_.bend()}, guess, length);
-        if (!found) rest_->missed();
+        if (!found) habits_.rest->missed();
     }
     if (!found) found = exit.search(length);
     for (; found; found = exit.search(length)) {
         const model::Motion side = found->side > 0 ? model::Motion::forward : model::Motion::backward;
         if (clock_.after(found->tau) >= piece_end_) break;  // left to the next piece
         if (found->crosses) {
-            rest_->kept(found->tau);
+            habits_.rest->kept(found->tau);
             return release_at(found->tau, side, true);
         }
         // M touches the limit within rounding: its exact value decides.

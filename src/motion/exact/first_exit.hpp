@@ -29,6 +29,9 @@ struct Exit {
 struct Creep {
     double damping = 0, inertia = 0, shortest = std::numeric_limits<double>::infinity(), least = 0;
     double fastest = -1;  ///< greatest speed over the shortest look
+
+    /// C + I/h of the shortest look, the greatest torque per speed.
+    [[nodiscard]] double resistance() const { return damping + inertia / shortest; }
 };
 
 /// The length of the previous stretch of this kind, tried first as the next end. After failures it pauses for a while.
