@@ -140,6 +140,15 @@ test("a break of M during a slide is no event", function()
     near(run.theta[#run], from.theta * math.exp(-2 * (4 - from.t)), 1e-12)
 end)
 
+test("a run that goes on slides on, without an event", function()
+    local task = { M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.5 * math.sin(t) end, theta0 = 3, t_end = 8 }
+    local whole = system { I = 1, k = 1 }:simulate(task)
+    task.t_end = 4
+    local longer = system { I = 1, k = 1 }:simulate(task):continue { t_end = 8 }
+    same_events(longer, whole, 1e-12)
+    near(longer.theta[#longer], whole.theta[#whole], 1e-13)
+end)
+
 test("a steep line comes near to the slide", function()
     local function run(M) return system { I = 1, k = 2 }:simulate { M = M, theta0 = 1, t_end = 5 } end
     local slides = run(function(_, theta, v) return v + theta > 0 and -4 or 4 end)

@@ -53,9 +53,10 @@ bool Engine::handle(const Ending& ending) {
     return true;
 }
 
-/// A load begins or ceases to slide along a condition. Both at one instant are no event.
+/// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin where a
+/// run goes on.
 void Engine::tell_slide(std::size_t joint) {
-    if (!begun()) return;
+    if (!(now_.t.hi > problem_.window.start)) return;
     const bool again = last_slide_told_.t == now_.t.hi && last_slide_told_.joint == joint;
     last_slide_told_ = {again ? -model::never : now_.t.hi, joint};
     if (again) {
