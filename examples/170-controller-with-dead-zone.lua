@@ -49,8 +49,9 @@ for _, case in ipairs{ { 0, 0 }, { 0.05, 0 }, { 0.05, 1 } } do
   print(string.format("%7.2f %16.1f %7d %12.3f %+7.3f   %s", lead, slope, turns, rest and rest.t or run.t[#run],
     (target - run.theta[#run]) / degree, run.outcome))
 end
--- Blind to the velocity, only friction stops it. Looking ahead with a bare switch it slides along the edge of the zone,
--- on and off endlessly at one time: the run says so and ends there. One degree from off to on cures it.
+-- Blind to the velocity, only friction stops it. Looking ahead with a bare switch it slides along the edge of what it
+-- foresees, on and off endlessly: M is the mixture of both that keeps it there, until it has come to the edge of the
+-- zone. One degree from off to on stops it sooner.
 
 --[[ prints
 zone, degrees   turns   stuck from, s   off by   at most   (degrees)
@@ -61,6 +62,6 @@ zone, degrees   turns   stuck from, s   off by   at most   (degrees)
 
 lead, s   slope, degrees   turns   ends at, s  off by   outcome
    0.00              0.0      12        3.336  -1.171   stuck at the end
-   0.05              0.0       1        0.460  -0.568   switched endlessly at one time: a jump of M or friction chatters; a steep line or tanh would not, nor excitation.sampled or excitation.relay
+   0.05              0.0       1        2.495  +2.000   stuck at the end
    0.05              1.0       1        0.616  +2.046   stuck at the end
 ]]

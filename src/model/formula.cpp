@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -427,6 +428,101 @@ double Formula::value_on(const terms::Piece& piece, double t, const State& state
         r[s->to] = result_on(s->op, a, b, decision);
         return s + 1;
     });
+}
+
+namespace {
+
+/// The rate of a result that is not folded, from the rates of its operands.
+double rate_of(Op op, double a, double b, double da, double db) {
+    switch (op) {
+        case Op::move:
+            return da;
+        case Op::add:
+            return da + db;
+        case Op::subtract:
+            return da - db;
+        case Op::multiply:
+            return da * b + a * db;
+        case Op::divide:
+            return (da - a / b * db) / b;
+        case Op::modulo:
+            return da - std::floor(a / b) * db;
+        case Op::fmod:
+            return da - std::trunc(a / b) * db;
+        case Op::power:
+            return (da == 0 ? 0 : b * std::pow(a, b - 1) * da) + (db == 0 ? 0 : std::pow(a, b) * std::log(a) * db);
+        case Op::negate:
+            return -da;
+        case Op::sin:
+            return std::cos(a) * da;
+        case Op::cos:
+            return -std::sin(a) * da;
+        case Op::tan:
+            return da / (std::cos(a) * std::cos(a));
+        case Op::asin:
+            return da / std::sqrt(1 - a * a);
+        case Op::acos:
+            return -da / std::sqrt(1 - a * a);
+        case Op::atan2:
+            return (b * da - a * db) / (a * a + b * b);
+        case Op::exp:
+            return std::exp(a) * da;
+        case Op::log:
+            return da / a;
+        case Op::log2:
+            return da / (a * std::numbers::ln2);
+        case Op::log10:
+            return da / (a * std::numbers::ln10);
+        case Op::sqrt:
+            return da / (2 * std::sqrt(a));
+        case Op::abs:
+            return a < 0 ? -da : da;
+        case Op::native:
+            return failure;
+        default:
+            return 0;  // whole numbers
+    }
+}
+
+/// The same of a fold that keeps its decision.
+double rate_on(Op op, double da, double db, double decision) {
+    if (op == Op::abs) return decision < 0 ? -da : da;
+    return op == Op::modulo || op == Op::fmod ? da - decision * db : 0;
+}
+
+}  // namespace
+
+double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, double t, const State& state,
+                            std::span<const double> states, const State& rate, std::span<const double> rates) {
+    start(t, state, states);
+    std::vector<double> dot(registers_.size(), 0);
+    dot[0] = 1;
+    if (motion_) dot[1] = rate.theta, dot[2] = rate.velocity;
+    std::copy(rates.begin(), rates.end(), dot.begin() + static_cast<std::ptrdiff_t>(states_));
+    double found = failure;
+    std::size_t passed = 0;
+    const Step* const first = steps_.data();
+    double* const r = registers_.data();
+    run(first, r, [&](const Step* s, double a, double b) -> const Step* {
+        const double decision = piece.decisions[static_cast<std::size_t>(s - first)];
+        const double da = dot[s->a], db = dot[s->b];
+        if (decision != decision) {
+            if (!is_comparison(s->op) && s->op < Op::jump) dot[s->to] = rate_of(s->op, a, b, da, db);
+            return nullptr;
+        }
+        const auto conditions = static_cast<std::size_t>(conditions_of(s->op, decision));
+        const bool plain =
+            s->op == Op::less || s->op == Op::less_equal || s->op == Op::abs;  // their margins are linear
+        if (plain && passed <= condition && condition < passed + conditions) {
+            found = margins_of(s->op, da, db, decision).first;
+        }
+        passed += conditions;
+        if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
+        r[s->to] = result_on(s->op, a, b, decision);
+        dot[s->to] = rate_on(s->op, da, db, decision);
+        return s + 1;
+    });
+    return found;
 }
 
 // ---- conditions of t

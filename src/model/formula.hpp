@@ -125,6 +125,10 @@ public:
     [[nodiscard]] double value_on(const terms::Piece& piece, double t, const State& state,
                                   std::span<const double> states, std::vector<double>* margins);
 
+    /// The rate at which that margin of a piece changes along a motion with these rates; NaN if it has none.
+    [[nodiscard]] double margin_rate(const terms::Piece& piece, std::size_t condition, double t, const State& state,
+                                     std::span<const double> states, const State& rate, std::span<const double> rates);
+
     /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
     /// ceil, // or %, or at which an excitation in it breaks. It is the very double at which the function itself sees
     /// the change.

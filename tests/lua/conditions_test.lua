@@ -63,9 +63,14 @@ test("read and sampled functions make the same motion", function()
             return sys:simulate { M = M, theta0 = 0.6 + a, t_end = 8, integrator = integrator.spectral { narrowest = narrowest or math.huge } }
         end
         local x, y = go(f), go(unread(f), 0.05) -- samples must not miss a short visit beyond a condition
-        equal(x.status, y.status)
-        equal(#x.events, #y.events)
-        near(x.theta, y.theta, 1e-8)
+        if y.status == "failed" then -- only a function that is read slides along its condition
+            has(y.outcome, "switched endlessly")
+            near(x:at(y.t_end), y:at(y.t_end), 1e-8)
+        else
+            equal(x.status, y.status)
+            equal(#x.events, #y.events)
+            near(x.theta, y.theta, 1e-8)
+        end
     end
 end)
 
@@ -96,14 +101,12 @@ test("what jumps by the time is found beside the motion, too, and in the rate of
     assert(asked < 600 * 51, asked)  -- of so many jumps
 end)
 
-test("a jump that drives the motion back from both sides ends the run with a sentence, sampled or read", function()
+test("a jump that drives the motion back from both sides ends the run with a sentence if it is sampled", function()
     local f = function(_, theta, velocity) return theta + velocity > 0 and -1 or 1 end
-    for _, M in ipairs { f, unread(f) } do
-        local run = system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.7, t_end = 40 }
-        equal(run.status, "failed")
-        has(run.outcome, "switched endlessly")
-        near(run.t_end, 4.8154495, 1e-6)
-    end
+    local run = system { I = 1, k = 1 }:simulate { M = unread(f), theta0 = 2.7, t_end = 40 }
+    equal(run.status, "failed")
+    has(run.outcome, "switched endlessly")
+    near(run.t_end, 4.8154495, 1e-6)
 end)
 
 test("functions that are equal make the same motion, however their conditions are written", function()

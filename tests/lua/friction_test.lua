@@ -100,9 +100,9 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     near(run.theta[#run], 0.5*(0.5/0.15)/2 + 0.5*(5 - 0.5/0.15), 2e-5)
     run = block(friction.law(math.sqrt, { Re = 0 })):simulate { velocity0 = 1, t_end = 5, dt = 1 }
     near(run.theta[#run], 2/3, 1e-9)  -- velocity (1 - t/2)^2, whatever it says about the end
-    -- A controller that slides along its switching line.
+    -- A controller that would slide along its switching line, but is not read.
     run = system { I = 1, k = 0 }:simulate { theta0 = 1, t_end = 5, dt = 1,
-        M = function(t, theta, velocity) return theta + 0.2*velocity > 0 and -5 or 5 end }
+        M = unread(function(t, theta, velocity) return theta + 0.2*velocity > 0 and -5 or 5 end) }
     has(run.outcome, "tanh would not, nor excitation.sampled or excitation.relay")
     -- A jump in the rate of a state, which these two terms of M do not cure.
     run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 5, dt = 1,

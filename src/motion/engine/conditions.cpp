@@ -104,18 +104,27 @@ void ConditionSearch::watch_not_finite() {
 
 }  // namespace
 
-Conditions::Conditions(Mechanics& mechanics, std::size_t told, double start, double unit)
-    : mechanics_(mechanics), told_(told), unit_(unit), samples_(mechanics.samples_the_motion()) {
+Conditions::Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit)
+    : mechanics_(mechanics),
+      told_(told),
+      unit_(unit),
+      samples_(mechanics.samples_the_motion()),
+      slides_(mechanics, frames, unit) {
     mechanics.for_each_piecewise(start, [this](Piecewise&) { any_ = true; });
 }
 
 void Conditions::let_go(double t) {
     mechanics_.for_each_piecewise(t, [](Piecewise& function) { function.let_go(); });
     any_ = false;
+    cease();
 }
 
 void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
     if (!any_) return;
+    if (slides_.any()) {
+        if (forgotten_) cease();
+        slides_.follow(mode);
+    }
     // A velocity that leaves 0 is taken a little later: a condition may lose the first digits, as floor(10 + velocity).
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
@@ -192,16 +201,21 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     }
 }
 
-Conditions::Crossed Conditions::cross(const Ending& ending, const Moment& here, bool often) {
+Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, bool often) {
     constexpr double small = 1e-5, nothing = 1e-13;
     constexpr int most_small = 30, most_to_and_fro = 200;
     constexpr double soon = 1e-6;
     Crossed crossed;
     bool all_small = true;
+    const Moment here = now.here();
     for (const auto& [function, condition] : ending.conditions) {
+        if (const auto joint = slides_.leave(*function, condition)) {
+            crossed.slides.push_back(*joint), crossed.jumps = true, all_small = false;
+            continue;
+        }
         const auto [step, beyond, of] = function->conditions()[condition];
-        const bool back = last_.function == function && last_.step == step && last_.from == beyond &&
-                          here.t - last_.t <= soon * unit_;
+        const bool soon_again = last_.function == function && here.t - last_.t <= soon * unit_;
+        const bool back = soon_again && last_.step == step && last_.from == beyond;
         to_and_fro_ = back ? to_and_fro_ + 1 : 0;
         last_ = {function, step, function->decision(step), here.t, within_};
         const double before = function->value(here);
@@ -212,6 +226,10 @@ Conditions::Crossed Conditions::cross(const Ending& ending, const Moment& here, 
         crossed.jumps = crossed.jumps || clear;
         if (clear && !function->is_law()) ++crossed.count;
         all_small = all_small && clear && jump < small * greatest_;
+        if (!soon_again || !clear || ending.conditions.size() > 1) continue;
+        if (const auto begun = slides_.begin(*function, jump, now)) {
+            crossed.slides.push_back(begun->joint), crossed.work = begun->work, to_and_fro_ = 0;
+        }
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
     crossed.endless = often || to_and_fro_ >= most_to_and_fro;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
+#include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"
 
 namespace dinal::motion::engine {
@@ -14,7 +16,7 @@ namespace dinal::motion::engine {
 class Conditions {
 public:
     /// `told`: the number of values of the state that functions are given; `unit`: of time.
-    Conditions(Mechanics& mechanics, std::size_t told, double start, double unit);
+    Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit);
 
     [[nodiscard]] bool any() const { return any_; }
     /// Returns whether a function of the motion has no pieces that are known: it may jump anywhere.
@@ -35,17 +37,29 @@ public:
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 
     struct Crossed {
-        bool jumps = false;     ///< a function has jumped
-        std::size_t count = 0;  ///< functions that have jumped, other than laws of friction
+        bool jumps = false;                 ///< a function has jumped
+        std::size_t count = 0;              ///< functions that have jumped, other than laws of friction
+        std::vector<std::size_t> slides{};  ///< joints whose load begins or ceases to slide along its condition
+        double work = 0;                    ///< of the load of the first, which has put velocities on the condition
         bool endless = false;
     };
     /// Crosses those at which the stretch has ended. Many jumps in a row that are next to nothing are digits that the
     /// user has cut off: then all are let go, and the functions are sampled from there on; so they are beside a kink
-    /// that rounding reverses.
-    Crossed cross(const Ending& ending, const Moment& here, bool often);
+    /// that rounding reverses. Where a load is driven back from both sides, it slides along the condition, and the
+    /// velocities are put on it.
+    Crossed cross(const Ending& ending, Now& now, bool often);
+    /// Where contacts hold, loads no longer slide. Returns the joints whose load has ceased to, since the last call.
+    std::vector<std::size_t> ceased(const Now& now) {
+        if (slides_.any()) slides_.follow(now.mode);
+        if (slides_.any() && (forgotten_ || slides_.lost(now.here()))) forget(), cease();
+        return std::exchange(ceased_, {});
+    }
 
 private:
     void let_go(double t);
+    void cease() {
+        for (const std::size_t joint : slides_.end()) ceased_.push_back(joint);
+    }
 
     Mechanics& mechanics_;
     std::size_t told_;
@@ -62,6 +76,8 @@ private:
     int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
     int small_in_a_row_ = 0;  ///< jumps
     double greatest_ = 0;     ///< value or jump so far
+    Slides slides_;
+    std::vector<std::size_t> ceased_;
     TorqueSizes sizes_;
     std::vector<double> soon_;   ///< the state, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave

@@ -44,9 +44,9 @@ void Recorder::tell(const Decision& decision, double unit) {
     }
 }
 
-bool Recorder::take_back_slip(std::size_t joint, double t) {
+bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
     auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
-        return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == t;
+        return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
     });
     if (told == result_.events.rend()) return false;
     result_.events.erase(std::next(told).base());

@@ -40,7 +40,8 @@ public:
     void creeps(std::size_t joint, const model::Event& event) { crept_[joint] = event; }
     /// Takes back the slip that was reported at the present, of a joint that did not leave. Returns whether there was
     /// one.
-    bool take_back_slip(std::size_t joint, double t);
+    bool take_back_slip(std::size_t joint, double t) { return take_back(model::EventKind::slip, joint, t); }
+    bool take_back(model::EventKind kind, std::size_t joint, double t);
     /// Keeps only the first of stops and slips that follow each other at once and lead nowhere.
     void forget_chatter(double unit);
     /// The run has ended as it should: what creeps still sticks.

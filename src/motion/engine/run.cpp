@@ -68,7 +68,7 @@ Engine::Engine(const Request& problem, Run& result)
     asking_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
     set_pace();
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
-    conditions_.emplace(mechanics_, asking_.told, now_.t.hi, pace_.unit);
+    conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
     solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
@@ -159,6 +159,7 @@ bool Engine::advance() {
 bool Engine::solve(const Frame& frame) {
     using Attempt = Collocation::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
+    for (const std::size_t joint : conditions_->ceased(now_)) tell_slide(joint);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
     const Attempt attempt = solver_->solve(segment_, now_.mode, frame, now_.y, departing);

@@ -4,6 +4,78 @@
 
 namespace dinal::motion::engine {
 
+bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share) {
+    if (law_ || function_->read() == nullptr) return false;
+    auto made = std::make_shared<Slide>();
+    let_go();
+    constexpr std::uint64_t all = ~std::uint64_t{0};
+    function_->decide(piece_, time(own), asking_->state(own.y), asking_->states(own.y), all);
+    function_->decide(made->beyond, time(beyond), asking_->state(beyond.y), asking_->states(beyond.y), all);
+    // Later conditions may follow from the first that differs.
+    const auto& conditions = piece_.conditions;
+    while (made->condition < conditions.size()) {
+        const std::size_t step = conditions[made->condition].step;
+        if (made->beyond.decisions[step] != piece_.decisions[step]) break;
+        ++made->condition;
+    }
+    if (made->condition == conditions.size() || made->beyond.conditions.empty()) return false;
+    constexpr std::size_t no_step = std::numeric_limits<std::size_t>::max();
+    made->conditions.assign(2, {no_step, 0, 0});
+    made->share = std::move(share);
+    slide_ = std::move(made);
+    return true;
+}
+
+void Piecewise::watch_others(const Moment& at, double near) {
+    std::vector<double> margins;
+    for (const auto side : {Slide::Side::own, Slide::Side::beyond}) {
+        const model::terms::Piece& piece = side == Slide::Side::own ? piece_ : slide_->beyond;
+        model::terms::Piece& apart = slide_->apart[side == Slide::Side::own ? 0 : 1];
+        apart = piece;
+        apart.conditions.clear();
+        (void)on(piece, at, &margins);
+        for (std::size_t c = 0; c < margins.size(); ++c) {
+            if (!(std::fabs(margins[c]) > near)) continue;
+            slide_->others.emplace_back(side, c);
+            slide_->conditions.push_back(piece.conditions[c]);
+            apart.conditions.push_back(piece.conditions[c]);
+        }
+    }
+}
+
+void Piecewise::leave(std::size_t condition) {
+    if (condition == 1) piece_ = slide_->beyond;
+    if (condition > 1) piece_ = {};
+    slide_ = nullptr;
+}
+
+double Piecewise::sliding(const Moment& at) const {
+    if (slide_->asked == Slide::Side::own) return on(piece_, at, nullptr);
+    if (slide_->asked == Slide::Side::beyond) return on(slide_->beyond, at, nullptr);
+    const double own = on(piece_, at, nullptr), share = slide_->share(at);
+    return own + share * (on(slide_->beyond, at, nullptr) - own);
+}
+
+void Piecewise::sliding_margins(const Moment& at, std::vector<double>& out) const {
+    const double share = slide_->share(at);
+    out = {share, 1 - share};
+    std::vector<double> own, beyond;
+    if (slide_->others.empty()) return;
+    (void)on(piece_, at, &own), (void)on(slide_->beyond, at, &beyond);
+    for (const auto& [side, c] : slide_->others) out.push_back((side == Slide::Side::own ? own : beyond)[c]);
+}
+
+std::pair<double, double> Piecewise::margin(const Moment& at, std::span<const double> rates) const {
+    std::vector<double> margins;
+    (void)on(piece_, at, &margins);
+    model::Formula* formula = function_->read();
+    if (formula == nullptr) return {0, std::numeric_limits<double>::quiet_NaN()};
+    const std::size_t count = formula->state_count();
+    return {margins[slide_->condition], formula->margin_rate(piece_, slide_->condition, time(at), asking_->state(at.y),
+                                                             asking_->states(at.y).first(count), asking_->state(rates),
+                                                             asking_->states(rates).first(count))};
+}
+
 Signal::Signal(const model::Excitation& excitation, const Asking* asking)
     : excitation_(excitation), asking_(asking), memory_(excitation.components().size()) {
     for (const model::Component& c : excitation_.components()) {

@@ -9,6 +9,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +76,19 @@ public:
         law_->way = way;
     }
 
+    /// A motion along a condition: the value is a mixture of those on both sides of it.
+    struct Slide {
+        enum class Side { both, own, beyond };
+        std::function<double(const Moment&)> share{};  ///< of the value beyond
+        Side asked = Side::both;
+        model::terms::Piece beyond{};
+        std::size_t condition = 0;  ///< of the function's own piece
+        /// Two of the share, which stays between 0 and 1, and then those of either piece that do not change here.
+        std::vector<model::terms::Piece::Condition> conditions{};
+        std::vector<std::pair<Side, std::size_t>> others{};
+        std::array<model::terms::Piece, 2> apart{};  ///< both pieces with these conditions only
+    };
+
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
@@ -84,6 +98,7 @@ public:
     }
     [[nodiscard]] double value(const Moment& at) const {
         if (law_) return value(at, law_->way * law_->slip(at));
+        if (slide_) return sliding(at);
         if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
@@ -97,7 +112,7 @@ public:
     /// Decides the conditions at this moment; existing decisions stay, except those that depend on a variable in
     /// `again`.
     void decide(const Moment& at, std::uint64_t again) {
-        if (!has_pieces_ || (law_ && law_->way == 0)) return;
+        if (!has_pieces_ || (law_ && law_->way == 0) || slide_) return;
         const bool stays = std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
                                         [again](const auto& condition) { return (condition.of & again) != 0; });
         if (is_held() && stays && !crossed_) return;
@@ -109,9 +124,12 @@ public:
             function_->decide(piece_, t, state, states, again);
         });
     }
-    [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const { return piece_.conditions; }
+    [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const {
+        return slide_ ? slide_->conditions : piece_.conditions;
+    }
     /// Computes margins that are positive while each condition keeps its decision.
     void margins(const Moment& at, std::vector<double>& out) const {
+        if (slide_) return sliding_margins(at, out);
         const double speed = law_ ? law_->way * law_->slip(at) : 0;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             function_->value_on(piece_, t, state, states, &out);
@@ -119,11 +137,32 @@ public:
     }
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
-    void let_go() { piece_ = {}; }
+    void let_go() { piece_ = {}, slide_ = nullptr; }
     /// The current piece, or nullptr.
-    [[nodiscard]] const model::terms::Piece* piece() const { return is_held() ? &piece_ : nullptr; }
+    [[nodiscard]] const model::terms::Piece* piece() const {
+        return slide_ ? slide_->apart.data() : is_held() ? &piece_ : nullptr;
+    }
+    /// The piece beyond the condition that it slides along, or nullptr.
+    [[nodiscard]] const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
+
+    /// Slides along the condition that changes between two places, one on either side of it. Returns false if there is
+    /// none.
+    bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share);
+    /// Watches the other conditions, too, unless one is so near to zero that it is the same.
+    void watch_others(const Moment& at, double near);
+    [[nodiscard]] bool slides() const { return slide_ != nullptr; }
+    [[nodiscard]] Slide& sliding() { return *slide_; }
+    /// Ends the slide at one of its conditions.
+    void leave(std::size_t condition);
+    /// The margin of the condition that it slides along, and its rate along a motion with these rates of y.
+    [[nodiscard]] std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
 
 private:
+    [[nodiscard]] double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
+        return function_->value_on(piece, time(at), asking_->state(at.y), asking_->states(at.y), margins);
+    }
+    [[nodiscard]] double sliding(const Moment& at) const;
+    void sliding_margins(const Moment& at, std::vector<double>& out) const;
     [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
     /// Calls `call` with the function's arguments: t, or the speed alone; the state; the states.
     template <class F>
@@ -144,6 +183,7 @@ private:
     std::optional<Law> law_ = {};
     mutable std::vector<double> with_speed_ = {};  ///< the states passed to a law
     model::terms::Piece piece_ = {};
+    std::shared_ptr<Slide> slide_ = {};
 };
 
 class Signal {
@@ -198,8 +238,10 @@ public:
             const model::Component& c = *part.component;
             if (part.function == nullptr || c.gain == 0 || t < c.from || t >= c.to) continue;
             model::Formula* read = part.function->function->read();
-            if (read != nullptr)
-                f(*read, part.piecewise ? part.piecewise->piece() : nullptr, part.function->delay, c.gain);
+            if (read == nullptr) continue;
+            f(*read, part.piecewise ? part.piecewise->piece() : nullptr, part.function->delay, c.gain);
+            if (part.piecewise && part.piecewise->beyond() != nullptr)
+                f(*read, part.piecewise->beyond(), part.function->delay, c.gain);
         }
     }
     /// Returns whether some function of the motion has unknown pieces.

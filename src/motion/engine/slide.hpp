@@ -1,0 +1,57 @@
+// Motions along a surface on which a load jumps, where both sides drive them back (Filippov): the load is the mixture
+// of both sides that keeps the motion on the surface.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "motion/engine/frames.hpp"
+#include "motion/engine/now.hpp"
+
+namespace dinal::motion::engine {
+
+/// Knows which functions slide, and finds their mixtures. It reports no event.
+class Slides {
+public:
+    /// `unit`: of time.
+    Slides(Mechanics& mechanics, Frames& frames, double unit) : mechanics_(mechanics), frames_(frames), unit_(unit) {}
+
+    [[nodiscard]] bool any() const { return !sliding_.empty(); }
+    struct Begun {
+        std::size_t joint;  ///< of the load
+        double work;        ///< of the load on the velocities, which are put on the surface
+    };
+    /// Slides along the condition of a function that was crossed to and fro and jumps by so much. Returns none if that
+    /// is not possible, or both sides do not drive the motion back.
+    std::optional<Begun> begin(Piecewise& function, double jump, Now& now);
+    /// Contacts have, or may have, this mode.
+    void follow(const Mode& mode) { mode_ = mode; }
+    /// Returns whether contacts now hold the velocities of a surface, so that the load does not move them.
+    [[nodiscard]] bool lost(const Moment& here) const;
+    /// Ends a slide at one of its conditions. Returns the joint of the load; none if this function does not slide.
+    std::optional<std::size_t> leave(Piecewise& function, std::size_t condition);
+    /// All functions are decided anew. Returns the joints of their loads.
+    std::vector<std::size_t> end();
+
+private:
+    struct Side {
+        double margin = 0, rate = 0;
+        std::vector<double> rates{};  ///< of y
+    };
+    [[nodiscard]] Side on(Piecewise& function, Piecewise::Slide::Side side, const Moment& at) const;
+    /// Returns whether the load beyond drives the motion back more than that on the own side.
+    [[nodiscard]] static bool drives_back(const Side& own, const Side& beyond);
+    [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
+
+    Mechanics& mechanics_;
+    Frames& frames_;
+    double unit_;
+    Mode mode_;
+    struct Sliding {
+        Piecewise* function;
+        std::size_t joint;
+    };
+    std::vector<Sliding> sliding_;
+};
+
+}  // namespace dinal::motion::engine

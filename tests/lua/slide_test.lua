@@ -1,0 +1,174 @@
+-- Loads that jump on a surface to which both sides drive the motion back: it slides along the surface, with the mixture of
+-- both sides that keeps it there (Filippov).
+dofile "tests/lua/support.lua"
+
+local function switches(run)
+    local found = {}
+    for _, event in ipairs(run.events) do
+        if event.kind == "switch" then found[#found + 1] = event end
+    end
+    return found
+end
+
+test("a feedback -A sgn v is dry friction", function()
+    local A, f = 0.7, function(t) return 0.9 * math.sin(0.8 * t) + 0.3 * math.sin(2.1 * t) end
+    local sgn = function(_, _, v) return v > 0 and -0.7 or 0.7 end
+    local both = function(t, _, v) return (v > 0 and -0.7 or 0.7) + 0.9 * math.sin(0.8 * t) + 0.3 * math.sin(2.1 * t) end
+    for _, case in ipairs { { sgn, 0 }, { both, f } } do
+        local task = { theta0 = 3.3, t_end = 40 }
+        task.M = case[1]
+        local run = system { I = 1, k = 1.3, C = 0.05 }:simulate(task)
+        task.M = case[2]
+        local dry = system { I = 1, k = 1.3, C = 0.05, Rd = A }:simulate(task)
+        near(run.theta, dry.theta, 1e-11)
+        near(run.velocity, dry.velocity, 1e-11)
+        closes(run)
+        local ends = switches(run)
+        local sticks = 0
+        for _, event in ipairs(dry.events) do
+            if event.kind == "stick" or event.kind == "slip" or event.kind == "rest" then
+                sticks = sticks + 1
+                near(ends[sticks].t, event.t, 1e-10)
+                near(ends[sticks].theta, event.theta, 1e-11)
+                near(ends[sticks].velocity, 0, 1e-15)
+            end
+        end
+        equal(#ends, sticks)
+        assert(sticks > 0)
+    end
+end)
+
+test("a run may begin on the surface, without an event there", function()
+    local run = system { I = 1, k = 1 }:simulate {
+        M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 0.3, t_end = 10,
+    }
+    near(run.theta, 0.3, 1e-14)
+    near(run.M, 0.3, 1e-14)
+    equal(#switches(run), 0)
+end)
+
+test("a controller in sliding mode decays as its surface says, whatever disturbs the mass", function()
+    local c = 2
+    local run = system { I = 1, k = 1, C = 0.2 }:simulate {
+        M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.8 * math.sin(3 * t) end, theta0 = 1, t_end = 10,
+    }
+    equal(run.status, "end")
+    closes(run)
+    local reached = switches(run)
+    equal(#reached, 1)
+    for i, t in ipairs(run.t) do
+        if t > reached[1].t then
+            local expected = reached[1].theta * math.exp(-c * (t - reached[1].t))
+            near(run.theta[i], expected, 1e-11)
+            near(run.velocity[i], -c * expected, 1e-11)
+            near(run.M[i], expected * (c * c + 1 - 0.2 * c), 1e-11)
+        end
+    end
+end)
+
+test("a surface may be curved and may move", function()
+    -- theta follows theta' = cos t - theta^3 from where it is reached
+    local run = system { I = 1, k = 0.5 }:simulate {
+        M = function(t, theta, v) if v + theta ^ 3 - math.cos(t) < 0 then return 20 end return -20 end, theta0 = 0.5,
+        t_end = 8,
+    }
+    closes(run)
+    equal(#switches(run), 1)
+    local from = switches(run)[1]
+    local truth = system { I = 1, k = 0 }:simulate {
+        states = { x = { rate = function(t, _, _, z) return math.cos(t) - z.x ^ 3 end, start = from.theta } },
+        t_start = from.t, t_end = 8,
+    }
+    near(run.theta[#run], truth.x[#truth], 1e-11)
+end)
+
+test("it leaves the surface where one side no longer drives it back", function()
+    local slope = 0.3
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(t, _, v) return (v > 0 and -1 or 1) + slope * t end, t_end = 8,
+    }
+    local left = switches(run)
+    equal(#left, 1)
+    near(left[1].t, 1 / slope, 1e-10)
+    -- from there on v' = 0.3 t - 1
+    local s = 8 - 1 / slope
+    near(run.velocity[#run], slope * s ^ 2 / 2, 1e-11)
+    near(run.theta[#run], slope * s ^ 3 / 6, 1e-11)
+end)
+
+test("the sign may have three values, and follow from other conditions", function()
+    local sys = system { I = 1, k = 1 }
+    local function go(M) return sys:simulate { M = M, theta0 = 3, t_end = 6 } end
+    local two = go(function(_, theta, v) return v + 2 * theta > 0 and -5 or 5 end)
+    local three = go(function(_, theta, v)
+        local s = v + 2 * theta
+        return s > 0 and -5 or s < 0 and 5 or 0
+    end)
+    local folded = go(function(_, theta, v)
+        local s = v + 2 * theta
+        return 5 - (math.max(s, 0) > 0 and 10 or 0)
+    end)
+    equal(#switches(two), 1)
+    for _, other in ipairs { three, folded } do
+        same_events(other, two, 1e-10)
+        near(other.theta, two.theta, 1e-10)
+    end
+end)
+
+test("dry friction turns during a slide: the load makes up for it", function()
+    local run = system { I = 1, k = 1, Rd = 0.3 }:simulate {
+        M = function(t, theta, v) return v + 2 * (theta - math.sin(t)) > 0 and -5 or 5 end, theta0 = 1, t_end = 12,
+    }
+    equal(#switches(run), 1)
+    closes(run)
+    -- theta' = -2 (theta - sin t)
+    local from = switches(run)[1]
+    local function forced(t) return 0.8 * math.sin(t) - 0.4 * math.cos(t) end
+    for i, t in ipairs(run.t) do
+        if t > from.t then
+            near(run.theta[i], forced(t) + (from.theta - forced(from.t)) * math.exp(-2 * (t - from.t)), 1e-11)
+        end
+    end
+end)
+
+test("a break of M during a slide is no event", function()
+    local run = system { I = 1, k = 1 }:simulate {
+        M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + (t > 1.7 and 1 or 0) end, theta0 = 3, t_end = 4,
+    }
+    equal(#switches(run), 1)
+    local from = switches(run)[1]
+    near(run.theta[#run], from.theta * math.exp(-2 * (4 - from.t)), 1e-12)
+end)
+
+test("a run that goes on slides on, without an event", function()
+    local task = { M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.5 * math.sin(t) end, theta0 = 3, t_end = 8 }
+    local whole = system { I = 1, k = 1 }:simulate(task)
+    task.t_end = 4
+    local longer = system { I = 1, k = 1 }:simulate(task):continue { t_end = 8 }
+    same_events(longer, whole, 1e-12)
+    near(longer.theta[#longer], whole.theta[#whole], 1e-13)
+end)
+
+test("a steep line comes near to the slide", function()
+    local function run(M) return system { I = 1, k = 2 }:simulate { M = M, theta0 = 1, t_end = 5 } end
+    local slides = run(function(_, theta, v) return v + theta > 0 and -4 or 4 end)
+    for _, width in ipairs { 1e-2, 1e-3 } do
+        local steep = run(function(_, theta, v)
+            local x = (v + theta) / width
+            return -4 * (1 - 2 / (math.exp(2 * x) + 1))
+        end)
+        near(slides.theta, steep.theta, 2 * width)
+    end
+end)
+
+test("a jump without the velocity is crossed, not slid along", function()
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(_, theta) return theta > 0 and -1 or 1 end, theta0 = -0.5, t_end = 20,
+    }
+    equal(run.status, "end")
+    equal(#switches(run), 0)
+    near(run:at(4), -0.5, 1e-12)  -- four parabolas, each of the duration 1
+    near(run:at(20), -0.5, 1e-12)
+end)
+
+finish()
