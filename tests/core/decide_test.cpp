@@ -76,10 +76,10 @@ private:
     Stack stack_;
     Asking asking_{.named = true, .told = 2 * stack_.system.bodies.size()};
     Mechanics mechanics_{stack_.system, stack_.drive, asking_};
-    Conditions conditions_{mechanics_, asking_.told, 0, 1};
+    Frames frames_{mechanics_, 1, 1};
+    Conditions conditions_{mechanics_, frames_, asking_.told, 0, 1};
     Collocation solver_{mechanics_, 1e-12, 1};
     Balances balances_{mechanics_, conditions_, solver_};
-    Frames frames_{mechanics_, 1, 1};
     Projection projection_{mechanics_, mechanics_.joints()};
     Segment last_{};
     DecisionRoom room_{};

@@ -69,7 +69,6 @@ private:
     bool decide(bool told, std::optional<Cause::Released> released = {});
     [[nodiscard]] bool nothing_presses(std::size_t joint) const;
     bool open_and_close();
-    void tell_slide(std::size_t joint);
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
     void restart_contact(std::size_t joint, Because why, std::size_t at);
@@ -141,10 +140,6 @@ private:
     DecisionRoom room_;
     TorqueSizes sizes_;
     std::vector<double> departing_;
-    struct {
-        double t = -model::never;
-        std::size_t joint = 0;
-    } last_slide_told_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

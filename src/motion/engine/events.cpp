@@ -39,7 +39,7 @@ bool Engine::handle(const Ending& ending) {
             const Conditions::Crossed crossed = conditions_->cross(ending, now_, often);
             result_.jumps += crossed.count;
             if (crossed.work != 0) recorder_->add_jump(now_.t.hi, crossed.slides.front(), {.input = crossed.work});
-            for (const std::size_t joint : crossed.slides) tell_slide(joint);
+            for (const std::size_t joint : crossed.slides) recorder_->tell_slide(now_, joint);
             if (crossed.endless && crossed.jumps) return fail(Outcome::chattering);
             return decide(true);
         }
@@ -51,19 +51,6 @@ bool Engine::handle(const Ending& ending) {
             return act_all(ending.users);
     }
     return true;
-}
-
-/// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin where a
-/// run goes on.
-void Engine::tell_slide(std::size_t joint) {
-    if (!(now_.t.hi > problem_.window.start)) return;
-    const bool again = last_slide_told_.t == now_.t.hi && last_slide_told_.joint == joint;
-    last_slide_told_ = {again ? -model::never : now_.t.hi, joint};
-    if (again) {
-        recorder_->take_back(EventKind::switched, joint, now_.t.hi);
-    } else {
-        tell(EventKind::switched, joint);
-    }
 }
 
 /// The slip of a joint has come to 0, or has passed it as its belt jumped.

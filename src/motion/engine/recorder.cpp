@@ -44,6 +44,17 @@ void Recorder::tell(const Decision& decision, double unit) {
     }
 }
 
+void Recorder::tell_slide(const Now& now, std::size_t joint) {
+    if (!(now.t.hi > problem_.window.start)) return;
+    const bool again = last_slide_.t == now.t.hi && last_slide_.joint == joint;
+    last_slide_ = {again ? -model::never : now.t.hi, joint};
+    if (again) {
+        take_back(EventKind::switched, joint, now.t.hi);
+    } else {
+        tell(now, EventKind::switched, joint);
+    }
+}
+
 bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
     auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;

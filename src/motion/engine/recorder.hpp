@@ -34,6 +34,9 @@ public:
     [[nodiscard]] bool told_user_at(double t) const {
         return !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == t;
     }
+    /// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin
+    /// where a run goes on.
+    void tell_slide(const Now& now, std::size_t joint);
     /// The events of a decision. `unit`: of time.
     void tell(const Decision& decision, double unit);
     /// A joint creeps: it sticks at this event unless something moves it before the end of the run.
@@ -94,6 +97,10 @@ private:
     std::size_t next_row_ = 0;
     Balance balance_;
     std::vector<double> row_, point_;
+    struct {
+        double t = -model::never;
+        std::size_t joint = 0;
+    } last_slide_;
 };
 
 }  // namespace dinal::motion::engine

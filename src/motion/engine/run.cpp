@@ -159,7 +159,7 @@ bool Engine::advance() {
 bool Engine::solve(const Frame& frame) {
     using Attempt = Collocation::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
-    for (const std::size_t joint : conditions_->ceased(now_)) tell_slide(joint);
+    for (const std::size_t joint : conditions_->ceased(now_)) recorder_->tell_slide(now_, joint);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
     const Attempt attempt = solver_->solve(segment_, now_.mode, frame, now_.y, departing);
