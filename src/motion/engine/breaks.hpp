@@ -20,7 +20,8 @@ public:
     [[nodiscard]] double longest_delay() const { return longest_delay_; }
     /// Returns the first one ahead, or `never`.
     [[nodiscard]] double next() const {
-        const double found = found_.empty() ? model::never : found_.front();
+        double found = model::never;
+        if (!found_.empty()) found = found_.front();
         return echoes_.empty() ? found : std::min(found, echoes_.front().first);
     }
     /// Notes a break ahead. Returns false if it is noted already.

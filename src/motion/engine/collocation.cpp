@@ -45,7 +45,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       newton_(mechanics),
       proofs_(mechanics) {
     fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
-    for (auto of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
+    for (auto* of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
 }
 

@@ -123,14 +123,14 @@ void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& 
                      [](const Event& a, const Event& b) { return a.t < b.t; });
 }
 
-void Recorder::record_turns(std::size_t i, const Segment& segment, double until, double nothing,
+void Recorder::record_turns(std::size_t body, const Segment& segment, double until, double nothing,
                             SampledLoads& sampled) {
-    const Nodes& v = segment.y[n() + i];
+    const Nodes& v = segment.y[n() + body];
     const double moving = greatest(v);
-    const auto exact = [&](double x) { return segment.at(n() + i, x); };
+    const auto exact = [&](double x) { return segment.at(n() + body, x); };
     constexpr double underflow = 1e-280;  // numbers so small lose their digits
     if (!(moving > std::max(nothing, underflow))) return;
-    Half half = static_cast<int>(heading_[i]);
+    Half half = static_cast<int>(heading_[body]);
     const Watched watched(v, exact);
     std::vector<double> zeros{-1};
     for (;;) {
@@ -148,7 +148,7 @@ void Recorder::record_turns(std::size_t i, const Segment& segment, double until,
         }
         return most > 8 * problem_.tolerance * moving;
     };
-    int way = static_cast<int>(heading_[i]);
+    int way = static_cast<int>(heading_[body]);
     bool moved = false;  // on the stretch
     for (std::size_t k = 0; k < zeros.size(); ++k) {
         const int next = (zeros.size() - 1 - k) % 2 == 0 ? half : -half;
@@ -160,11 +160,11 @@ void Recorder::record_turns(std::size_t i, const Segment& segment, double until,
         if (!(t > problem_.window.start) && problem_.before == nullptr) continue;
         std::vector<double> y;
         segment.state(x, y);
-        const std::optional<double> known = sampled.at(i, x);
-        const double M = known ? *known : mechanics_.load(i, {t, Side::at, y});
-        result_.events.push_back({.t = t, .theta = y[i], .M = M, .where = static_cast<int>(i)});
+        const std::optional<double> known = sampled.at(body, x);
+        const double M = known ? *known : mechanics_.load(body, {t, Side::at, y});
+        result_.events.push_back({.t = t, .theta = y[body], .M = M, .where = static_cast<int>(body)});
     }
-    heading_[i] = static_cast<Motion>(way);
+    heading_[body] = static_cast<Motion>(way);
 }
 
 bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {

@@ -38,7 +38,7 @@ private:
         double margin = 0, rate = 0;
         std::vector<double> rates{};  ///< of y
     };
-    [[nodiscard]] Side on(Piecewise& function, Piecewise::Slide::Side side, const Moment& at) const;
+    [[nodiscard]] Side on(Piecewise& function, Piecewise::Slide::Side which, const Moment& at) const;
     /// Returns whether the load beyond drives the motion back more than that on the own side.
     [[nodiscard]] static bool drives_back(const Side& own, const Side& beyond);
     [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
