@@ -1154,7 +1154,7 @@ private:
             found.error.fill(0);
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) ratio->error = 0;
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
-            found.low.fill(-INFINITY), found.high.fill(INFINITY);
+            found.low.fill(-model::never), found.high.fill(model::never);
         }
         const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
         found.predicted.assign(predicted_all.begin(), predicted_all.end());

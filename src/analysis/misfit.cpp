@@ -212,9 +212,9 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, std::span<const
         const double likely = significance(before, after, more, spare);
         double sure = likely;
         if (structure.faster.cols() > 0) {
-            const int faster = white.add(filter(structure.faster), imitated);
+            const int rapid = white.add(filter(structure.faster), imitated);
             const double noise = after - white.left();
-            sure = faster < 4 ? 0 : std::min(likely, significance(before - after + noise, noise, more, faster));
+            sure = rapid < 4 ? 0 : std::min(likely, significance(before - after + noise, noise, more, rapid));
         }
         Misfit found{structure.what, sure > beyond_chance, 1 - plain.left() / all, 0, {}, {}};
         const auto rank = [](const Misfit& one) { return std::pair(one.is_sure, one.share); };
