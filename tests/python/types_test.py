@@ -23,7 +23,7 @@ from dinal.types import Number
 osc = dinal.system(I=1, k=4, Rd=.3, Re=.4)
 run = osc.simulate(M=lambda t: np.sin(t), theta0=np.float64(1), t_end=20)
 peak: float = run.theta.max()
-kinds: list[str] = run.events.kind[:2].tolist()
+kinds: list[str] = [str(kind) for kind in run.events.kind[:2]]
 theta, velocity = run.at(1.5)
 angles, velocities = run.at(np.linspace(0, 20, 7))
 sum_of_two: float = theta + velocity

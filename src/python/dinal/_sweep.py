@@ -68,7 +68,9 @@ def digest(value, seen):
     if isinstance(value, types.MethodType):
         return [digest(part, seen) for part in (value.__func__, value.__self__)]
     if isinstance(value, type) and is_own(value):
-        parts = {name: getattr(part, "__func__", getattr(part, "fget", part)) for name, part in vars(value).items()}
+        # Since Python 3.13 a class knows where it stands in its file, which does not change what it does.
+        parts = {name: getattr(part, "__func__", getattr(part, "fget", part)) for name, part in vars(value).items()
+                 if name not in ("__firstlineno__", "__static_attributes__")}
         return [value.__qualname__, *(digest(base, seen) for base in value.__bases__),
                 digest({name: part for name, part in parts.items() if isinstance(part, (int, float, str, tuple, types.FunctionType))}, seen)]
     if isinstance(value, functools.partial):
