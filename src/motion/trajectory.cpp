@@ -109,7 +109,7 @@ std::string chatter_text(const Trajectory& run) {
             return "events follow each other endlessly at one time; bounces made by act never come to rest, those of "
                    "walls = {...} do";
         }
-        if (run.events.back().kind == model::EventKind::switched) {
+        if (run.events.back().kind == model::EventKind::switched && !run.located) {
             return "a relay switches endlessly at one time: its on and off are too close";
         }
     }
@@ -173,7 +173,8 @@ std::string summary(const Trajectory& trajectory) {
         fmt::format(", t {:.9g} … {:.9g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
     switch (trajectory.outcome) {
         case model::Outcome::reached_end:
-            text += "moving at the end";
+            text += trajectory.bodies == nullptr && trajectory.state_at_stop.velocity == 0 ? "velocity 0 at the end"
+                                                                                           : "moving at the end";
             break;
         case model::Outcome::chattering:
             text += chatter_text(trajectory);

@@ -171,4 +171,11 @@ test("a jump without the velocity is crossed, not slid along", function()
     near(run:at(20), -0.5, 1e-12)
 end)
 
+test("a mass that its feedback holds, or that nothing moves, is not called moving", function()
+    local function held(t, theta, velocity) if velocity > 0 then return -0.4 end return 0.4 end
+    has(system { I = 1, k = 1 }:simulate { M = held, theta0 = 1.3, t_end = 20 }, "velocity 0 at the end")
+    has(system { I = 1, k = 1 }:simulate { t_end = 5 }, "velocity 0 at the end")
+    has(system { I = 1, k = 1 }:simulate { theta0 = 1, t_end = 5 }, "moving at the end")
+end)
+
 finish()
