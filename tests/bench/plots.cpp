@@ -21,7 +21,7 @@ struct Pictures {
     dinal::model::Oscillator system = oscillator(driven_motion);
     dinal::motion::Trajectory run =
         trajectory(driven_motion, dinal::motion::Spectral{}, dinal::motion::Grid::every(0.001));
-    dinal::plots::RunData data{nullptr, &run, &system};
+    dinal::plots::RunData data{nullptr, &run, system};
     dinal::plots::Figure response = dinal::plots::column_figures(data)->front();
     dinal::plots::Figure phase = *dinal::plots::phase_figure(data);
 };
