@@ -407,9 +407,12 @@ std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& optio
 }  // namespace
 
 int plot_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
+    RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
     const lua::Options options(L, 2, plot_run_call);
-    if (run->of_all() && !options.has("x") && !options.has("y")) {
+    const bool usual = run->of_all() && !options.has("x") && !options.has("y");
+    if (usual && run->system().joints.size() == 1) {
+        run = part_of(run, 0);
+    } else if (usual) {
         std::vector<plots::Figure> figures = angles_of_all(L, options, run);
         apply_options(L, options, figures);
         return deliver(L, options, std::move(figures));
