@@ -131,7 +131,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     const Cause cause{released, told && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);
-    recorder_->tell(made, pace_.unit);
+    for (const Told& told : made.told) recorder_->tell(told);
     return made.good || fail(Outcome::excitation_not_finite);
 }
 
