@@ -240,8 +240,7 @@ void Engine::hold_again(std::size_t joint, double torques) {
     recorder_->tell_no_slip(joint, now_.t.hi);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
-    how.blunt = std::max(2 * how.blunt, 64 * rounding * torques);
-    if (chatter_.too_often(now_.t.hi) || how.blunt > most_blunt * torques) fail(Outcome::chattering);
+    if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);
 }
 
 /// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is
