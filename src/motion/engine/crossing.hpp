@@ -102,10 +102,9 @@ private:
         using namespace cheb;
         Bounded<points> curve(half, series_, derivative(series_));
         curve.raise_floor(rounded_);
-        const auto no = [](double) { return false; };
         double near = 1e-7;
         while (start < 1) {
-            const auto x = first_below(curve, start, LeftEnd::anywhere, no);
+            const auto x = first_below(curve, start);
             if (!x) break;
             double a = std::max(start, *x - near);
             while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
