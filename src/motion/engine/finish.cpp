@@ -21,7 +21,6 @@ void Engine::finish() {
     SampledLoads sampled(mechanics_, segment_);
     if (stands_at_now) recorder_->rows_at_end({now_, segment_, frames_->of(now_.mode), *balances_, sampled});
     if (outcome_ == Outcome::reached_end) outcome_ = at_rest().value_or(outcome_);
-    recorder_->end_events(outcome_, now_.mode, contacts_);
     if (now_.mode.friction[0].way != Motion::stuck && !now_.mode.holds(0))
         result_.motion_at_stop = now_.mode.friction[0].way;
     if (!now_.rubs(0) && now_.mode.leans[0] == 0) result_.motion_at_stop = recorder_->heading()[0];
@@ -33,16 +32,13 @@ void Engine::finish() {
     Walls::keep_within(problem_.system, now_.y);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.t.hi;
-    if (recorder_->next_row() < problem_.rows.count()) result_.table = result_.table.first(recorder_->next_row());
-    recorder_->history()->close(now_.t, now_.y);
-    result_.history = recorder_->history();
     auto carry = std::make_shared<Carry>();
     carry->y = now_.y, carry->low = now_.low, carry->mode = now_.mode, carry->watches = users_.watches(),
     carry->echoes = breaks_.echoes(), carry->heading = recorder_->heading(), carry->born = pace_.born,
     carry->floor = solver_->noise().floor();
     if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = recorder_->history();
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
-    result_.carry = std::move(carry);
+    recorder_->finish(now_, contacts_, std::move(carry));
 }
 
 /// Returns how the run stands at its end, if nothing moves.

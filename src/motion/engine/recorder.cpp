@@ -28,8 +28,10 @@ Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& resu
     history_ = std::make_shared<History>(std::move(weights), n(), start.y, start.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
-                                mechanics.states_of_user() - (problem.joined_elsewhere ? n() : 0);
-    result.table = Growing<double>(problem.rows.count(), columns);
+                                mechanics.states_of_user() + (problem.joined_elsewhere ? 0 : n());
+    Growing<double> table(problem.rows.count(), columns);
+    cells_ = table.writable();
+    result.rows = Rows(std::move(table));
 }
 
 void Recorder::tell_user(const Now& now, std::size_t event) {
@@ -48,7 +50,7 @@ void Recorder::tell(const Told& told) {
 }
 
 void Recorder::write_recent() {
-    result_.events.insert(result_.events.end(), recent_.begin(), recent_.end());
+    events_.insert(events_.end(), recent_.begin(), recent_.end());
     recent_.clear();
 }
 
@@ -91,6 +93,8 @@ bool Recorder::only_touched(const Told& slip) {
     return true;
 }
 
+/// Of stops and slips that followed each other at once, and led nowhere, only the first is an event. At an end as it
+/// should be what creeps sticks; at a rest the last stick is that.
 void Recorder::end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts) {
     constexpr double soon = 1e-6;
     const auto follows = [&](const Event& e, const Event& before) {
@@ -101,18 +105,17 @@ void Recorder::end_events(model::Outcome outcome, const Mode& mode, const Contac
         recent_.pop_back();
     }
     write_recent();
-    std::vector<Event>& events = result_.events;
     for (std::size_t j = 0; j < mechanics_.joints() && model::is_whole(outcome); ++j) {
         if (mode.friction[j].creeps == Motion::stuck) continue;
         const Event& event = contacts.of[j].creeping;
-        const auto later = std::upper_bound(events.begin(), events.end(), event,
+        const auto later = std::upper_bound(events_.begin(), events_.end(), event,
                                             [](const Event& a, const Event& b) { return a.t < b.t; });
-        events.insert(later, event);
+        events_.insert(later, event);
     }
     if (outcome != model::Outcome::at_rest) return;
     const auto last =
-        std::find_if(events.rbegin(), events.rend(), [](const Event& e) { return e.kind == EventKind::stick; });
-    if (last != events.rend()) last->kind = EventKind::rest;
+        std::find_if(events_.rbegin(), events_.rend(), [](const Event& e) { return e.kind == EventKind::stick; });
+    if (last != events_.rend()) last->kind = EventKind::rest;
 }
 
 void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise) {
@@ -205,7 +208,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || now.mode.holds(j);
     if (needs_look && x > -1 && !balances.on_stretch(segment, x, at, now.mode, frame, balance_, &sampled)) return false;
     if (needs_look && !(x > -1) && !balances.at_present(at, now, now.mode, frame, segment, balance_)) return false;
-    double* cell = result_.table.writable() + next_row_;
+    double* cell = cells_ + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
         *cell = value == 0 ? 0 : value;
@@ -220,7 +223,6 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         good = put(known ? *known : mechanics_.load(i, at)) && good;
         good = put(friction(now, i, at, balance_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
-        if (!problem_.joined_elsewhere) good = put(balance_.accelerations[i]) && good;
     }
     for (std::size_t j = n(); j < told_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
@@ -239,6 +241,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         good = put(balance_.holding[j] + more * balance_.accelerations[body]) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
+    for (std::size_t i = 0; i < n() && !problem_.joined_elsewhere; ++i) good = put(balance_.accelerations[i]) && good;
     if (good) ++next_row_;
     return good;
 }
@@ -260,6 +263,16 @@ void Recorder::keep(const Now& now, const Segment& segment, double length, doubl
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
     const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
+}
+
+void Recorder::finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry) {
+    if (next_row_ < problem_.rows.count()) result_.rows = Rows(result_.rows.table().first(next_row_));
+    end_events(result_.outcome, now.mode, contacts);
+    result_.events = Growing<Event>(std::move(events_));
+    history_->close(now.t, now.y);
+    left_->history = history_;
+    left_->carry = std::move(carry);
+    result_.left = std::move(left_);
 }
 
 /// Returns the torques that act at each joint on the stretch.

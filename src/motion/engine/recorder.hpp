@@ -41,9 +41,6 @@ public:
     void tell_slide(const Now& now, std::size_t joint);
     /// A joint that was let go at this time did not leave.
     void tell_no_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
-    /// The run has ended. Of stops and slips that followed each other at once and led nowhere only the first is an
-    /// event; what creeps at an end as it should be sticks; at a rest the last stick is that.
-    void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
     /// A turn of a body without dry friction changes nothing in its motion: it is recorded only. `sizes` and `noise`
     /// of the torques say which velocities are no motion.
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
@@ -66,7 +63,12 @@ public:
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 
+    // The beginning and the end.
+    void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
+    void finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry);
+
 private:
+    void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
     bool is_none(model::EventKind kind, std::size_t joint, double t);
     bool only_touched(const Told& slip);
     void write_recent();
@@ -88,7 +90,9 @@ private:
     const Mechanics& mechanics_;
     Run& result_;
     std::shared_ptr<History> history_;
-    std::vector<model::Event> recent_;
+    std::vector<model::Event> events_, recent_;
+    double* cells_ = nullptr;  ///< the table of the rows
+    std::shared_ptr<Left> left_ = std::make_shared<Left>();
     double unit_;  ///< of time
     std::vector<model::Motion> heading_;
     std::size_t next_row_ = 0;
