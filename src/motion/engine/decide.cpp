@@ -292,11 +292,11 @@ void Decider::report(std::size_t j) {
     } else if (asked_[j].was_held && slides) {
         tell(EventKind::slip, j);
         Told& slip = made_.told.back();
-        slip.unless = Told::Unless::touched, slip.slid = arrival.slid, slip.turns = how.way != arrival.slid;
-        slip.off = std::fabs(asked_[j].pull - arrival.pull), slip.size = size(j);
+        slip.turns = how.way != arrival.slid, slip.size = size(j);
+        if (arrival.slid != Motion::stuck) slip.off = std::fabs(asked_[j].pull - arrival.pull);
     } else if (!asked_[j].was_held && !asked_[j].was_creeping && !slides) {
         tell(EventKind::stick, j);
-        made_.told.back().unless = Told::Unless::taken_back;
+        made_.told.back().holds_again = true;
     }
 }
 
@@ -349,7 +349,7 @@ void Decider::creep(std::size_t joint, Motion way, double pull) {
     constexpr double balances = 1024 * rounding;  // of the torques
     if (!(off <= balances * size(joint))) return;
     how.creeps = way, how.apart = 2 * off + 64 * rounding * size(joint);
-    made_.creeping.emplace_back(joint, event_at(mechanics_, now(), EventKind::stick, joint));
+    memory().of[joint].creeping = event_at(mechanics_, now(), EventKind::stick, joint);
 }
 
 /// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times

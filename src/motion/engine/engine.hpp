@@ -7,6 +7,7 @@
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/breaks.hpp"
+#include "motion/engine/chatter.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
@@ -142,8 +143,5 @@ private:
     std::vector<double> departing_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
-
-/// The part of a pull by which a joint may pass its limit after it was let go and did not leave, of the torques.
-inline constexpr double most_blunt = 1e-9;
 
 }  // namespace dinal::motion::engine
