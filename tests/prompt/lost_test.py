@@ -71,6 +71,14 @@ class Walked(AtHome):
             self.assertIn(answer, shown, line)
             self.assertTrue(answer or not shown, f"{line}: {shown}")
 
+    def test_an_error_is_not_blamed_on_the_line_of_an_earlier_one(self):
+        session = self.session()
+        M = "function(t) return sin(t) end"
+        self.assertIn("in M at t = 0", session.enter(f"system{{ I = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
+        shown = session.enter("sin(3)")
+        self.assertIn("1 | sin(3)", shown)
+        self.assertNotIn("in M", shown)
+
 
 class Folders(AtHome):
     def test_the_current_folder_is_shown_changed_and_listed(self):
