@@ -57,7 +57,7 @@ class Walked(AtHome):
         ("ls -l", ":ls lists the files"),
         ("ayuda()", "help() starts a tour"),
         ("excitation.ramps{}", "did you mean 'ramp'?"),
-        ("excitation.sinus{}", "it has step, ramp"),
+        ("excitation.whatever{}", "it has constant, harmonic"),
         ("_", "ans holds the last value"),
         ("run.whatisit", "it also has at, columns"),
         ("2*run.events[1]", "as in run.events[1].theta"),
@@ -74,7 +74,7 @@ class Walked(AtHome):
     def test_an_error_is_not_blamed_on_the_line_of_an_earlier_one(self):
         session = self.session()
         M = "function(t) return sin(t) end"
-        self.assertIn("in M at t = 0", session.enter(f"system{{ I = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
+        self.assertIn("in M at t = 0", session.enter(f"system{{ I = 1, k = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
         shown = session.enter("sin(3)")
         self.assertIn("1 | sin(3)", shown)
         self.assertNotIn("in M", shown)
