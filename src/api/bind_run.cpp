@@ -497,7 +497,8 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
                         const std::vector<std::string>& known, const lua::Class& of) {
     std::vector<std::string_view> names(known.begin(), known.end());
     for (const lua::Member& member : of.members) {
-        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
+        const bool is_known = std::find(known.begin(), known.end(), member.name) != known.end();
+        if (member.kind != lua::Kind::metamethod && !is_known) names.push_back(member.name);
     }
     std::string cure = text::did_you_mean(wrong, names);
     const bool listed = std::all_of(known.begin(), known.end(), [&sentence](const std::string& name) {

@@ -266,7 +266,7 @@ test("a run of several bodies has their columns and pictures by name, and gives 
     equal(all.amplitude, own.amplitude)
     has(tostring(all), "spectrum of a.theta: 1024 samples of the motion")
     has(run:markdown(), "| a.theta, deg |")
-    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a.theta") end
+    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a θ") end
     equal(tostring(run.a.system), tostring(rig.a))
     equal(tostring(run.a.excitation), "excitation.constant{ amplitude = 0 }")
     equal(run.gap.excitation, nil)
