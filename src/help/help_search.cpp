@@ -411,7 +411,7 @@ constexpr std::array<Topic, 52> topics = {{
      "frequency frequencies period own mode shape damping parameter"},
     {"decrement dashpot",
      "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
-     "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
+     "theory.logarithmic_decrement converts zeta; theory.identify finds both dampings\nfrom three extremes.\n",
      "viscous damping ratio zeta"},
     {"adhesion static stiction coulomb",
      "Rd is the torque of friction while the mass slides, Re (>= Rd) the largest torque\n"
@@ -430,7 +430,7 @@ constexpr std::array<Topic, 52> topics = {{
      "minimise{ over = { Re = { .1, 2 } }, run = function(p) return cost end } finds the least\n"
      "value; identify fits a system to a record.\n",
      "best minimum minimal least tune"},
-    {"animate animation movie video", "run:animate() shows the motion; file = \"motion.svg\" writes it.\n",
+    {"animate animation movie video", "run:animate{ file = \"motion.svg\" } writes the motion, which a browser plays.\n",
      "moving motion show"},
     {"controller pid feedback actuator",
      "M may depend on the motion: M = function(t, theta, velocity) return -2*theta end.\n"
