@@ -24,7 +24,7 @@ constexpr double usual_seconds = 10;
 constexpr double most_frames = 3000;
 
 /// The requested part and speed, within the limits of a file.
-animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Trajectory& run) {
+animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Run& run) {
     animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
     if (!(take.from < take.to) || take.from < run.t_start || take.to > run.t_stop) {
         options.fail(asked.from ? "from" : "to",
@@ -45,7 +45,7 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
 AnimationViewer animation_viewer = nullptr;
 
 /// The velocity of the surface that the run slides on, or nullptr.
-const model::Excitation* belt_of(const Run& run) {
+const model::Excitation* belt_of(const LuaRun& run) {
     const model::Excitation* belt = run.origin ? &run.origin->drive.belts[run.place()] : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;
 }
@@ -53,7 +53,7 @@ const model::Excitation* belt_of(const Run& run) {
 animation::Track asked_track(lua_State* L, const lua::Options& options, const RunHandle& run,
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
-    const plots::RunData data{run, &run->trajectory, alone(*run), units};
+    const plots::RunData data{run, &run->result, alone(*run), units};
     lua::CallState call(L);  // between rows the integrator evaluates the excitation
     auto track = animation::track_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
@@ -93,7 +93,7 @@ animation::Scene asked_scene(lua_State* L, const lua::Options& options, const Ru
 }
 
 Animation drawn(lua_State* L, const lua::Options& options, const RunHandle& run, const AnimateOptions& asked) {
-    const animation::Scene scene = asked_scene(L, options, run, asked_take(options, asked, run->trajectory));
+    const animation::Scene scene = asked_scene(L, options, run, asked_take(options, asked, run->result));
     return {animation::animated_svg(scene), animation::title_of(scene)};
 }
 
