@@ -177,7 +177,7 @@ double period_of_run(const LuaRun& run) {
 }
 
 /// Evenly spaced values of a column, for its spectrum.
-struct Samples {
+struct EvenSamples {
     std::vector<double> values = {};
     double dt = 0;
     const char* kind = "rows";
@@ -185,7 +185,7 @@ struct Samples {
 constexpr std::size_t fewest_samples = 8;
 
 /// Samples of the motion from this time on, close enough for its fastest part.
-Samples samples_of_motion(const LuaRun& run, const motion::BetweenRows& between, std::size_t place, double from) {
+EvenSamples samples_of_motion(const LuaRun& run, const motion::BetweenRows& between, std::size_t place, double from) {
     constexpr double a_period = 40, an_event = 20, least = 1024, most = 1 << 21;
     const motion::Run& result = run.result;
     const double length = result.t_stop - from, part = length / (result.t_stop - result.t_start);
@@ -202,7 +202,7 @@ Samples samples_of_motion(const LuaRun& run, const motion::BetweenRows& between,
     const double wanted = std::max({least, a_period * length / period, part * static_cast<double>(result.size()),
                                     an_event * part * static_cast<double>(result.events.size())});
     const std::size_t count = std::bit_ceil(static_cast<std::size_t>(std::min(wanted, most)));
-    Samples samples{.values = {}, .dt = length / static_cast<double>(count), .kind = "samples of the motion"};
+    EvenSamples samples{.values = {}, .dt = length / static_cast<double>(count), .kind = "samples of the motion"};
     samples.values.reserve(count);
     std::vector<double> at_once;
     for (std::size_t i = 0; i < count; ++i) {
@@ -214,8 +214,8 @@ Samples samples_of_motion(const LuaRun& run, const motion::BetweenRows& between,
     return samples;
 }
 
-Samples samples_of(lua_State* L, const lua::Options& options, const LuaRun& run, Eigen::Index column,
-                   const std::optional<double>& from) {
+EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& run, Eigen::Index column,
+                       const std::optional<double>& from) {
     const motion::Run& result = run.result;
     const motion::BetweenRows between(result, nullptr);
     const auto place = std::find(between.columns().begin(), between.columns().end(), column);
@@ -226,7 +226,7 @@ Samples samples_of(lua_State* L, const lua::Options& options, const LuaRun& run,
                                              result.t_stop));
         }
         lua::CallState call(L);
-        Samples samples =
+        EvenSamples samples =
             samples_of_motion(run, between, static_cast<std::size_t>(place - between.columns().begin()), begin);
         if (lua::interrupt_requested()) lua::raise_interrupted(L);
         call.check();

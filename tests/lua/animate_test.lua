@@ -1,4 +1,4 @@
--- run:animate into files, and what it says where there is nothing to show it on; tests/prompt/animate_test.py has a terminal.
+-- run:animate into files, and what it says without one.
 dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }
@@ -95,7 +95,7 @@ test("what nothing brings back turns as discs, in metres or on springs it slides
 end)
 
 test("what cannot be shown is said", function()
-    raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
+    raises_here(function() run:animate() end, "a terminal does not show animations", 'give file = "run.svg"')
     refuses(function(o) run:animate(o) end, {
         { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
         { { file = "x.svg", speed = 0 }, "speed", "positive" },
