@@ -164,4 +164,11 @@ test("noise alone is no system, and noise in a measured M is told", function()
     assert(told(0.05) and not told(0))
 end)
 
+test("the errors of I and k go together: that of omega0 is far smaller", function()
+    local M = excitation.chirp{ amplitude = 1, from = 0.1, to = 0.6, duration = 40 }
+    local run = system{ I = 1, k = 4, C = 0.1, Rd = 0.1 }:simulate{ M = M, t_end = 40, dt = 0.1 }
+    local fit = identify{ data = record(run, 3, 1e-3), M = M }
+    assert(fit.std_error.omega0 / fit.omega0 < 0.2 * fit.std_error.k / fit.k)
+end)
+
 finish()
