@@ -105,6 +105,7 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
         local seen = noisy(run, 1, 0.002):map(function(x) return math.max(-ends, math.min(ends, x)) end)
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
         fits(fit, { k = 40, Rd = 1.2 })
+        near(fit.noise, 0.002, 1e-4) -- of the samples that are not cut off
         has(fit, "samples have the extreme values of the record")
     end
     local exact = identify{ data = run, M = two }

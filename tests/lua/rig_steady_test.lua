@@ -368,4 +368,10 @@ test("bodies that stand anywhere are not the only ones, and a geared link stands
     near(s.gear.rest.lower, 0.3, 1e-12)
 end)
 
+test("a response in which the first body stands and another moves is steady", function()
+    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.5 }, b = { I = 1, k = 1, C = 0.1 } } }
+    local c = rig:response { over = { x = { 0.1, 1 } }, at = function(p) return { M = { b = sine(0.5, p.x) } } end }
+    equal(table.concat(c.status, " "), "steady steady")
+end)
+
 finish()
