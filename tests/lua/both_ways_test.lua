@@ -345,14 +345,13 @@ local writers = "one body and several have writers of their own"
 local different = {
     ["fields of the body: integrator, exact by default"] = exact_of_one,
     ["fields of the run: integrator, exact by default"] = exact_of_one,
-    ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
+    ["fields of the run: excitation"] = "of several bodies it has the names of bodies in it",
     ["continue of the body: refused"] = "only the run of all bodies can be continued",
     ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["pictures of the run: plot"] = "the run of several bodies draws the angles of all",
     ["words of the run: line"] = writers,
-    ["save: acceleration"] = "only the file of several bodies has the column acceleration",
     ["save: header, exact by default"] = exact_of_one,
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["save of the body: header, exact by default"] = exact_of_one,
