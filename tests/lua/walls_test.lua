@@ -131,4 +131,9 @@ test("a mass that comes to a wall at velocity 0 does not hit it, whatever roundi
     end
 end)
 
+test("a mass that leans on a wall has no acceleration", function()
+    local run = system { I = 1, k = 1, walls = { upper = 1, restitution = 0 } }:simulate { M = 2, t_end = 4, dt = 0.5 }
+    equal(run.acceleration[#run], 0.0)
+end)
+
 finish()

@@ -64,14 +64,17 @@ private:
             sums.stop = work(v, v);
             for (double& c : sums.stop) c *= own.stops->damping;
         }
-        if (at_nodes.belt != nullptr) sums.belt = work(friction, belt);
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
+        Series sliders{};  // their torques; friction does not include these
+        if (at_nodes.springs != nullptr && !at_nodes.presses) sliders = cheb::fit(*at_nodes.springs);
         if (at_nodes.slides != 0) {
             Series torque{};
             torque[0] = at_nodes.slides;
             const Integral more = work(torque, slip);
             for (std::size_t k = 0; k < more.size(); ++k) sums.dry[k] += more[k];
+            sliders[0] += at_nodes.slides;
         }
+        if (at_nodes.belt != nullptr) sums.belt = work(difference(friction, sliders), belt);
         return sums;
     }
 
