@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/event.hpp"
+#include "motion/contact.hpp"
 #include "motion/engine/balance.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/frames.hpp"
@@ -18,8 +19,8 @@ struct DecisionRoom {
     /// The knowledge of a decision about a joint.
     struct Asked {
         bool asked = false;  ///< it is at slip 0
-        bool taken_back = false, was_held = false, was_creeping = false;
-        model::Motion slid = model::Motion::stuck;    ///< the way in which it slid until now; stuck: it did not
+        bool taken_back = false;
+        contact::Before before = {};
         model::Motion let_go = model::Motion::stuck;  ///< the way of what came to its limit at this instant, too
         int leant = 0;
         double pull = 0;  ///< that let it go
@@ -56,7 +57,7 @@ struct Told {
     /// An event of a joint that is let go, or held again, may take back the one before.
     enum class Unless { never, touched, taken_back } unless = Unless::never;
     model::Motion slid = model::Motion::stuck;  ///< of touched: the way in which it slid before it stuck; stuck: none
-    bool turns = false;                         ///< of touched: it goes the other way now
+    model::Motion way = model::Motion::stuck;   ///< of touched: the way in which it slides now
     double off = 0, size = 0;                   ///< of touched: the change of its pull since then, and of its torques
 };
 

@@ -173,7 +173,7 @@ Nodes Guards::limit(std::size_t joint, Motion side) const {
     }
     if (how.creeps != Motion::stuck) {
         const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, now_.here());
-        most.fill(side == how.creeps ? how.apart + level : how.apart - level);
+        most.fill(contact::limit_of_creep(side, how.creeps, level, how.apart));
     }
     return most;
 }

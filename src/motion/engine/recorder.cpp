@@ -37,7 +37,8 @@ void Recorder::tell_user(const Now& now, std::size_t event) {
 void Recorder::tell(const Decision& decision, double unit) {
     for (const auto& [joint, event] : decision.creeping) creeps(joint, event);
     for (const Told& told : decision.told) {
-        if (told.unless == Told::Unless::touched && only_touched(told, unit)) continue;
+        const contact::Released released{told.event, told.slid, told.way, told.off, told.size};
+        if (told.unless == Told::Unless::touched && contact::only_touched(result_.events, released, unit)) continue;
         const bool takes_back = told.unless == Told::Unless::taken_back;
         if (takes_back && take_back_slip(static_cast<std::size_t>(told.event.where), told.event.t)) continue;
         result_.events.push_back(told.event);
@@ -61,24 +62,6 @@ bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
     });
     if (told == result_.events.rend()) return false;
     result_.events.erase(std::next(told).base());
-    return true;
-}
-
-/// Returns whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld
-/// an impulse below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is no
-/// longer an event, or is a turn.
-bool Recorder::only_touched(const Told& slip, double unit) {
-    constexpr double briefly = 1e-3, withheld = 64 * rounding;
-    if (result_.events.empty() || slip.slid == Motion::stuck) return false;
-    Event& last = result_.events.back();
-    const double part = (slip.event.t - last.t) / unit;
-    if (last.kind != EventKind::stick || last.where != slip.event.where || part > briefly) return false;
-    if (!(slip.off * (2 * std::numbers::pi * part) <= withheld * slip.size)) return false;
-    if (slip.turns) {
-        last.kind = EventKind::turn;
-    } else {
-        result_.events.pop_back();
-    }
     return true;
 }
 

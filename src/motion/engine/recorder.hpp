@@ -74,7 +74,6 @@ public:
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 
 private:
-    bool only_touched(const Told& slip, double unit);
     /// The place x of the segment; -2 is the present.
     bool put_row(const Stretch& of, double t, double x);
     [[nodiscard]] double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;

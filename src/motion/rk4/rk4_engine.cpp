@@ -40,13 +40,13 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       steps_per_row_(rows.steps_per_row(options.h)),
       inverse_inertia_(1 / problem.system.inertia()),
       feedback_(problem.drive.M().has_feedback() || system_.has_remainder()),
-      standstill_(problem, events, at_once(problem, options.h)) {}
+      contact_(problem, events, at_once(problem, options.h)) {}
 
 model::Outcome Rk4Engine::run() {
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
-    return run({0, initial_, M, standstill_.mark()}, steps_);
+    return run({0, initial_, M, contact_.mark()}, steps_);
 }
 
 model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
@@ -59,14 +59,14 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             outcome_ = model::Outcome::interrupted;
             break;
         }
-        if (standstill_.for_good(moment())) {
+        if (contact_.for_good(moment())) {
             rows_standing_until(model::never);  // nothing can move it again
             t_ = window_.end;
             break;
         }
         const std::size_t stop =
             checkpoints_ != nullptr ? std::min(last_step, std::max(checkpoints_->next(), n + 1)) : last_step;
-        const std::size_t count = standstill_.phase() == Standstill::Phase::arrived ? 0 : sample_block(n, stop);
+        const std::size_t count = contact_.phase() == LoneContact::Phase::arrived ? 0 : sample_block(n, stop);
         if (count > 0) {
             alive = run_block(n, count);
             n += count;
@@ -75,10 +75,10 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             ++n;
         }
     }
-    if (outcome_ == model::Outcome::chattering) standstill_.forget_chatter();
+    if (outcome_ == model::Outcome::chattering) contact_.forget_chatter();
     if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
         rows_standing_until(model::never);
-        if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
+        if (contact_.finish()) outcome_ = model::Outcome::stuck_at_end;
     }
     return outcome_;
 }
@@ -86,8 +86,8 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
     t_ = time(from.step);
     y_ = from.state;
-    standstill_.return_to(from.mark);
-    friction_ = system_.braking(standstill_.motion());
+    contact_.return_to(from.mark);
+    friction_ = system_.braking(contact_.motion());
     M_ = from.M;
 }
 
@@ -113,10 +113,8 @@ std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
 bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
     std::size_t i = 0;
     while (i < count) {
-        if (standstill_.phase() != Standstill::Phase::arrived) {
-            i = standstill_.passes()  ? move_freely(n, i, count)
-                : standstill_.stuck() ? rest(n, i, count)
-                                      : move(n, i, count);
+        if (contact_.phase() != LoneContact::Phase::arrived) {
+            i = contact_.passes() ? move_freely(n, i, count) : contact_.stuck() ? rest(n, i, count) : move(n, i, count);
             if (!finite()) return false;
         }
         if (i < count) {
@@ -168,8 +166,8 @@ std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direc
 std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
     begin_block(i, count);
     const std::size_t first = i;
-    i = plain_steps(i, count, model::sign_of(standstill_.motion()));
-    if (i > first) standstill_.go_on();
+    i = plain_steps(i, count, model::sign_of(contact_.motion()));
+    if (i > first) contact_.go_on();
     end_block(n, first, i);
     return i;
 }
@@ -178,13 +176,13 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
     begin_block(i, count);
     const std::size_t first = i;
     while (i < count) {
-        i = plain_steps(i, count, model::sign_of(standstill_.motion()));
+        i = plain_steps(i, count, model::sign_of(contact_.motion()));
         if (i == count) break;
         // A step in which the velocity changes sign is an ordinary step that records a turn.
         const model::State y{block_.theta[i], block_.velocity[i]};
         const model::State y1 = full_(y, block_.push_theta[i], block_.push_velocity[i]);
         const double a = acceleration(block_.forcing[i], y), a1 = acceleration(block_.forcing[i + 1], y1);
-        record_turns(time(n + i), full_.h, model::sign_of(standstill_.motion()), y, a, y1, a1);
+        record_turns(time(n + i), full_.h, model::sign_of(contact_.motion()), y, a, y1, a1);
         block_.theta[i + 1] = y1.theta;
         block_.velocity[i + 1] = y1.velocity;
         ++i;
@@ -226,8 +224,8 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
     // Well within the limit also between the samples: a parabola through three of them exceeds the highest by at most
     // an eighth of their second difference; a quarter is safe.
-    const double forward = standstill_.limit(model::Motion::forward);
-    const double backward = standstill_.limit(model::Motion::backward);
+    const double forward = contact_.limit(model::Motion::forward);
+    const double backward = contact_.limit(model::Motion::backward);
     const double limit = (forward + backward) / 2 * (1 - 1e-9);
     const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
     double e = std::fabs(M_ - middle_of_hold);

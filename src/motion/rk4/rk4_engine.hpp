@@ -8,10 +8,10 @@
 
 #include "motion/checkpoints.hpp"
 #include "motion/interpolation.hpp"
+#include "motion/lone_contact.hpp"
 #include "motion/rk4/rk4.hpp"
 #include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
-#include "motion/standstill.hpp"
 
 namespace dinal::motion::rk4 {
 
@@ -19,7 +19,7 @@ struct Rk4Checkpoint {
     std::size_t step = 0;
     model::State state;
     double M = 0;
-    Standstill::Mark mark;
+    LoneContact::Mark mark;
 };
 
 class Rk4Engine {
@@ -37,13 +37,13 @@ public:
     [[nodiscard]] double time(std::size_t n) const {
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
-    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, standstill_.mark()}; }
+    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, contact_.mark()}; }
     /// Stores the time and state reached.
     void leave(Trajectory& trajectory) const {
         trajectory.t_stop = t_;
         trajectory.state_at_stop = y_;
-        trajectory.motion_at_stop = standstill_.motion();
-        trajectory.began_stuck = standstill_.began_stuck();
+        trajectory.motion_at_stop = contact_.motion();
+        trajectory.began_stuck = contact_.began_stuck();
         if (excitation_.has_script()) trajectory.gap = trajectory.unproven = full_.h / 2;
     }
 
@@ -92,20 +92,20 @@ private:
     void rows_standing_until(double end);
     void put_row(const model::State& y, double M) {
         if (std::isfinite(M) && std::isfinite(y.theta) && std::isfinite(y.velocity)) {
-            rows_.put(y, M, model::friction_torque(system_, standstill_.motion(), M, y));
+            rows_.put(y, M, model::friction_torque(system_, contact_.motion(), M, y));
         } else {
             failed_ = true;
         }
     }
-    [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
+    [[nodiscard]] LoneContact::Moment moment() const { return {t_, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
-        y_.theta = standstill_.place_at_stop(moment());
-        return standstill_.decide(moment());
+        y_.theta = contact_.place_at_stop(moment());
+        return contact_.decide(moment());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) {
-        friction_ = system_.braking(standstill_.motion());
+        friction_ = system_.braking(contact_.motion());
         return sane ? finite() : fail(model::Outcome::chattering);
     }
     bool fail(model::Outcome outcome) {
@@ -124,7 +124,7 @@ private:
     [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
     /// theta'' under a torque that depends on the motion: M at this state, and the remainder of friction.
     [[nodiscard]] double acceleration_at(const model::State& y, double M) const {
-        return acceleration(forcing(M - system_.remainder(standstill_.motion(), y)), y);
+        return acceleration(forcing(M - system_.remainder(contact_.motion(), y)), y);
     }
     [[nodiscard]] double acceleration(double f, const model::State& y) const {
         return f - full_.c * y.velocity - full_.w * y.theta;
@@ -147,7 +147,7 @@ private:
     double t_ = 0;  // the present: time, state, M (from the right), motion
     model::State y_;
     double M_ = 0;
-    Standstill standstill_;
+    LoneContact contact_;
     double friction_ = 0;  // constant friction torque of the present motion
     bool failed_ = false;  // whether M was not finite at a row between the steps
     model::Outcome outcome_ = model::Outcome::reached_end;
