@@ -83,7 +83,7 @@ void Engine::choose(const Frame& frame) {
     segment_.end = to_limit ? limit : now_.t.after(2 * segment_.h);
     segment_.from_break = now_.after_break;
     segment_.to_break = to_limit && limit == breaks;
-    segment_.to_the_end = to_limit && (segment_.to_break || limit == problem_.window.end || problem_.step == 0);
+    segment_.to_the_end = to_limit;
 }
 
 /// Returns the time to the next wall, if all accelerations stay as they are.

@@ -14,6 +14,7 @@
 #include "motion/engine/frames.hpp"
 #include "motion/engine/now.hpp"
 #include "motion/engine/pace.hpp"
+#include "motion/engine/plain_steps.hpp"
 #include "motion/engine/recorder.hpp"
 #include "motion/engine/torque_sizes.hpp"
 #include "motion/engine/user_events.hpp"
@@ -31,6 +32,7 @@ private:
     // The loop (run.cpp).
     void begin();
     bool advance();
+    bool take_plain_steps();
     bool solve(const Frame& frame);
     bool stands_for_good(const Frame& present);
     bool rest(const Frame& present);
@@ -135,6 +137,7 @@ private:
     std::optional<Conditions> conditions_;
     std::optional<Balances> balances_;
     std::optional<Recorder> recorder_;
+    std::optional<PlainSteps> plain_steps_;
     // Room, so that a stretch need not allocate it.
     Balance balance_;
     DecisionRoom room_;

@@ -160,6 +160,20 @@ bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
     return true;
 }
 
+void Recorder::put_row(double t, const model::State& y, double M, double friction) {
+    double* cell = result_.table.writable() + next_row_;
+    const std::size_t stride = problem_.rows.count();
+    const double damping = -problem_.system.joints[0].damping * y.velocity;
+    const auto put = [&](double value) {
+        *cell = value == 0 ? 0 : value;
+        cell += stride;
+    };
+    for (const double value : {t, y.theta, y.velocity, M, friction, damping}) put(value);
+    const double all = M + friction + damping - problem_.system.joints[0].stiffness * y.theta;
+    if (!problem_.joined_elsewhere) put(all / problem_.system.bodies[0].inertia);
+    ++next_row_;
+}
+
 bool Recorder::rows_at_end(const Stretch& of) {
     const double t = of.now.t.hi;
     while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= t) {

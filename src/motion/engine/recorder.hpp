@@ -29,6 +29,7 @@ public:
     void tell(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
         result_.events.push_back(event_at(mechanics_, now, kind, where, user));
     }
+    void tell(const model::Event& event) { result_.events.push_back(event); }
     /// An event of the user concerns every joint: each gets one, with its own angle and velocity.
     void tell_user(const Now& now, std::size_t event);
     [[nodiscard]] bool told_user_at(double t) const {
@@ -66,10 +67,16 @@ public:
     /// The rows of the present, at the end of a run.
     bool rows_at_end(const Stretch& of);
     [[nodiscard]] std::size_t next_row() const { return next_row_; }
+    [[nodiscard]] double next_row_time() const {
+        return next_row_ < problem_.rows.count() ? problem_.rows.time(next_row_) : model::never;
+    }
+    /// The row of a plain step of one body.
+    void put_row(double t, const model::State& y, double M, double friction);
 
     // History.
     /// Keeps what was used of a stretch.
     void keep(const Now& now, const Segment& segment, double length, double longest_delay);
+    void keep(Kept kept) { history_->add(std::move(kept), true, model::never); }
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 

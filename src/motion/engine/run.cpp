@@ -72,6 +72,7 @@ Engine::Engine(const Request& problem, Run& result)
     solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
+    plain_steps_.emplace(problem, mechanics_, *conditions_);
 }
 
 // ---- the loop
@@ -142,6 +143,7 @@ bool Engine::advance() {
     if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     const Frame& frame = frames_->of(now_.mode);
     if (stands_for_good(frame)) return rest(frame);
+    if (take_plain_steps()) return true;
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
@@ -153,6 +155,18 @@ bool Engine::advance() {
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
                             solver_->noise().of_torques());
     return end_at(ending.x, frame, sampled) && handle(ending);
+}
+
+/// Steps on which nothing happens need no segment.
+bool Engine::take_plain_steps() {
+    if (pace_.bad_time < model::never) return false;
+    const double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
+    if (!plain_steps_->take({now_, contacts_, walls_, *recorder_}, breaks)) return false;
+    walls_.follow(problem_.system, now_);
+    if (!mechanics_.has_functions()) return true;
+    result_.gap = std::max(result_.gap, plain_steps_->gap());
+    result_.unproven = std::max(result_.unproven, plain_steps_->gap());
+    return true;
 }
 
 /// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.

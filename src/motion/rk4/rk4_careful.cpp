@@ -76,12 +76,12 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
 Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
     if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
     // Samples exist for the whole step only; its end serves every piece that reaches it.
-    const bool whole = known != nullptr && length > full_.h * (1 - 1e-9);
+    const bool whole = known != nullptr && length > steps_.h * (1 - 1e-9);
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
     const double M1 = known != nullptr ? known->end : M_at(t_ + length, end, break_at_end, {});
     const double f0 = forcing(M_), f1 = forcing(M1);
     const model::State y =
-        whole ? full_(y_, f0, forcing(middle), f1) : AffineStep(system_, length)(y_, f0, forcing(middle), f1);
+        (whole ? block_.map : engine::AffineStep(block_.map.w, block_.map.c, length))(y_, f0, forcing(middle), f1);
     // A middle that is not finite must be noticed, also if the step is too short to change y.
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
 }
@@ -162,7 +162,7 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
     const auto excess_of = [&](double torque) { return contact_.excess(torque, y_.theta); };
     const auto excess = [&](double t) { return excess_of(M(t)); };
-    const bool whole = known != nullptr && end - t_ > full_.h * (1 - 1e-9);
+    const bool whole = known != nullptr && end - t_ > steps_.h * (1 - 1e-9);
     const double middle = t_ + (end - t_) / 2;
     const double M_middle = whole ? known->middle : M(middle);
     M_end = known != nullptr ? known->end : M(end);
@@ -194,7 +194,7 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
 bool Rk4Engine::lost_in_rounding(const model::State& y, double a) const {
     constexpr double few_ulps = 32 * std::numeric_limits<double>::epsilon();
     constexpr double nothing = 1e-290;  // products of smaller numbers underflow
-    return std::fabs(a) <= few_ulps * full_.w * std::fabs(y.theta) ||
+    return std::fabs(a) <= few_ulps * block_.map.w * std::fabs(y.theta) ||
            (std::fabs(y.velocity) < nothing && std::fabs(y.theta) < nothing);
 }
 
