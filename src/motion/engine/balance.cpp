@@ -17,7 +17,7 @@ std::optional<double> SampledLoads::at(std::size_t body, double x) {
     return cheb::value(series_[body], x);
 }
 
-Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Collocation& solver)
+Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver)
     : mechanics_(mechanics), conditions_(conditions), solver_(solver) {
     for (const model::Body& body : mechanics.system().bodies) inertia_ += body.inertia;
 }

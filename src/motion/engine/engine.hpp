@@ -1,16 +1,17 @@
 // The loop of a run: from one event to the next.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/breaks.hpp"
-#include "motion/engine/collocation.hpp"
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/decide.hpp"
+#include "motion/engine/flow.hpp"
 #include "motion/engine/frames.hpp"
 #include "motion/engine/now.hpp"
 #include "motion/engine/pace.hpp"
@@ -54,7 +55,7 @@ private:
     void choose(const Frame& frame);
     double longest_under_friction(const Frame& frame);
     double until_wall(const Frame& frame);
-    void again(Collocation::Attempt attempt);
+    void again(Flow::Attempt attempt);
 
     // The end (finish.cpp).
     void finish();
@@ -133,13 +134,12 @@ private:
     UserEvents users_;
     std::vector<Half> normal_halves_;  ///< of each joint, for the guards
     std::optional<Frames> frames_;
-    std::optional<Collocation> solver_;
+    std::unique_ptr<Flow> solver_;
     std::optional<Conditions> conditions_;
     std::optional<Balances> balances_;
     std::optional<Recorder> recorder_;
     std::optional<PlainSteps> plain_steps_;
     // Room, so that a stretch need not allocate it.
-    Balance balance_;
     DecisionRoom room_;
     TorqueSizes sizes_;
     std::vector<double> departing_;

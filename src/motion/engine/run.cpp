@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "model/springs/user_spring.hpp"
+#include "motion/engine/collocation.hpp"
 #include "motion/engine/engine.hpp"
 #include "motion/engine/guards.hpp"
 #include "motion/engine/moving.hpp"
+#include "motion/engine/runge_kutta.hpp"
 #include "motion/witness.hpp"
 
 namespace dinal::motion::engine {
@@ -69,7 +71,12 @@ Engine::Engine(const Request& problem, Run& result)
     set_pace();
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
     conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
-    solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    if (problem.step > 0 || problem.pair != nullptr) {
+        solver_ =
+            std::make_unique<RungeKutta>(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    } else {
+        solver_ = std::make_unique<Collocation>(mechanics_, problem.tolerance, pace_.longest);
+    }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
     plain_steps_.emplace(problem, mechanics_, *conditions_);
@@ -171,7 +178,7 @@ bool Engine::take_plain_steps() {
 
 /// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.
 bool Engine::solve(const Frame& frame) {
-    using Attempt = Collocation::Attempt;
+    using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
     for (const std::size_t joint : conditions_->ceased(now_)) recorder_->tell_slide(now_, joint);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
