@@ -38,7 +38,7 @@ double PeriodMap::rounding() const {
     return system_.has_linear_spring() ? few * lowered_.greatest_holding() / lowered_.stiffness() : 0;
 }
 
-motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
+motion::Run PeriodMap::run(const Place& from, double length, bool dense) const {
     motion::Limits limits;
     limits.dense = dense;  // a stored series is faster to evaluate than a closed form
     drive_.start_at(state(from));
@@ -46,7 +46,7 @@ motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) 
                                    dense ? motion::Integrator(motion::Spectral{}) : integrator_, monitor_, limits);
     if (result && result->contradiction) contradiction_ = result->contradiction;
     if (result) return std::move(result).value();
-    motion::Trajectory none;
+    motion::Run none;
     none.outcome = model::Outcome::state_not_finite;
     return none;
 }
@@ -56,7 +56,7 @@ MapStep PeriodMap::operator()(const Place& from) const {
     constexpr double most = 1e100;  // powers of larger motions would overflow
     const bool powers = lowered_.has_remainder() || drive_.M().has_feedback();
     const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
-    const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
+    const motion::Run run = finite ? this->run(from, length_, false) : motion::Run{};
     // A nonlinear spring may overflow in a diverging motion. (An overflow of M has been reported by its function.)
     const bool flew_away =
         run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !drive_.M().has_feedback();
@@ -73,7 +73,7 @@ MapStep PeriodMap::operator()(const Place& from) const {
     return step;
 }
 
-MapStep PeriodMap::step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
+MapStep PeriodMap::step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const {
     MapStep step;
     step.outcome = run.outcome;
     const double begins = run.t_start, ends = run.t_stop, first = run.initial.theta;

@@ -64,9 +64,9 @@ public:
     /// The rounding of a place at which a linear spring and friction are in balance.
     [[nodiscard]] double rounding() const;
     [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
-    [[nodiscard]] motion::Trajectory run(const Place& from, double length, bool dense) const;
+    [[nodiscard]] motion::Run run(const Place& from, double length, bool dense) const;
     /// Everything except the derivative of a step, from a run of any length.
-    [[nodiscard]] MapStep step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const;
+    [[nodiscard]] MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
     [[nodiscard]] const model::Excitation& excitation() const { return drive_.M(); }
     [[nodiscard]] double start() const { return start_; }

@@ -51,9 +51,9 @@ namespace {
 /// Computes mean and fundamental from the motion itself.
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
                                      const SteadyMotion& motion, const PeriodMap& map, double length) {
-    const motion::Trajectory run =
-        motion.by_returns.run ? *motion.by_returns.run
-                              : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
+    const motion::Run run = motion.by_returns.run
+                                ? *motion.by_returns.run
+                                : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
     if (!model::is_whole(run.outcome)) return {};
     const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
@@ -100,8 +100,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     if (const auto slides = drives && !motion.by_returns.run ? sine::ShortSlides::of(question) : std::nullopt) {
         found = Fundamental{0, slides->fundamental()};
     } else if (drives && !motion.by_returns.run && is_linear_but_for_friction(question)) {
-        const motion::Trajectory run =
-            map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
+        const motion::Run run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
         if (!model::is_whole(run.outcome)) return shape;
         found = by_friction(question, motion, run, M_wave);
     }
