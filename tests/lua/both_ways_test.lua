@@ -316,8 +316,9 @@ local only = {
         ["normal of t and theta"] = 1, ["belt constant"] = 1, base = 1, ["walls of restitution 0.7"] = 1 },
     ["response with folds"] = { ["spring.polynomial"] = 1 },
 }
-only.steady = merged(kinds)
-only.steady.Dahl = nil -- as slow as LuGre, and as smooth
+only.steady, only.response = merged(kinds), merged(kinds)
+for _, slow in ipairs { "LuGre", "Dahl" } do only.steady[slow], only.response[slow] = nil, nil end -- "steady of the run" has them
+only.response["elastic walls"] = nil
 local function asked(question) return only[question] or kinds end
 
 local groups = { springs = { "spring.polynomial", "a spring in Lua" },

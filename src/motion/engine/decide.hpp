@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/event.hpp"
+#include "motion/contact.hpp"
 #include "motion/engine/balance.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/frames.hpp"
@@ -17,8 +18,8 @@ struct DecisionRoom {
     /// The knowledge of a decision about a joint.
     struct Asked {
         bool asked = false;  ///< it is at slip 0
-        bool taken_back = false, was_held = false, was_creeping = false;
-        model::Motion slid = model::Motion::stuck;    ///< the way in which it slid until now; stuck: it did not
+        bool taken_back = false;
+        contact::Before before = {};
         model::Motion let_go = model::Motion::stuck;  ///< the way of what came to its limit at this instant, too
         int leant = 0;
         double pull = 0;  ///< that let it go
@@ -52,10 +53,10 @@ struct Cause {
 /// An event that a decision reports.
 struct Told {
     model::Event event;
-    bool holds_again = false;   ///< a stick of a joint that was let go: with its slip at this instant it is no event
-    bool turns = false;         ///< a slip the other way than the joint slid before it stuck
-    double off = model::never;  ///< of a slip, if the joint slid before it stuck: the change of its pull since then
-    double size = 0;            ///< of a slip: the size of the torques
+    bool holds_again = false;  ///< a stick of a joint that was let go: with its slip at this instant it is no event
+    model::Motion slid = model::Motion::stuck;  ///< of a slip: the way in which it slid before it stuck; stuck: none
+    model::Motion way = model::Motion::stuck;   ///< of a slip: the way in which it slides now
+    double off = 0, size = 0;                   ///< of a slip: the change of its pull since then, and of its torques
 };
 
 struct Decision {

@@ -185,7 +185,7 @@ Nodes Guards::limit(std::size_t joint, Motion side) const {
     }
     if (how.creeps != Motion::stuck) {
         const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, now_.here());
-        most.fill(side == how.creeps ? how.apart + level : how.apart - level);
+        most.fill(contact::limit_of_creep(side, how.creeps, level, how.apart));
     }
     return most;
 }
@@ -196,6 +196,8 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
         if (!std::isfinite(place)) continue;
         const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
+        constexpr double between_nodes = 3;  // so many times the values at nodes a series is there at most
+        if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * of_.walls.reach[joint]) continue;
         for (double& way : change) way *= -wall;
         // The gap of a motion that begins at the wall is known as well as its way from there.
         const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);

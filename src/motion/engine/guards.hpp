@@ -23,7 +23,7 @@ public:
         const Now& begin;
         const Walls& walls;
         const TorqueSizes& sizes;
-        const Collocation& solver;
+        const Flow& solver;
         Balances& balances;
         Contacts& contacts;
         std::vector<Half>& normal_halves;  ///< of each joint: the sign of its normal load, or of the slip of bristles

@@ -20,6 +20,10 @@ public:
     }
     [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
         if (!(since_start > 0)) return {};
+        if (kept_.remade != nullptr) {
+            if (!remade_) remade_ = kept_.remade->works();
+            return remade_(std::min(since_start, kept_.length));
+        }
         if (!works_[joint]) works_[joint] = integrals(joint);
         const Integrals& own = *works_[joint];
         const double x = std::min(std::min(since_start, kept_.length) / kept_.h - 1, 1.0);
@@ -82,6 +86,7 @@ private:
     std::size_t bodies_;
     const Kept& kept_;
     mutable std::vector<std::optional<Integrals>> works_;
+    mutable std::function<Work(double)> remade_;
 };
 
 /// An energy change that takes no time.
@@ -103,7 +108,8 @@ private:
 }  // namespace
 
 void History::add(Kept kept, bool for_good, double past) {
-    const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series)) +
+    const std::size_t bytes = sizeof(Kept) + (kept.remade != nullptr ? kept.remade->bytes() : 0) +
+                              kept.begin.size() * (sizeof(double) + sizeof(Series)) +
                               kept.acting.size() * sizeof(Kept::Acting);
     if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
     for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
@@ -133,6 +139,7 @@ std::vector<double> History::at(double t, Side side) const {
     const bool earlier = t < t_start_ || (t == t_start_ && side == Side::before);
     if (after == list_.begin() || earlier) return before_ != nullptr ? before_->at(t, side) : initial_;
     const Kept& kept = *(after - 1);
+    if (kept.remade != nullptr) return kept.remade->at(kept.start.until(t));
     std::vector<double> y = kept.begin;
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = kept.value(k, kept.x(t));
     return y;

@@ -177,9 +177,9 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
 
 /// A body that was thrown, and is soon back, is to be seen on its way.
 void Engine::see_flight() {
-    if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, balance_)) return;
+    if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, room_.balance)) return;
     for (std::size_t i = 0; i < n(); ++i) {
-        const double v = now_.y[n() + i], a = balance_.accelerations[i];
+        const double v = now_.y[n() + i], a = room_.balance.accelerations[i];
         if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * frames_->of(now_.mode).longest)) continue;
         pace_.h = std::min(pace_.h, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_.unit));
     }

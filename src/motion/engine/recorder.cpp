@@ -44,7 +44,7 @@ void Recorder::tell(const Told& told) {
     constexpr double clearly_later = 1e-3;
     const Event& event = told.event;
     if (told.holds_again && is_none(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
-    if (only_touched(told)) return;
+    if (contact::only_touched(recent_, {event, told.slid, told.way, told.off, told.size}, unit_)) return;
     if (!recent_.empty() && event.t - recent_.back().t > clearly_later * unit_) write_recent();
     recent_.push_back(event);
 }
@@ -72,24 +72,6 @@ bool Recorder::is_none(EventKind kind, std::size_t joint, double t) {
     });
     if (told == recent_.rend()) return false;
     recent_.erase(std::next(told).base());
-    return true;
-}
-
-/// Returns whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld
-/// an impulse below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is no
-/// event, or is a turn.
-bool Recorder::only_touched(const Told& slip) {
-    constexpr double briefly = 1e-3, withheld = 64 * rounding;
-    if (recent_.empty()) return false;
-    Event& last = recent_.back();
-    const double part = (slip.event.t - last.t) / unit_;
-    if (last.kind != EventKind::stick || last.where != slip.event.where || part > briefly) return false;
-    if (!(slip.off * (2 * std::numbers::pi * part) <= withheld * slip.size)) return false;
-    if (slip.turns) {
-        last.kind = EventKind::turn;
-    } else {
-        recent_.pop_back();
-    }
     return true;
 }
 
@@ -187,6 +169,20 @@ bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
         if (!put_row(of, t, std::clamp(of.segment.start.until(t) / of.segment.h - 1, -1.0, 1.0))) return false;
     }
     return true;
+}
+
+void Recorder::put_row(double t, const model::State& y, double M, double friction) {
+    double* cell = cells_ + next_row_;
+    const std::size_t stride = problem_.rows.count();
+    const double damping = -problem_.system.joints[0].damping * y.velocity;
+    const auto put = [&](double value) {
+        *cell = value == 0 ? 0 : value;
+        cell += stride;
+    };
+    for (const double value : {t, y.theta, y.velocity, M, friction, damping}) put(value);
+    const double all = M + friction + damping - problem_.system.joints[0].stiffness * y.theta;
+    if (!problem_.joined_elsewhere) put(all / problem_.system.bodies[0].inertia);
+    ++next_row_;
 }
 
 bool Recorder::rows_at_end(const Stretch& of) {

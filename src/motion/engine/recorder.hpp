@@ -56,10 +56,16 @@ public:
     /// The rows of the present, at the end of a run.
     bool rows_at_end(const Stretch& of);
     [[nodiscard]] std::size_t next_row() const { return next_row_; }
+    [[nodiscard]] double next_row_time() const {
+        return next_row_ < problem_.rows.count() ? problem_.rows.time(next_row_) : model::never;
+    }
+    /// The row of a plain step of one body.
+    void put_row(double t, const model::State& y, double M, double friction);
 
     // History.
     /// Keeps what was used of a stretch.
     void keep(const Now& now, const Segment& segment, double length, double longest_delay);
+    void keep(Kept kept) { history_->add(std::move(kept), true, model::never); }
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 
@@ -70,7 +76,6 @@ public:
 private:
     void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
     bool is_none(model::EventKind kind, std::size_t joint, double t);
-    bool only_touched(const Told& slip);
     void write_recent();
     /// The place x of the segment; -2 is the present.
     bool put_row(const Stretch& of, double t, double x);

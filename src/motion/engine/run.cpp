@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "model/springs/user_spring.hpp"
+#include "motion/engine/collocation.hpp"
 #include "motion/engine/engine.hpp"
 #include "motion/engine/guards.hpp"
 #include "motion/engine/moving.hpp"
+#include "motion/engine/runge_kutta.hpp"
 #include "motion/witness.hpp"
 
 namespace dinal::motion::engine {
@@ -69,9 +71,15 @@ Engine::Engine(const Request& problem, Run& result)
     asking_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
     conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
-    solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    if (problem.step > 0 || problem.pair != nullptr) {
+        solver_ =
+            std::make_unique<RungeKutta>(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    } else {
+        solver_ = std::make_unique<Collocation>(mechanics_, problem.tolerance, pace_.longest);
+    }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
+    plain_steps_.emplace(problem, mechanics_, *conditions_);
 }
 
 // ---- the loop
@@ -141,6 +149,7 @@ bool Engine::advance() {
     if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     const Frame& frame = frames_->of(now_.mode);
     if (stands_for_good(frame)) return rest(frame);
+    if (take_plain_steps()) return true;
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
@@ -154,9 +163,21 @@ bool Engine::advance() {
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
+/// Steps on which nothing happens need no segment.
+bool Engine::take_plain_steps() {
+    if (pace_.bad_time < model::never) return false;
+    const double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
+    if (!plain_steps_->take({now_, contacts_, walls_, *recorder_}, breaks)) return false;
+    walls_.follow(problem_.system, now_);
+    if (!mechanics_.has_functions()) return true;
+    result_.gap = std::max(result_.gap, plain_steps_->gap());
+    result_.unproven = std::max(result_.unproven, plain_steps_->gap());
+    return true;
+}
+
 /// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.
 bool Engine::solve(const Frame& frame) {
-    using Attempt = Collocation::Attempt;
+    using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
     for (const std::size_t joint : conditions_->ceased(now_)) recorder_->tell_slide(now_, joint);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);

@@ -38,12 +38,10 @@ text::Expected<model::State> Replay::at(double t) const {
     RowWriter rows(system(), *grid, run);
     Rk4Engine engine(problem, method_, rows, nullptr, nullptr);
 
-    auto step = static_cast<std::size_t>((t - window_.start) / method_.h);
-    while (step > 0 && engine.time(step) > t) --step;
-    while (step < engine.steps() && engine.time(step + 1) <= t) ++step;
+    const std::size_t step = engine.steps().at(t);
     const Rk4Checkpoint* next = checkpoints.after(step);
     // If no later checkpoint exists, the replay goes only to the end of the step.
-    const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
+    const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps().count);
     engine.run(checkpoints.before(step), last);
     if (run.size() > 0 && rows.next_row() == 0) {
         return text::Error{
@@ -68,7 +66,7 @@ Run Rk4::run(const Problem& problem) const {
     if (problem.limits.dense) replay = std::make_shared<Replay>(problem, *this);
     std::vector<model::Event> events;
     Rk4Engine engine(problem, *this, rows, &events, replay ? &replay->checkpoints : nullptr);
-    if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
+    if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps().count);
 
     run_whole(engine, problem, rows, events, std::move(replay), run);
     return run;
