@@ -212,11 +212,11 @@ private:
             scene_.seconds, values(track, points));
     }
     /// The corners of a spring between two places, at this height.
-    [[nodiscard]] static std::string spring_points(double from, double to, double middle, double half) {
+    [[nodiscard]] static std::string spring_points(double from, double to, double height, double half) {
         std::string list;
         for (const Point& corner : spring_corners(9)) {
             fmt::format_to(std::back_inserter(list), "{:.1f},{:.0f} ", from + (to - from) * corner.x,
-                           middle + half * corner.y);
+                           height + half * corner.y);
         }
         list.pop_back();
         return list;
