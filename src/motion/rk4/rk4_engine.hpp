@@ -33,6 +33,8 @@ public:
     model::Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
 
     [[nodiscard]] std::size_t steps() const { return steps_; }
+    /// The length of a step.
+    [[nodiscard]] double h() const { return full_.h; }
     /// The time at which step n begins.
     [[nodiscard]] double time(std::size_t n) const {
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
@@ -44,7 +46,6 @@ public:
         run.state_at_stop = y_;
         run.motion_at_stop = standstill_.motion();
         run.began_stuck = standstill_.began_stuck();
-        if (excitation_.has_script()) run.gap = run.unproven = full_.h / 2;
     }
 
 private:
