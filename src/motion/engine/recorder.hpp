@@ -34,9 +34,9 @@ public:
     [[nodiscard]] bool told_user_at(double t) const {
         return !events_.empty() && events_.back().user >= 0 && events_.back().t == t;
     }
-    /// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin
-    /// where a run goes on.
-    void tell_slide(const Now& now, std::size_t joint);
+    /// A load, or the rate of a state, which concerns all joints, begins or ceases to slide along a condition. Both at
+    /// one instant are no event, nor does a slide begin where a run goes on.
+    void tell_slide(const Now& now, const SlideChange& change);
     /// The events of a decision. `unit`: of time.
     void tell(const Decision& decision, double unit);
     /// A joint creeps: it sticks at this event unless something moves it before the end of the run.
@@ -104,10 +104,6 @@ private:
     std::size_t next_row_ = 0;
     Balance balance_;
     std::vector<double> row_, point_;
-    struct {
-        double t = -model::never;
-        std::size_t joint = 0;
-    } last_slide_;
 };
 
 }  // namespace dinal::motion::engine

@@ -158,7 +158,7 @@ bool Engine::advance() {
 bool Engine::solve(const Frame& frame) {
     using Attempt = Collocation::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
-    for (const std::size_t joint : conditions_->ceased(now_)) recorder_->tell_slide(now_, joint);
+    for (const SlideChange& change : conditions_->ceased(now_)) recorder_->tell_slide(now_, change);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
     const Attempt attempt = solver_->solve(segment_, now_.mode, frame, now_.y, departing);
