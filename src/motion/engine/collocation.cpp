@@ -601,11 +601,23 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
         if (unresolved_ > 1) fastest_.rates = fastest;  // not those of a step that went far away
     }
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
-    const Proofs::Beside beside{tolerance_, sizes_.all, noise_.floor(), fastest_.belts, fastest_.rates};
-    if (unresolved_ <= 1 && !proofs_.hides_nothing(s, mode, beside)) unresolved_ = 2;
+    if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
     if (unresolved_ <= 1 && mechanics_.nonlinear()) remember_end(s, frame);
     if (unresolved_ <= 1) noise_.pass(s);
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
+}
+
+bool Collocation::hides_nothing(Segment& s, const Mode& mode, double until) {
+    const Proofs::Beside beside{tolerance_, sizes_.all, noise_.floor(), fastest_.belts, fastest_.rates};
+    return proofs_.hides_nothing(s, mode, beside, until);
+}
+
+bool Collocation::hides_nothing_until(double x, Segment& s, const Mode& mode) {
+    if (s.proven || step_length_ > 0 || !(x < 1)) return true;
+    s.proven = true;
+    if (!(x > -1) || hides_nothing(s, mode, x)) return true;
+    unresolved_ = 2;
+    return false;
 }
 
 /// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the

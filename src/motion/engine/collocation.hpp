@@ -28,6 +28,9 @@ public:
     /// something is not finite at bad_time().
     Attempt solve(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                   const std::vector<double>& departing);
+    /// The stretch is used up to a place only: functions are proven there if they were not on the whole of it. Returns
+    /// false if one hides something.
+    bool hides_nothing_until(double x, Segment& segment, const Mode& mode);
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
@@ -67,6 +70,7 @@ public:
     void find_limits(Segment& segment, const Mode& mode) const;
 
 private:
+    [[nodiscard]] bool hides_nothing(Segment& segment, const Mode& mode, double until);
     void make_room(Segment& segment) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,

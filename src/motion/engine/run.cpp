@@ -148,6 +148,10 @@ bool Engine::advance() {
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
+    if (ending.by == By::condition && !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
+        again(Collocation::Attempt::shorten);
+        return outcome_ == Outcome::reached_end;
+    }
     SampledLoads sampled(mechanics_, segment_);
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
                             solver_->noise().of_torques());
