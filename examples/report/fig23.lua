@@ -18,7 +18,7 @@ fig:head("1989", "true motion", "pi - 4 gamma")
 local growth = {
   math.abs(rough[#rough].theta) - math.abs(rough[#rough - 2].theta),
   math.abs(run.events[n].theta) - math.abs(run.events[n - 2].theta),
-  theory.growth_at_resonance{ friction_ratio = 0.167 },
+  math.pi - 4*0.167,
 }
 fig:line("growth per period", table.unpack(growth))
 

@@ -6,26 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/accurate_sum.hpp"
 #include "analysis/stretches.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {
 
 namespace {
-
-/// A compensated sum of many terms (Neumaier).
-class Sum {
-public:
-    void add(double x) {
-        const double sum = sum_ + x;
-        rest_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
-        sum_ = sum;
-    }
-    [[nodiscard]] double value() const { return sum_ + rest_; }
-
-private:
-    double sum_ = 0, rest_ = 0;
-};
 
 class WorkSum {
 public:
@@ -45,7 +32,7 @@ public:
     }
 
 private:
-    Sum input_, viscous_, dry_, belt_, base_, acts_, impacts_, kept_;
+    AccurateSum input_, viscous_, dry_, belt_, base_, acts_, impacts_, kept_;
 };
 
 Work operator-(const Work& a, const Work& b) {
@@ -140,7 +127,7 @@ private:
     const Store& store_;
     std::vector<Stretch>::const_iterator stretch_, last_;
     WorkSum present_, total_;
-    Sum flow_;
+    AccurateSum flow_;
     Energy energy_;
 };
 

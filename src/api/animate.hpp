@@ -1,4 +1,4 @@
-// run:animate(): a run in motion, in the terminal or in a file.
+// run:animate(): a run in motion, in a file, a page or a notebook.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,11 @@ namespace dinal::api {
 struct AnimateOptions {
     std::optional<std::string> file = {};
     std::optional<double> speed = {}, from = {}, to = {};
-    std::optional<bool> ascii = {};
 };
-inline constexpr text::Option animate_target_options[] = {
+inline constexpr text::Option animate_file_option[] = {
     {.name = "file",
-     .meaning = "the .svg file to write instead of showing the animation; a browser plays it",
+     .meaning = "the .svg file of the animation; a browser plays it",
      .filled = text::fills<&AnimateOptions::file>},
-    {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };
 inline constexpr text::Option animate_take_options[] = {
     {"speed", "time units per second", text::its_own, text::positive,
@@ -31,8 +29,8 @@ inline constexpr text::Option animate_take_options[] = {
      text::fills<&AnimateOptions::to>},
 };
 inline constexpr auto all_animate_options =
-    text::joined(animate_target_options, animate_take_options, model::units_option);
-inline constexpr text::Call animate_call{"run:animate", "run:animate{ speed = 2 }", all_animate_options, true};
+    text::joined(animate_file_option, animate_take_options, model::units_option);
+inline constexpr text::Call animate_call{"run:animate", "run:animate{ file = \"run.svg\" }", all_animate_options, true};
 inline constexpr auto all_report_animate_options = text::joined(animate_take_options, model::units_option);
 inline constexpr text::Call report_animate_call{"r:animate", "r:animate(run, { speed = 2 })",
                                                 all_report_animate_options, true};
@@ -53,9 +51,8 @@ void show_animations_by(AnimationViewer viewer);
 
 inline constexpr lua::Doc animate_doc{
     "run:animate{ OPTIONS }",
-    "Shows the mass in motion, with spring, walls, surface and sticking: in the terminal until "
-    "Ctrl-C, in a notebook, on the page of --report, or in a file. Pictures are drawn at equal "
-    "steps of time, also between rows. Several bodies stand side by side, or are discs on one axis if one of them "
+    "Shows the mass in motion, with spring, walls, surface and sticking: in a file, in a notebook, or on the page "
+    "of --report. Pictures are drawn at equal steps of time, also between rows. Several bodies stand side by side, or are discs on one axis if one of them "
     "rotates.",
     "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }:simulate{ theta0 = 1, t_end = 6, dt = 1 }\n"
     "file = os.tmpname() .. \".svg\"\n"

@@ -6,6 +6,7 @@
 
 #include "lua/bind.hpp"
 #include "model/drive.hpp"
+#include "model/system.hpp"
 
 namespace dinal::api {
 

@@ -42,8 +42,6 @@ using text::Range;
 
 constexpr Range swinging{"be from 0 to less than 1: without a swing there is no next extreme",
                          [](double x) { return x >= 0 && x < 1; }};
-constexpr Range whole{"be a whole number, 0 or more",
-                      [](double x) { return x >= 0 && x == std::floor(x) && std::isfinite(x); }};
 constexpr Range at_most_ten_million{"be a whole number from 0 to 1e+07",
                                     [](double x) { return text::is_whole(x, 0, 1e7); }};
 constexpr Range den_hartog_r{"be 0 or from 0.0001 to 1e6", [](double x) {
@@ -58,7 +56,6 @@ constexpr Option sliding_r{.name = "r", .otherwise = needed, .range = den_hartog
 constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous damping ratio"};
 constexpr Option friction_ratio{"friction_ratio", "", needed, text::not_negative, "Rd/M0"};
 constexpr Option breakaway_ratio{"breakaway_ratio", "", "friction_ratio", text::not_negative, "Re/M0"};
-constexpr Option Rd{"Rd", "torque", needed, text::not_negative, "dry friction while sliding"};
 constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "initial angle"};
 constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "initial velocity"};
 constexpr const char* a_system = "a system such as system{ I = 1, k = 39.5 }";
@@ -66,12 +63,7 @@ constexpr Option system{
     .name = "system", .otherwise = needed, .meaning = "what moves", .object = "system", .wanted = a_system};
 
 constexpr Option free_response_options[] = {
-    {"t", "time units", needed, text::any_finite, "times; not negative with dry friction"},
-    theta0,
-    velocity0,
-    {.name = "system", .meaning = "what moves", .object = "system", .wanted = a_system},
-    {"omega0", "rad per time unit", text::its_own, text::positive, "with zeta, instead of a system"},
-    zeta};
+    {"t", "time units", needed, text::any_finite, "times; not negative with dry friction"}, system, theta0, velocity0};
 constexpr Call free_response{"theory.free_response",
                              "theory.free_response{ system = sys, theta0 = 1, t = vector.linspace(0, 5, 501) }",
                              free_response_options};
@@ -93,28 +85,9 @@ constexpr Option start_options[] = {system, theta0, velocity0};
 constexpr Call time_to_rest{"theory.time_to_rest", "theory.time_to_rest{ system = sys, theta0 = 1 }", start_options};
 constexpr Call rest_position{"theory.rest_position", "theory.rest_position{ system = sys, theta0 = 1 }", start_options};
 
-constexpr Option half_cycle_options[] = {
-    {"X", "rad", needed, text::any_finite, "an extreme, with its sign"},
-    {"zeta", "", "0", swinging, zeta.meaning},
-    {"x_f", "rad", "0", text::not_negative, "Rd/k"},
-    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k: at rest within it the mass stays"},
-    {.name = "system", .meaning = "instead of zeta, x_f and dead_zone", .object = "system", .wanted = a_system},
-    {"n", "half cycles", "1", whole, "number of half cycles after X"}};
-constexpr Call half_cycle{"theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
-                          half_cycle_options};
-
 constexpr Option logarithmic_decrement_options[] = {{"zeta", "", needed, swinging, zeta.meaning}};
 constexpr Call logarithmic_decrement{"theory.logarithmic_decrement", "theory.logarithmic_decrement{ zeta = 0.1 }",
                                      logarithmic_decrement_options};
-
-constexpr Option zeta_from_decrement_options[] = {
-    {"decrement", "", needed, text::not_negative, "ln(X0/X2) of extremes a full cycle apart"}};
-constexpr Call zeta_from_decrement{"theory.zeta_from_decrement", "theory.zeta_from_decrement{ decrement = 0.3 }",
-                                   zeta_from_decrement_options};
-
-constexpr Option friction_decrement_options[] = {Rd, {"k", "torque per rad", needed, text::positive, "stiffness"}};
-constexpr Call friction_decrement{"theory.friction_decrement", "theory.friction_decrement{ Rd = 2, k = 40 }",
-                                  friction_decrement_options};
 
 constexpr Option identify_options[] = {{"X0", "rad", needed, text::not_zero, "an extreme"},
                                        {"X1", "rad", needed, text::any_finite, "the next one"},
@@ -124,17 +97,6 @@ constexpr Call identify{"theory.identify", "theory.identify{ X0 = 1, X1 = -0.7, 
 constexpr Option r_and_zeta[] = {r, zeta};
 constexpr Call magnification{"theory.magnification", "theory.magnification{ r = 0.5, zeta = 0.1 }", r_and_zeta};
 constexpr Call phase_lag{"theory.phase_lag", "theory.phase_lag{ r = 0.5, zeta = 0.1 }", r_and_zeta};
-constexpr Call transmissibility{"theory.transmissibility", "theory.transmissibility{ r = 0.5, zeta = 0.1 }",
-                                r_and_zeta};
-
-constexpr Option equivalent_damping_options[] = {
-    Rd,
-    {"omega", "rad per time unit", needed, text::positive, "of the motion"},
-    {"amplitude", "rad", needed, text::positive, "of the motion"}};
-constexpr Call equivalent_damping{"theory.equivalent_damping",
-                                  "theory.equivalent_damping{ Rd = 2, omega = 6.28, amplitude = 0.5 }",
-                                  equivalent_damping_options};
-
 constexpr Option equivalent_zeta_options[] = {
     friction_ratio,
     {"r", "", needed, text::positive, r.meaning},
@@ -146,14 +108,6 @@ constexpr Call equivalent_zeta{"theory.equivalent_zeta",
 constexpr Option linearised_options[] = {r, friction_ratio, zeta};
 constexpr Call linearised{"theory.linearised", "theory.linearised{ r = 0.5, friction_ratio = 0.1 }",
                           linearised_options};
-
-constexpr Option friction_work_options[] = {Rd, {"amplitude", "rad", needed, text::not_negative, "of the motion"}};
-constexpr Call friction_work{"theory.friction_work", "theory.friction_work{ Rd = 2, amplitude = 0.5 }",
-                             friction_work_options};
-
-constexpr Option growth_options[] = {friction_ratio};
-constexpr Call growth_at_resonance{"theory.growth_at_resonance", "theory.growth_at_resonance{ friction_ratio = 0.2 }",
-                                   growth_options};
 
 constexpr Option den_hartog_options[] = {sliding_r, friction_ratio, zeta, breakaway_ratio};
 constexpr Call den_hartog{"theory.den_hartog", "theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }",
@@ -202,11 +156,19 @@ private:
     std::shared_ptr<const std::vector<double>> values_;
 };
 
-/// The option `system`; none if absent.
-std::optional<model::Oscillator> asked_system(const lua::Options& options) {
-    const auto* system = options.object<SystemHandle>("system");
-    if (system == nullptr) return {};
-    return options.value_or_fail(oscillator_of(**system));
+/// The option `system`. Raises an error if no closed form applies to it.
+model::Oscillator asked_system(const lua::Options& options) {
+    const model::Oscillator system = options.value_or_fail(oscillator_of(**options.object<SystemHandle>("system")));
+    const model::Friction& friction = system.friction();
+    const char* lacks = !system.has_spring() ? "need a spring, and this system has k = 0"
+                        : system.walls()     ? "do not include walls; simulate this system"
+                        : !system.spring().none()
+                            ? "include only the spring k theta, and this system has a second spring; simulate it"
+                        : !friction.none() && friction.as<model::laws::Coulomb>() == nullptr
+                            ? "include only Coulomb friction with one Rd and one Re; simulate this system"
+                            : nullptr;
+    if (lacks != nullptr) options.fail("system", fmt::format("the closed forms {}", lacks));
+    return system;
 }
 
 class TheoryArguments {
@@ -239,21 +201,6 @@ public:
     template <std::size_t n>
     std::array<Quantity, n> quantities() {
         return quantities(std::make_index_sequence<n>());
-    }
-    /// The system; none if absent and optional. Raises an error if no closed form applies to it.
-    [[nodiscard]] std::optional<model::Oscillator> system() const {
-        std::optional<model::Oscillator> system = asked_system(options_);
-        if (!system) return system;
-        const model::Friction& friction = system->friction();
-        const char* lacks = !system->has_spring() ? "need a spring, and this system has k = 0"
-                            : system->walls()     ? "do not include walls; simulate this system"
-                            : !system->spring().none()
-                                ? "include only the spring k theta, and this system has a second spring; simulate it"
-                            : !friction.none() && friction.as<model::laws::Coulomb>() == nullptr
-                                ? "include only Coulomb friction with one Rd and one Re; simulate this system"
-                                : nullptr;
-        if (lacks != nullptr) options_.fail("system", fmt::format("the closed forms {}", lacks));
-        return system;
     }
 
     /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] if NAME is a number).
@@ -372,19 +319,16 @@ namespace options = theory_options;
 class Starts {
 public:
     explicit Starts(TheoryArguments& arguments)
-        : system_(*arguments.system()),
+        : system_(asked_system(arguments.options())),
           theta0_(arguments.quantity("theta0")),
           velocity0_(arguments.quantity("velocity0")) {}
     FreeMotion operator[](std::size_t i) const { return {system_, {theta0_[i], velocity0_[i]}}; }
+    [[nodiscard]] bool slow_down_by_friction() const { return !system_.friction().none(); }
 
 private:
     model::Oscillator system_;
     Quantity theta0_, velocity0_;
 };
-
-std::array<double, 2> both(const model::State& state) {
-    return {state.theta, state.velocity};
-}
 
 /// The number of extremes that extremes{...} returns.
 double asked_count(const lua::Options& options, std::optional<double> count, const FreeMotion& motion) {
@@ -401,32 +345,21 @@ double asked_count(const lua::Options& options, std::optional<double> count, con
 
 int free_response(lua_State* L) {
     TheoryArguments arguments(L, options::free_response);
-    const lua::Options& given = arguments.options();
     const Quantity t = arguments.quantity("t");
-    if (const auto system = arguments.system()) {
-        const Starts starts(arguments);
-        if (given.has("omega0") || given.has("zeta")) {
-            given.fail("system", "system excludes omega0 and zeta, which it defines");
-        }
-        return arguments.push_results([&](std::size_t i) {
-            if (t[i] < 0 && !system->friction().none()) {
-                arguments.refuse("t", i, t[i],
-                                 "must not be negative: with dry friction the past of a motion is not determined");
-            }
-            return both(starts[i].at(t[i]));
-        });
-    }
-    if (!given.has("omega0")) given.missing("system, or omega0 and zeta");
-    const Quantity omega0 = arguments.quantity("omega0"), zeta = arguments.quantity("zeta"),
-                   theta0 = arguments.quantity("theta0"), velocity0 = arguments.quantity("velocity0");
+    const Starts starts(arguments);
     return arguments.push_results([&](std::size_t i) {
-        return both(theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]));
+        if (t[i] < 0 && starts.slow_down_by_friction()) {
+            arguments.refuse("t", i, t[i],
+                             "must not be negative: with dry friction the past of a motion is not determined");
+        }
+        const model::State state = starts[i].at(t[i]);
+        return std::array{state.theta, state.velocity};
     });
 }
 
 int extremes(lua_State* L) {
     const lua::Options table(L, 1, options::extremes);
-    const model::Oscillator system = *asked_system(table);
+    const model::Oscillator system = asked_system(table);
     options::ExtremesOptions asked;
     table.fill(asked);
     const FreeMotion motion(system, {asked.theta0, asked.velocity0});
@@ -452,37 +385,6 @@ int rest_position(lua_State* L) {
     TheoryArguments arguments(L, options::rest_position);
     const Starts starts(arguments);
     return arguments.push_result([&](std::size_t i) { return starts[i].rest_position().value_or(no_value); });
-}
-
-int half_cycle(lua_State* L) {
-    TheoryArguments arguments(L, options::half_cycle);
-    const auto system = arguments.system();
-    for (const char* name : {"zeta", "x_f", "dead_zone"}) {
-        if (system && arguments.options().has(name)) {
-            arguments.options().fail(name, fmt::format("system excludes {}, which it defines", name));
-        }
-    }
-    if (system && !system->damped_frequency()) {
-        arguments.options().fail("system",
-                                 fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
-                                             system->damping_ratio()));
-    }
-    const Quantity X = arguments.quantity("X");
-    const Quantity n = arguments.quantity("n");
-    const auto quantity = [&](const char* name, auto of_system) {
-        return system ? Quantity(of_system(*system)) : arguments.quantity(name);
-    };
-    const Quantity zeta = quantity("zeta", [](const model::Oscillator& sys) { return sys.damping_ratio(); });
-    const Quantity x_f =
-        quantity("x_f", [](const model::Oscillator& sys) { return sys.kinetic_friction() / sys.stiffness(); });
-    const Quantity dead_zone = quantity("dead_zone", [](const model::Oscillator& sys) { return sys.dead_zone(); });
-    return arguments.push_result([&](std::size_t i) {
-        if (dead_zone[i] < x_f[i]) {
-            arguments.refuse("dead_zone", i, dead_zone[i], fmt::format("must be at least x_f = {}", x_f[i]));
-        }
-        const HalfCycles map(zeta[i], x_f[i]);
-        return map.after(std::min(n[i], map.until_within(dead_zone[i], X[i])), X[i]);
-    });
 }
 
 std::array<double, 2> identify(double X0, double X1, double X2) {
@@ -517,7 +419,7 @@ double stop_boundary(double r, double zeta, double factor) {
 
 int step_limit(lua_State* L) {
     TheoryArguments arguments(L, options::step_limit);
-    const model::Oscillator system = *arguments.system();
+    const model::Oscillator system = asked_system(arguments.options());
     options::StepRule asked;
     arguments.options().fill(asked);
     const Quantity theta0 = arguments.quantity("theta0");
@@ -557,8 +459,7 @@ constexpr lua::Member theory_module_members[] = {
     row<o::free_response, f::free_response>(
         "theory.free_response{ OPTIONS } -> theta, velocity",
         "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact at any "
-        "damping, and with the dry friction of the system. Instead of system, omega0 (rad per time unit) and zeta = "
-        "0 give a motion without dry friction.",
+        "damping, and with the dry friction of the system.",
         "sys = nondimensional{ friction_ratio = 0.167 }\n"
         "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
         "--> 0.155151392 0.0"),
@@ -580,25 +481,10 @@ constexpr lua::Member theory_module_members[] = {
         "swings for ever.",
         "sys = nondimensional{ friction_ratio = 0.1 }\n"
         "print(theory.rest_position{ system = sys, theta0 = { 0.05, 0.15, 1.05 } })  --> vector{ 0.05, 0.05, -0.05 }"),
-    row<o::half_cycle, f::half_cycle>(
-        "theory.half_cycle{ OPTIONS } -> number or vector",
-        "The extreme of a free motion that is n half cycles after the extreme X (rad, with its "
-        "sign): X' = s x_f - (X - s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. "
-        "Within dead_zone = Re/k the mass stays. Instead of zeta, x_f and dead_zone a system can "
-        "be given. zeta < 1.",
-        "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2"),
     formula<o::logarithmic_decrement, theory::logarithmic_decrement>(
         "theory.logarithmic_decrement{ OPTIONS } -> number or vector",
         "ln(X0/X2) of extremes a full cycle apart, by viscous damping alone: 2 pi zeta/sqrt(1 - zeta^2), zeta < 1.",
         "print(string.format(\"%.6f\", theory.logarithmic_decrement{ zeta = 0.119 }))  --> 0.753050"),
-    formula<o::zeta_from_decrement, theory::zeta_of_decrement>(
-        "theory.zeta_from_decrement{ OPTIONS } -> number or vector",
-        "The viscous damping ratio that has this logarithmic decrement.",
-        "print(string.format(\"%.3f\", theory.zeta_from_decrement{ decrement = 0.753050 }))  --> 0.119"),
-    formula<o::friction_decrement, theory::friction_decrement>(
-        "theory.friction_decrement{ OPTIONS } -> number or vector",
-        "The loss of amplitude in each full cycle by dry friction alone: 4 Rd/k, rad.",
-        "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2"),
     formula<o::identify, f::identify>(
         "theory.identify{ OPTIONS } -> zeta, x_f",
         "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q "
@@ -616,19 +502,10 @@ constexpr lua::Member theory_module_members[] = {
         "theory.phase_lag{ OPTIONS } -> number or vector",
         "The lag of that motion behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
         "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }"),
-    formula<o::transmissibility, theory::transmissibility>(
-        "theory.transmissibility{ OPTIONS } -> number or vector",
-        "The torque on the support relative to that of the load, and also the motion of the mass relative to that of "
-        "its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
-        "print(string.format(\"%.12f\", theory.transmissibility{ r = math.sqrt(2), zeta = 0.3 }))  --> 1.000000000000"),
-    formula<o::equivalent_damping, theory::equivalent_damping>(
-        "theory.equivalent_damping{ OPTIONS } -> number or vector",
-        "The viscous damping constant C that dissipates as much energy in a cycle of this amplitude (rad) as the dry "
-        "friction Rd: 4 Rd/(pi omega amplitude).",
-        "print(string.format(\"%.6f\", theory.equivalent_damping{ Rd = 1, omega = 2, amplitude = 0.5 }))  --> 1.273240"),
     formula<o::equivalent_zeta, theory::equivalent_damping_ratio>(
         "theory.equivalent_zeta{ OPTIONS } -> number or vector",
-        "The same as a damping ratio: 2 gamma/(pi r Phi), with gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
+        "The viscous damping ratio that dissipates as much energy in a cycle as dry friction: 2 gamma/(pi r Phi), with "
+        "gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
         "phi = theory.linearised{ r = 1.35, friction_ratio = 0.5 }\n"
         "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
         "--> 0.2515"),
@@ -638,15 +515,6 @@ constexpr lua::Member theory_module_members[] = {
         "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "
         "is exact. nil, or nan in a vector, from gamma = pi/4 on.",
         "print(string.format(\"%.4f %.4f\", theory.linearised{ r = 1.35, friction_ratio = 0.5 }))  --> 0.9376 2.4515"),
-    formula<o::friction_work, theory::friction_work>(
-        "theory.friction_work{ OPTIONS } -> number or vector",
-        "The energy dissipated by dry friction in a cycle of this amplitude (rad): 4 Rd amplitude.",
-        "print(theory.friction_work{ Rd = 2, amplitude = { 0.5, 1 } })  --> vector{ 4, 8 }"),
-    formula<o::growth_at_resonance, theory::growth_at_resonance>(
-        "theory.growth_at_resonance{ OPTIONS } -> number or vector",
-        "The growth of the amplitude in each period at r = 1 without viscous damping, in M0/k: pi "
-        "- 4 gamma, gamma = Rd/M0; 0 from gamma = pi/4 on.",
-        "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593"),
     row<o::den_hartog,
         f::sliding_motion<o::den_hartog, &theory::SlidingMotion::amplitude, &theory::SlidingMotion::lag>>(
         "theory.den_hartog{ OPTIONS } -> amplitude, lag",

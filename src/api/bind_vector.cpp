@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/accurate_sum.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "errors/source_text.hpp"
@@ -230,22 +231,8 @@ int holds(lua_State* L) {
 
 // ---- sums and extremes
 
-/// Neumaier's sum: collects the rounding errors and adds them at the end.
-class Sum {
-public:
-    void add(double x) {
-        const double next = sum_ + x;
-        lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - next) + x : (x - next) + sum_;
-        sum_ = next;
-    }
-    [[nodiscard]] double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
-
-private:
-    double sum_ = 0, lost_ = 0;
-};
-
 double sum_of(Values v) {
-    Sum sum;
+    analysis::AccurateSum sum;
     for (const double x : v) sum.add(x);
     return sum.value();
 }
@@ -286,7 +273,7 @@ double deviation(Values v) {
 }
 
 void cumulate(Values v, std::vector<double>& sums) {
-    Sum sum;
+    analysis::AccurateSum sum;
     for (std::size_t i = 0; i < v.size(); ++i) {
         sum.add(v[i]);
         sums[i] = sum.value();
@@ -415,7 +402,7 @@ int pick(lua_State* L) {
 
 Expected<double> dot(const Vector& v, const Vector& w) {
     if (v.size() != w.size()) return unequal_sizes(v.size(), w.size());
-    Sum sum;
+    analysis::AccurateSum sum;
     for (std::size_t i = 0; i < v.size(); ++i) sum.add(v.begin()[i] * w.begin()[i]);
     return sum.value();
 }

@@ -19,6 +19,7 @@
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
+#include "model/joint_options.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/freewheel.hpp"
 #include "model/laws/sum.hpp"
@@ -518,70 +519,38 @@ void push_acting(lua_State* L, const model::Excitation& value) {
     }
 }
 
+/// Receives options, and sets them in the table on the top.
+struct OptionTable {
+    lua_State* L;
+
+    void body(const std::string& name) {
+        lua::push_text(L, name);
+        lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
+    }
+    void unless_0(const char* name, double x) { (*this)(name, x); }
+    template <class Value>
+    void operator()(const char* name, const Value& value) {
+        lua::set_value(L, name, value);
+    }
+    void operator()(const char* name, const model::Walls& walls) { (*this)(name, walls_by_name(walls)); }
+    void operator()(const char* name, const model::Excitation& value) {
+        push_acting(L, value);
+        lua_setfield(L, -2, name);
+    }
+    void operator()(const char* name, const model::UserFunction& function) {
+        const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+        if (own == nullptr) return;
+        own->push(L);
+        lua_setfield(L, -2, name);
+    }
+};
+
 }  // namespace
 
 void push_joint(lua_State* L, const model::System& system, std::size_t j) {
-    const model::Joint& joint = system.joints[j];
-    const model::ContactFriction& friction = joint.friction;
     lua_newtable(L);
-    if (system.is_link(j)) {
-        const bool two = joint.of.size() == 2 && joint.of[0].by == 1;
-        for (std::size_t k = 0; k < joint.of.size(); ++k) {
-            const std::string& body = system.bodies[joint.of[k].body].name;
-            if (two) {
-                lua::push_text(L, body);
-                lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
-            } else {
-                lua::set_number(L, body.c_str(), joint.of[k].by);
-            }
-        }
-        if (two && !joint.is_difference()) lua::set_number(L, "ratio", -joint.of[1].by);
-        if (joint.rigid) {
-            lua_pushboolean(L, 1);
-            lua_setfield(L, -2, "rigid");
-            return;
-        }
-    } else {
-        const auto& moved = system.bodies[j].moved;
-        if (!moved || !moved->without_inertia) lua::set_number(L, "I", system.bodies[j].inertia);
-        if (moved) {
-            push_acting(L, moved->motion);
-            lua_setfield(L, -2, moved->by_angle ? "theta" : "velocity");
-        }
-    }
-    lua::set_number(L, "k", joint.stiffness);
-    lua::set_number(L, "C", joint.damping);
-    const auto acting = [&](const char* name, const std::optional<model::Excitation>& value) {
-        if (!value) return;
-        push_acting(L, *value);
-        lua_setfield(L, -2, name);
-    };
-    if (const auto* own = dynamic_cast<const lua::LuaFunction*>(friction.function.get())) {
-        own->push(L);
-        lua_setfield(L, -2, "friction");
-    }
-    const model::Friction law = friction.law.under(1);
-    if (!friction.listed.empty()) {
-        lua_newtable(L);
-        for (std::size_t k = 0; k < friction.listed.size(); ++k) {
-            lua::push(L, friction.listed[k]);
-            lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
-        }
-        lua_setfield(L, -2, "friction");
-    } else if (!friction.sliders.empty()) {
-        lua::set_value(L, "friction", model::Friction(friction.sliders.front()));
-    } else if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
-        lua::set_number(L, "Rd", coulomb->kinetic);
-        lua::set_number(L, "Re", coulomb->breakaway);
-    } else if (!law.none()) {
-        lua::set_value(L, "friction", law);
-    }
-    if (friction.law.normal() != 1) lua::set_number(L, "normal", friction.law.normal());
-    acting("Rd", friction.sliding[1]);
-    acting("Re", friction.holding[1]);
-    acting("normal", friction.normal);
-    if (!joint.spring.none()) lua::set_value(L, "spring", joint.spring);
-    lua::set_value(L, "walls", walls_by_name(joint.stops ? joint.stops : joint.walls));
+    OptionTable table{L};
+    model::give_options(system, j, table);
 }
 
 namespace {

@@ -69,10 +69,10 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
     const model::Oscillator& system = sweep.system;
     const double Rd = system.friction().sliding(model::Motion::forward, 0);
     const double Re = system.friction().holding(model::Motion::forward);
-    struct Point {
+    struct CurvePoint {
         double x, amplitude, lag;
     };
-    std::vector<Point> points;
+    std::vector<CurvePoint> points;
     for (std::size_t i = 0; i < curve_points; ++i) {
         const double x = sweep.low + (sweep.high - sweep.low) * static_cast<double>(i) / (curve_points - 1);
         const double M0 = std::fabs(sweep.frequency ? x : sweep.amplitude);
@@ -81,9 +81,9 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
         points.push_back(
             {x, motion ? motion->amplitude * M0 / system.stiffness() : no_number, motion ? motion->lag : no_number});
     }
-    return table_of(points, ListColumn{sweep.column.name, &Point::x, sweep.column.unit},
-                    ListColumn{"amplitude", &Point::amplitude, sweep.column.theta},
-                    ListColumn{"lag", &Point::lag, "rad"});
+    return table_of(points, ListColumn{sweep.column.name, &CurvePoint::x, sweep.column.unit},
+                    ListColumn{"amplitude", &CurvePoint::amplitude, sweep.column.theta},
+                    ListColumn{"lag", &CurvePoint::lag, "rad"});
 }
 
 struct LocatedPoint {
@@ -183,18 +183,18 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
         std::stable_sort(located.begin(), located.end(),
                          [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
     }
-    using Point = LocatedPoint;
     const VariedColumn& column = over.back();
     Data points = table_of(
-        located, ListColumn{column.name, [](const Point& p) { return p.at.parameter; }, column.unit},
-        ListColumn{"kind", [](const Point& p) { return analysis::name(p.at.kind); }},
-        ListColumn{"amplitude", [](const Point& p) { return p.at.motion.amplitude; }, column.theta},
-        ListColumn{"period", [](const Point& p) { return p.at.motion.period > 0 ? p.at.motion.period : no_number; }},
-        ListColumn{"branch", &Point::branch});
+        located, ListColumn{column.name, [](const LocatedPoint& p) { return p.at.parameter; }, column.unit},
+        ListColumn{"kind", [](const LocatedPoint& p) { return analysis::name(p.at.kind); }},
+        ListColumn{"amplitude", [](const LocatedPoint& p) { return p.at.motion.amplitude; }, column.theta},
+        ListColumn{"period",
+                   [](const LocatedPoint& p) { return p.at.motion.period > 0 ? p.at.motion.period : no_number; }},
+        ListColumn{"branch", &LocatedPoint::branch});
     if (!is_plane) return {"points", [points] { return Data(points); }};
-    const ListColumn beside{over.front().name, &Point::beside, over.front().unit};
+    const ListColumn beside{over.front().name, &LocatedPoint::beside, over.front().unit};
     points.columns.insert(points.columns.begin(), beside.column_from(located));
-    points.columns.push_back(ListColumn{"curve", &Point::curve}.column_from(located));
+    points.columns.push_back(ListColumn{"curve", &LocatedPoint::curve}.column_from(located));
     points.pieces_of = "curve";
     const auto drawn = [over, located] {
         std::vector<double> x, y;

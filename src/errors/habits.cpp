@@ -20,103 +20,88 @@ namespace dinal::errors {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 52> foreign_names = {{
-    {"echo", "; did you mean 'print'?"},
-    {"disp", "; did you mean 'print'?"},
-    {"display", "; did you mean 'print'?"},
-    {"puts", "; did you mean 'print'?"},
-    {"println", "; did you mean 'print'?"},
-    {"True", "; did you mean 'true'?"},
-    {"False", "; did you mean 'false'?"},
-    {"None", "; did you mean 'nil'?"},
-    {"null", "; did you mean 'nil'?"},
-    {"NULL", "; did you mean 'nil'?"},
-    {"t", "; a value that depends on t is a function: function(t) return 2*t end"},
-    {"range", "; a loop is: for i = 1, 10 do ... end"},
-    {"len", "; the length of x is #x"},
-    {"length", "; the length of x is #x"},
-    {"str", "; did you mean 'tostring'?"},
-    {"int", "; did you mean 'math.floor'?"},
-    {"float", "; did you mean 'tonumber'?"},
-    {"ln", "; did you mean 'math.log'?"},
-    {"log10", "; did you mean 'math.log(x, 10)'?"},
-    {"log2", "; did you mean 'math.log(x, 2)'?"},
-    {"printf", "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
-    {"sprintf", "; did you mean 'string.format'?"},
-    {"round", "; rounding is math.floor(x + 0.5), or string.format(\"%.3f\", x)"},
-    {"abs", "; did you mean 'math.abs', or of a vector v:abs()?"},
-    {"append", "; appending is list[#list + 1] = x"},
-    {"enumerate", "; a loop over a list is: for i, x in ipairs(list) do ... end"},
-    {"np", "; vectors are made by vector.linspace, vector{ ... }; see ?vector"},
-    {"input", "; input is read by io.read()"},
-    {"exit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
-    {"quit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
-    {"bye", "; os.exit() ends a script, :quit or Ctrl-D a session"},
-    {"fprintf", "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
-    {"zeros", "; n zeros are vector.linspace(0, 0, n)"},
-    {"ones", "; n ones are vector.linspace(1, 1, n)"},
-    {"size", "; the length of x is #x"},
-    {"numel", "; the length of x is #x"},
-    {"lsim", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
-    {"ode45", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
-    {"solve_ivp", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
-    {"odeint", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
-    {"fft", "; a spectrum is run:spectrum()"},
-    {"bode", "; a response curve is sys:response{ over = { frequency = vector.linspace(0.1, 2, 200) } }"},
-    {"title", "; a title is an option: plot{ { x, y }, title = \"...\" }"},
-    {"xlabel", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
-    {"ylabel", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
-    {"legend", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
-    {"plt", "; a plot is plot(x, y), or run:plot()"},
-    {"pd", "; a CSV file is read by load(\"file.csv\")"},
-    {"tic", "; :time code prints the time that code takes"},
-    {"toc", "; :time code prints the time that code takes"},
-    {"dir", "; Tab after a name and a point lists its fields, help(name) explains them, :who lists variables"},
-    {"save", "; a run is saved by run:save(\"run.csv\")"},
-}};
-
-/// Tokens with a meaning in other languages. Each word of a pattern is a token; n stands for any name, # for any
-/// number, 1 for either, w for any word, s for a string, ^ for the beginning. In the cure {n} etc. stand for the
-/// matched text.
-struct ForeignTokens {
-    std::string_view pattern;
-    Seen seen;
-    std::string_view cure;
-};
 constexpr std::string_view loop_cure = "; a loop is: for i = 1, 10 do ... end";
-constexpr std::string_view function_cure = "; a function is written: function f(x) return 2*x end";
-constexpr std::string_view no_word_cure = "; a variable needs no word before it: x = 1";
-constexpr std::string_view module_cure = "; math and all of dinal are there already, other modules come with require";
 constexpr std::string_view print_cure = "; a value is shown by print(x)";
 constexpr std::string_view question_cure = "; write the name of a question in quotes: check(\"{#}\", 3.2)";
-constexpr std::string_view elseif_cure = "; did you mean 'elseif'?";
-constexpr std::string_view equals_cure = "; comparing is ==";
-constexpr std::string_view named_cure = "; a named value is written with =, I = 1";
-constexpr std::string_view operator_cure = "; is an operator missing there, such as *?";
 constexpr std::string_view slice_cure =
     "; a part of a vector is v:slice(first, last), of a list table.unpack(list, first, last)";
 constexpr std::string_view lambda_cure = "; a function is written: function(x) return 2*x end";
 constexpr std::string_view format_cure = "; values go into a text by string.format(\"x = %.3f\", x)";
-constexpr std::string_view append_cure = "; appending is list[#list + 1] = x; vectors are joined by v .. w";
 constexpr std::string_view last_cure = "; the last element of v is v[#v]";
-constexpr std::string_view elements_cure = "; * / and ^ act on each element of a vector";
-constexpr std::string_view conditions_cure =
-    "; in Lua and, or and not are words; several conditions are v[v:find(function(x) return x > 0 and x < 1 end)]";
-constexpr ForeignTokens foreign[] = {
+constexpr std::string_view folder_cure = "; :cd folder changes the current folder";
+constexpr std::string_view files_cure = "; :ls lists the files of the current folder";
+
+/// Words and signs of other languages. Each word of a pattern is a token, or several to choose from: def|fn. n stands
+/// for any name, # for any number, 1 for either, w for any word, s for a string, ^ for the beginning. In the cure {n}
+/// etc. stand for the matched text.
+struct Habit {
+    std::string_view pattern;
+    Seen seen;
+    std::string_view cure;
+};
+constexpr Habit habits[] = {
+    {"echo|disp|display|puts|println", Seen::unknown, "; did you mean 'print'?"},
+    {"True", Seen::unknown, "; did you mean 'true'?"},
+    {"False", Seen::unknown, "; did you mean 'false'?"},
+    {"None|null|NULL", Seen::unknown, "; did you mean 'nil'?"},
+    {"t", Seen::unknown, "; a value that depends on t is a function: function(t) return 2*t end"},
+    {"range", Seen::unknown, "; a loop is: for i = 1, 10 do ... end"},
+    {"len|length|size|numel", Seen::unknown, "; the length of x is #x"},
+    {"str", Seen::unknown, "; did you mean 'tostring'?"},
+    {"int", Seen::unknown, "; did you mean 'math.floor'?"},
+    {"float", Seen::unknown, "; did you mean 'tonumber'?"},
+    {"ln", Seen::unknown, "; did you mean 'math.log'?"},
+    {"log10", Seen::unknown, "; did you mean 'math.log(x, 10)'?"},
+    {"log2", Seen::unknown, "; did you mean 'math.log(x, 2)'?"},
+    {"printf|fprintf", Seen::unknown, "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
+    {"sprintf", Seen::unknown, "; did you mean 'string.format'?"},
+    {"round", Seen::unknown, "; rounding is math.floor(x + 0.5), or string.format(\"%.3f\", x)"},
+    {"abs", Seen::unknown, "; did you mean 'math.abs', or of a vector v:abs()?"},
+    {"append", Seen::unknown, "; appending is list[#list + 1] = x"},
+    {"enumerate", Seen::unknown, "; a loop over a list is: for i, x in ipairs(list) do ... end"},
+    {"np", Seen::unknown, "; vectors are made by vector.linspace, vector{ ... }; see ?vector"},
+    {"input", Seen::unknown, "; input is read by io.read()"},
+    {"ayuda", Seen::unknown, "; help() starts a tour, ?name explains a name"},
+    {"exit|quit|bye|salir", Seen::unknown, "; os.exit() ends a script, :quit or Ctrl-D a session"},
+    {"zeros", Seen::unknown, "; n zeros are vector.linspace(0, 0, n)"},
+    {"ones", Seen::unknown, "; n ones are vector.linspace(1, 1, n)"},
+    {"lsim|ode45|solve_ivp|odeint", Seen::unknown, "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
+    {"fft", Seen::unknown, "; a spectrum is run:spectrum()"},
+    {"bode", Seen::unknown,
+     "; a response curve is sys:response{ over = { frequency = vector.linspace(0.1, 2, 200) } }"},
+    {"title", Seen::unknown, "; a title is an option: plot{ { x, y }, title = \"...\" }"},
+    {"xlabel|ylabel|legend", Seen::unknown,
+     "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
+    {"plt", Seen::unknown, "; a plot is plot(x, y), or run:plot()"},
+    {"pd", Seen::unknown, "; a CSV file is read by load(\"file.csv\")"},
+    {"tic|toc", Seen::unknown, "; :time code prints the time that code takes"},
+    {"dir", Seen::unknown,
+     "; Tab after a name and a point lists its fields, help(name) explains them, :who lists variables"},
+    {"save", Seen::unknown, "; a run is saved by run:save(\"run.csv\")"},
+    {"exit|quit|q|bye|logout|ende|beenden|salir|quitter|esci", Seen::typed, "; :quit or Ctrl-D leaves"},
+    {"clear|cls|clc", Seen::typed, "; Ctrl-L clears the screen, :reset forgets your variables"},
+    {"who|whos|dir", Seen::typed,
+     "; :who lists your variables; Tab after a name and a point lists its fields, help(name) explains them"},
+    {"_", Seen::typed, "; ans holds the last value that was computed"},
+    {"ls", Seen::typed, "; :ls lists the files of the current folder"},
+    {"cd|pwd", Seen::typed, "; :cd folder changes the current folder, :pwd shows it"},
+    {"man", Seen::typed, "; help \"name\" explains a name"},
+    {"history", Seen::typed,
+     "; the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them to a script"},
+    {"save", Seen::typed, "; :save lab.lua writes your inputs to a script, run:save(\"run.csv\") writes a run"},
+    {"reset", Seen::typed, "; :reset forgets your variables"},
+    {"hilfe|ayuda|aide|aiuto|hallo|hello|hola", Seen::typed, "; help() starts a tour, and ?name explains a name"},
     {"1 : 1 : 1", Seen::first, "; evenly spaced values are vector.range(0, 1, 0.1) or vector.linspace(0, 1, 11)"},
     {"^ % %", Seen::first, "; dinal has no magic commands; :time code prints the time that code takes"},
     {"^ % matplotlib", Seen::first, "; dinal has no magic commands: run:plot() shows its picture in the page"},
     {"load n .", Seen::first, "; write the name of a file in quotes: load \"file.csv\""},
     {"[ end ]", Seen::first, last_cure},
     {"( end )", Seen::first, last_cure},
-    {". *", Seen::first, elements_cure},
-    {". /", Seen::first, elements_cure},
-    {". ^", Seen::first, elements_cure},
+    {". *|/|^", Seen::first, "; * / and ^ act on each element of a vector"},
     {"[ 1 :", Seen::first, slice_cure},
-    {"[ : ", Seen::first, slice_cure},
+    {"[ :", Seen::first, slice_cure},
     {"[ - 1 :", Seen::first, slice_cure},
-    {"lambda n", Seen::first, lambda_cure},
-    {"lambda :", Seen::first, lambda_cure},
+    {"lambda n|:", Seen::first, lambda_cure},
     {"n =>", Seen::first, lambda_cure},
     {"< >", Seen::first, "; in Lua 'not equal' is ~="},
     {"1 for n in", Seen::first,
@@ -124,66 +109,59 @@ constexpr ForeignTokens foreign[] = {
     {"^ hash n", Seen::running, "; a comment begins with --"},
     {"s %", Seen::running, format_cure},
     {"f s", Seen::running, format_cure},
-    {". append", Seen::running, append_cure},
-    {": append", Seen::running, append_cure},
+    {".|: append", Seen::running, "; appending is list[#list + 1] = x; vectors are joined by v .. w"},
     {". shape", Seen::running, "; the length of a vector, list or run is #v"},
     {"* *", Seen::first, "; a power is x^2"},
     {"^ >", Seen::first, "; leave out the prompt > that stands in front"},
     {"^ >>", Seen::first, "; leave out the prompt >> that stands in front"},
     {"check ( #", Seen::first, question_cure},
     {"check #", Seen::first, question_cure},
-    {"def 1", Seen::first, function_cure},
-    {"func 1", Seen::first, function_cure},
-    {"fn 1", Seen::first, function_cure},
-    {"var 1", Seen::first, no_word_cure},
-    {"let 1", Seen::first, no_word_cure},
-    {"const 1", Seen::first, no_word_cure},
-    {"int 1", Seen::first, no_word_cure},
-    {"float 1", Seen::first, no_word_cure},
-    {"double 1", Seen::first, no_word_cure},
-    {"global 1", Seen::first, no_word_cure},
-    {"import 1", Seen::first, module_cure},
-    {"from 1", Seen::first, module_cure},
-    {"using 1", Seen::first, module_cure},
-    {"include 1", Seen::first, module_cure},
-    {"elif w", Seen::first, elseif_cure},
-    {"elsif w", Seen::first, elseif_cure},
+    {"def|func|fn 1", Seen::first, "; a function is written: function f(x) return 2*x end"},
+    {"var|let|const|int|float|double|global 1", Seen::first, "; a variable needs no word before it: x = 1"},
+    {"import|from|using|include 1", Seen::first,
+     "; math and all of dinal are there already, other modules come with require"},
+    {"elif|elsif w", Seen::first, "; did you mean 'elseif'?"},
     {"DO 1", Seen::first, loop_cure},
     {"CALL 1", Seen::first, "; a call needs parentheses and no word before it: f(x)"},
     {"PRINT w", Seen::first, print_cure},
-    {"^ PRINT", Seen::first, print_cure},
-    {"^ WRITE", Seen::first, print_cure},
+    {"^ PRINT|WRITE", Seen::first, print_cure},
+    {"^ cd w", Seen::first, folder_cure},
+    {"^ cd /", Seen::running, folder_cure},
+    {"^ ls w|*", Seen::first, files_cure},
+    {"^ ls -|/", Seen::running, files_cure},
     {"clear w", Seen::first, "; :reset deletes your variables"},
     {"close w", Seen::first, "; nothing needs to be closed: each plot is a picture of its own"},
     {"hold w", Seen::first, "; several curves are one picture: plot{ { x, y }, { x, z } }"},
     {"save w", Seen::first, "; a run is saved by run:save(\"run.csv\"), your inputs by :save lab.lua"},
     {"help w", Seen::first, "; write ?name, or help \"name\""},
     {"n : =", Seen::last, "; assigning is ="},
-    {"n : #", Seen::last, named_cure},
-    {"n : s", Seen::last, named_cure},
+    {"n : #|s", Seen::last, "; a named value is written with =, I = 1"},
     {"for (", Seen::last, loop_cure},
     {"^ n ( n ) =", Seen::last, "; a function is written: {n} = function(t) return ... end"},
-    {"== =", Seen::last, equals_cure},
+    {"== =", Seen::last, "; comparing is =="},
     {"n #", Seen::between, "; is an operator missing there, such as *, or ( ), as in f({#})?"},
-    {"# 1", Seen::between, operator_cure},
+    {"# 1", Seen::between, "; is an operator missing there, such as *?"},
     {") {", Seen::last, "; a block has no braces and ends with end"},
 };
 
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
 bool fits(const lua::Token& token, std::string_view wanted) {
-    const bool name = token.kind == lua::TokenKind::name;
-    if (wanted == "n") return name;
-    if (wanted == "#") return token.kind == lua::TokenKind::number;
-    if (wanted == "1") return name || token.kind == lua::TokenKind::number;
-    if (wanted == "w") return token.kind != lua::TokenKind::symbol;
-    if (wanted == "hash") return token.is("#");
-    if (wanted == "s") return token.kind == lua::TokenKind::string;
-    return token.is(wanted);
+    if (const std::size_t end = wanted.find('|'); end != std::string_view::npos) {
+        return fits(token, wanted.substr(0, end)) || fits(token, wanted.substr(end + 1));
+    }
+    const bool name = token.kind == lua::TokenKind::name, number = token.kind == lua::TokenKind::number;
+    return wanted == "n"      ? name
+           : wanted == "#"    ? number
+           : wanted == "1"    ? name || number
+           : wanted == "w"    ? token.kind != lua::TokenKind::symbol
+           : wanted == "hash" ? token.is("#")
+           : wanted == "s"    ? token.kind == lua::TokenKind::string
+                              : token.is(wanted);
 }
 
 /// The cure if the pattern matches at this place.
-std::string cure_at(const std::vector<lua::Token>& all, std::size_t place, const ForeignTokens& one) {
+std::string cure_at(const std::vector<lua::Token>& all, std::size_t place, const Habit& one) {
     std::string_view pattern = one.pattern;
     if (pattern.starts_with("^ ")) {
         if (place > 0) return "";
@@ -298,7 +276,7 @@ bool is_number(std::string_view text) {
 
 std::string foreign_tokens(std::string_view statement, Seen seen) {
     const std::vector<lua::Token> all = lua::tokens(statement);
-    for (const ForeignTokens& one : foreign) {
+    for (const Habit& one : habits) {
         for (std::size_t i = 0; one.seen == seen && i < all.size(); ++i) {
             if (std::string cure = cure_at(all, i, one); !cure.empty()) return cure;
         }
@@ -328,7 +306,7 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
         return cure;
     }
     if (message.words.starts_with("attempt to perform bitwise operation")) {
-        return std::string(conditions_cure);
+        return "; in Lua and, or and not are words; several conditions are v[v:find(function(x) return x > 0 and x < 1 end)]";
     }
     if (message.calculates && message.type == "row") {
         return "; a row has several values, of which one is meant, as in run.events[1].theta";
@@ -347,12 +325,6 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
         return uncalled_function(L, message, statement);
     }
     return file_without_quotes(message.name, statement);
-}
-
-std::string foreign_name(std::string_view name) {
-    const auto* const found =
-        std::find_if(foreign_names.begin(), foreign_names.end(), [name](const auto& n) { return n.first == name; });
-    return found == foreign_names.end() ? "" : std::string(found->second);
 }
 
 // Habits from other languages that do not compile. A rule compares the message, the rejected token and the one before

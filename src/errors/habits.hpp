@@ -14,18 +14,16 @@ namespace dinal::errors {
 /// error.
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
-/// The occasion to look for tokens of other languages: in a chunk that does not compile, first, last if nothing else
-/// explains it, or where an expression continues; or in a running chunk.
-enum class Seen { first, last, between, running };
+/// The occasion to look for words and signs of other languages: in a chunk that does not compile, first, last if
+/// nothing else explains it, or where an expression continues; in a running chunk; an unknown name, or one typed at the
+/// prompt.
+enum class Seen { first, last, between, running, unknown, typed };
 
-/// The same for these tokens of other languages, whatever the message: v[1:3], f"{x}", lambda x.
+/// The same for these words and signs, whatever the message: v[1:3], f"{x}", lambda x, disp.
 std::string foreign_tokens(std::string_view statement, Seen seen);
 
 /// The same for a run-time error.
 std::string running_habit(const text::Error& error, std::string_view statement);
 std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
-
-/// The replacement of a global name from other languages, "; did you mean 'print'?", or "".
-std::string foreign_name(std::string_view name);
 
 }  // namespace dinal::errors

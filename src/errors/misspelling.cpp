@@ -60,6 +60,16 @@ void each_variable(lua_State* L, lua_Debug* frame, Visit visit) {
     lua_pop(L, 1);
 }
 
+bool is_object_of_ours(lua_State* L, int index) {
+    return lua_isuserdata(L, index) != 0 && lua::documented(L, index).owner != nullptr;
+}
+
+/// A Lua function for a field of an object of ours, so that no user code runs.
+int field(lua_State* L) {
+    lua_gettable(L, 1);
+    return 1;
+}
+
 std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
     std::vector<std::string> names;
     each_variable(L, frame, [&names](std::string_view name) {
@@ -70,26 +80,31 @@ std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
     return names;
 }
 
+/// The beginning of x.y.z, whose last name is the token `last`.
+std::size_t path_begin(const std::vector<lua::Token>& all, std::size_t last) {
+    while (last >= 2 && all[last - 1].is(".") && all[last - 2].kind == lua::TokenKind::name) last -= 2;
+    return last;
+}
+
+/// Pushes the value of x.y.z, whose last name is the token `last`; runs no user code.
+void push_path(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& all, std::size_t last) {
+    const std::size_t first = path_begin(all, last);
+    push_variable(L, frame, all[first].text);
+    for (std::size_t k = first + 2; k <= last; k += 2) {
+        lua_pushlstring(L, all[k].text.data(), all[k].text.size());
+        go_to_field(L);
+    }
+}
+
 /// For "x.y.name" or "x.y:name" in the statement: the names of x.y.
 std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
-        if (!all[i].is(name) || !(all[i - 1].is(".") || all[i - 1].is(":")) ||
-            all[i - 2].kind != lua::TokenKind::name) {
-            continue;
-        }
-        std::size_t first = i - 2;
-        while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == lua::TokenKind::name) {
-            first -= 2;
-        }
-        const int top = lua_gettop(L);
-        push_variable(L, frame, all[first].text);
-        for (std::size_t k = first + 2; k < i && lua_istable(L, -1); k += 2) {
-            lua_pushlstring(L, all[k].text.data(), all[k].text.size());
-            lua_rawget(L, -2);
-        }
+        const bool is_part = all[i].is(name) && (all[i - 1].is(".") || all[i - 1].is(":"));
+        if (!is_part || all[i - 2].kind != lua::TokenKind::name) continue;
+        push_path(L, frame, all, i - 2);
         std::vector<std::string> names = member_names(L);
-        lua_settop(L, top);
+        lua_pop(L, 1);
         return names;
     }
     return {};
@@ -110,24 +125,28 @@ bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     return false;
 }
 
+/// Returns whether the token is a global that is nil and that the statement does not declare.
+bool is_nil_global(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& all, std::size_t i) {
+    const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
+    if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text)) return false;
+    const std::vector<std::string> local = variables(L, frame);
+    if (std::find(local.begin(), local.end(), all[i].text) != local.end()) return false;
+    push_variable(L, nullptr, all[i].text);
+    const bool is_nil = lua_isnil(L, -1);
+    lua_pop(L, 1);
+    return is_nil;
+}
+
 /// A global in the statement that is nil: the value of the missing option, `option = x`; otherwise one with a likely
 /// other spelling, or any if it is known that something is nil.
 Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view option, bool any) {
     const std::vector<lua::Token> all = lua::tokens(statement);
-    const std::vector<std::string> local = variables(L, frame);
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
-        if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text) ||
-            std::find(local.begin(), local.end(), all[i].text) != local.end()) {
-            continue;
-        }
-        push_variable(L, nullptr, all[i].text);
-        const bool is_nil = lua_isnil(L, -1);
-        lua_pop(L, 1);
-        const std::string hint = is_nil ? similar_global(L, all[i].text) : "";
+        if (!is_nil_global(L, frame, all, i)) continue;
+        const std::string hint = similar_global(L, all[i].text);
         const bool its_value = i > 1 && all[i - 1].is("=") && all[i - 2].is(option);
-        if (is_nil && (option.empty() ? any || !hint.empty() : its_value)) {
-            return {"; '" + std::string(all[i].text) + "' is nil" + hint, std::string(all[i].text)};
+        if (option.empty() ? any || !hint.empty() : its_value) {
+            return {fmt::format("; '{}' is nil{}", all[i].text, hint), std::string(all[i].text)};
         }
     }
     return {};
@@ -140,25 +159,19 @@ enum class Use { any, as_number };
 std::string qualified(lua_State* L, std::string_view name, Use use) {
     constexpr std::array<std::string_view, 8> modules = {"excitation", "integrator", "theory", "vector",
                                                          "math",       "string",     "table",  "os"};
-    std::string found;
-    int count = 0;
+    std::vector<std::string> found;
     const int top = lua_gettop(L);
     for (const std::string_view module : modules) {
         push_variable(L, nullptr, module);
         if (lua_istable(L, -1)) {
             lua_pushlstring(L, name.data(), name.size());
-            if (lua_rawget(L, -2) != LUA_TNIL) {
-                found.append(count == 0 ? "; did you mean '" : " or '")
-                    .append(module)
-                    .append(".")
-                    .append(name)
-                    .append(use == Use::as_number && lua_isfunction(L, -1) ? "(...)'" : "'");
-                ++count;
-            }
+            go_to_field(L);
+            const bool calls = use == Use::as_number && lua_isfunction(L, -1);
+            if (!lua_isnil(L, -1)) found.push_back(fmt::format("{}.{}{}", module, name, calls ? "(...)" : ""));
         }
         lua_settop(L, top);
     }
-    return count == 1 || count == 2 ? found + "?" : "";
+    return text::did_you_mean_one_of(found);
 }
 
 /// Returns whether the value on the top is an object of ours with this field, such as a system or a run.
@@ -179,21 +192,18 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
     while (lua_next(L, -2) != 0) {
         const bool named = lua_type(L, -2) == LUA_TSTRING;
         if (named && has_field(L, name) && std::string_view(lua_tostring(L, -2)) != "ans") {
-            owners.emplace_back(lua_tostring(L, -2));
+            owners.push_back(fmt::format("{}.{}", lua_tostring(L, -2), name));
         }
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
-    if (owners.empty() || owners.size() > 2) return "";
     std::sort(owners.begin(), owners.end());
-    std::string found = "; did you mean '" + owners.front() + "." + std::string(name) + "'";
-    if (owners.size() == 2) found += " or '" + owners.back() + "." + std::string(name) + "'";
-    return found + "?";
+    return text::did_you_mean_one_of(owners);
 }
 
 /// The likely meanings of an undefined global name.
 std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names, Use use = Use::any) {
-    std::string hint = foreign_name(name);
+    std::string hint = foreign_tokens(name, Seen::unknown);
     hint = hint.empty() ? qualified(L, name, use) : hint;
     hint = hint.empty() ? field_of_variable(L, name) : hint;
     return hint.empty() ? text::did_you_mean(name, names, text::Likeness::of_letters) : hint;
@@ -218,6 +228,30 @@ void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
         lua_replace(L, result);
         lua_pop(L, 1);
     }
+}
+
+void go_to_field(lua_State* L) {
+    const int value = lua_gettop(L) - 1, key = value + 1;
+    bool found = false;
+    if (is_object_of_ours(L, value)) {
+        lua_pushcfunction(L, field);
+        lua_pushvalue(L, value);
+        lua_pushvalue(L, key);
+        found = lua_pcall(L, 2, 1, 0) == LUA_OK;
+    } else {
+        lua_pushvalue(L, value);
+        for (int i = 0; i < most_metatables && !found; ++i) {
+            if (lua_istable(L, -1)) {
+                lua_pushvalue(L, key);
+                found = lua_rawget(L, -2) != LUA_TNIL;
+                if (!found) lua_pop(L, 1);
+            }
+            if (!found && !step_to_index_table(L)) break;
+        }
+    }
+    if (!found) lua_pushnil(L);
+    lua_replace(L, value);
+    lua_settop(L, value);
 }
 
 std::vector<std::string> member_names(lua_State* L) {
@@ -257,33 +291,29 @@ std::string similar_global(lua_State* L, std::string_view name) {
 std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
     luaL_checkstack(L, LUA_MINSTACK, "for the values of options");
     const std::vector<lua::Token> all = lua::tokens(text);
-    const std::vector<std::string> local = variables(L, frame);
-    const int top = lua_gettop(L);
     int braces = 0;
     for (std::size_t i = 2; i + 1 < all.size(); ++i) {
         braces += all[i - 2].is("{") ? 1 : all[i - 2].is("}") ? -1 : 0;
-        const std::string_view name = all[i].text;
         const bool field = all[i + 1].is(".") && i + 3 < all.size();
         const lua::Token& behind = all[i + (field ? 3 : 1)];
         if (braces == 0 || !all[i - 1].is("=") || all[i].kind != lua::TokenKind::name ||
             !(behind.is(",") || behind.is("}") || behind.is(";"))) {
             continue;
         }
-        push_variable(L, frame, name);
-        const bool is_nil = lua_isnil(L, -1), is_table = lua_istable(L, -1);
-        const std::vector<std::string> names = field && is_table ? member_names(L) : std::vector<std::string>();
-        lua_settop(L, top);
-        std::string whole_name = "'" + std::string(name), hint;
+        std::string whole_name(all[i].text), hint;
         if (field) {
+            push_variable(L, frame, all[i].text);
+            const std::vector<std::string> names = lua_istable(L, -1) ? member_names(L) : std::vector<std::string>();
+            lua_pop(L, 1);
             whole_name.append(".").append(all[i + 2].text);
             hint = text::did_you_mean(all[i + 2].text, names);
             if (hint.empty() || std::find(names.begin(), names.end(), all[i + 2].text) != names.end()) continue;
+        } else if (is_nil_global(L, frame, all, i)) {
+            hint = similar_global(L, all[i].text);
         } else {
-            hint = similar_global(L, name);
-            if (!is_nil || is_declared(all, name) || std::find(local.begin(), local.end(), name) != local.end())
-                continue;
+            continue;
         }
-        return fmt::format("{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
+        return fmt::format("'{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
     }
     return "";
 }
@@ -326,8 +356,6 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
 
 namespace {
 
-using Tokens = std::vector<lua::Token>;
-
 /// The call name(first, rest) as written.
 struct WrittenCall {
     std::string_view first, rest;
@@ -335,7 +363,7 @@ struct WrittenCall {
 };
 
 std::optional<WrittenCall> call_of(std::string_view statement, std::string_view name) {
-    const Tokens all = lua::tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 0; i + 2 < all.size(); ++i) {
         if (!all[i].is(name) || !all[i + 1].is("(")) continue;
         WrittenCall call;
@@ -388,36 +416,13 @@ int length(lua_State* L) {
     lua_pushinteger(L, luaL_len(L, 1));
     return 1;
 }
-int field(lua_State* L) {
-    lua_gettable(L, 1);
-    return 1;
-}
-
-/// Replaces the value on the top by its field; runs no user code.
-void go_to_field(lua_State* L, std::string_view name) {
-    if (lua_istable(L, -1)) {
-        lua_pushlstring(L, name.data(), name.size());
-        lua_rawget(L, -2);
-        lua_remove(L, -2);
-        return;
-    }
-    const bool ours = lua_isuserdata(L, -1) != 0 && lua::documented(L, -1).owner != nullptr;
-    lua_pushcfunction(L, field);
-    lua_insert(L, -2);
-    lua_pushlstring(L, name.data(), name.size());
-    if (!ours || lua_pcall(L, 2, 1, 0) != LUA_OK) {
-        lua_settop(L, ours ? -2 : -4);
-        lua_pushnil(L);
-    }
-}
 
 /// The length of the list on the top, which is popped; none if it is not a list.
 std::optional<lua_Integer> taken_length(lua_State* L) {
-    const bool ours = lua_isuserdata(L, -1) != 0 && lua::documented(L, -1).owner != nullptr;
     std::optional<lua_Integer> count;
     if (lua_istable(L, -1)) {
         count = static_cast<lua_Integer>(lua_rawlen(L, -1));
-    } else if (ours) {
+    } else if (is_object_of_ours(L, -1)) {
         lua_pushcfunction(L, length);
         lua_pushvalue(L, -2);
         if (lua_pcall(L, 1, 1, 0) == LUA_OK) count = lua_tointeger(L, -1);
@@ -468,20 +473,17 @@ MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMes
         return {};
     }
     MissingElement possible;
-    const Tokens all = lua::tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 1; i + 1 < all.size(); ++i) {
         if (!all[i].is("[") || all[i - 1].kind != lua::TokenKind::name) continue;
-        std::size_t first = i - 1;
-        while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == lua::TokenKind::name) first -= 2;
-        push_variable(L, frame, all[first].text);
-        for (std::size_t k = first + 2; k < i; k += 2) go_to_field(L, all[k].text);
+        push_path(L, frame, all, i - 1);
         const auto count = taken_length(L);
         if (!count) continue;
         const lua::Token& index = all[i + 1];
         const bool alone = i + 2 < all.size() && all[i + 2].is("]");
         const auto number = alone ? number_of(L, frame, index) : std::nullopt;
         if (number && *number >= 1 && *number <= *count) continue;  // the element exists
-        const std::size_t begin = all[first].at;
+        const std::size_t begin = all[path_begin(all, i - 1)].at;
         MissingElement found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
                                          text::counted(static_cast<std::size_t>(*count), "element")),
                              std::string(number ? index.text : all[i - 1].text)};

@@ -24,6 +24,9 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
 /// Pushes the value of a variable in the frame: a local one (the innermost of that name), an upvalue, or a global.
 void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted);
 
+/// Replaces a value and a key on the top by the field, also of __index tables; nil without one. Runs no user code.
+void go_to_field(lua_State* L);
+
 /// The end of a sentence with similar global names.
 std::string similar_global(lua_State* L, std::string_view name);
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "help/help_text.hpp"
 #include "help/lua_words.hpp"
@@ -18,66 +18,72 @@
 
 namespace dinal::help {
 
-// Words outside of dinal's names that users ask help about.
-
-/// Some lines about the topic that shares most words, ignoring case; empty if there is none.
-std::string_view topic(std::string_view words);
-
-/// Translates words of other languages, such as Reibung to friction; others stay.
-std::string in_english(std::string_view words);
-
 namespace {
 
-struct Hit {
+std::vector<std::string_view> words_of(std::string_view text) {
+    std::vector<std::string_view> words;  // not tokens: these letters may be invalid in Lua
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        if (end > begin) words.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return words;
+}
+
+bool has_word(std::string_view words, std::string_view wanted) {
+    const std::vector<std::string_view> all = words_of(words);
+    return std::find(all.begin(), all.end(), wanted) != all.end();
+}
+
+/// An entry of the manual.
+struct HelpEntry {
     const Section* section;
     const lua::Member* member;  // null: the section itself
 };
 
-std::string hit_text(const Hit& hit, const terminal::Display& screen) {
-    return hit.member != nullptr ? member_text(*hit.section, *hit.member, screen) : class_text(*hit.section, screen);
+std::vector<HelpEntry> entries() {
+    std::vector<HelpEntry> all;
+    for (const Section& section : sections()) {
+        for (const lua::Member& member : section.description->members) all.push_back({&section, &member});
+    }
+    return all;
 }
 
-std::string hit_line(const Hit& hit, const terminal::Display& screen) {
-    return line_about(listed_name(*hit.section, *hit.member), hit.member->doc.summary, screen);
+/// Calls visit(entry, option) for each option of each entry; an option of two calls is visited twice.
+template <class Visit>
+void each_option(const Visit& visit) {
+    for (const HelpEntry& entry : entries()) {
+        for (const text::Call* call : calls_of(entry.member->doc)) {
+            for (const OptionLine& option : option_lines(call->options)) visit(entry, option);
+        }
+    }
 }
 
 // Accepts sys.simulate, sys:simulate, system:simulate and simulate.
-bool has_name(const Section& section, const lua::Member& member, std::string_view name) {
-    if (member.kind == lua::Kind::metamethod) {
-        return false;
-    }
+bool has_name(const HelpEntry& entry, std::string_view name) {
+    const Section& section = *entry.section;
+    if (entry.member->kind == lua::Kind::metamethod) return false;
     const std::size_t separator = name.find_last_of(".:");
-    if (separator == std::string_view::npos) {
-        return name == member.name;
-    }
+    if (separator == std::string_view::npos) return name == entry.member->name;
     const std::string_view owner = name.substr(0, separator);
-    return name.substr(separator + 1) == member.name &&
+    return name.substr(separator + 1) == entry.member->name &&
            (owner == section.prefix || owner == section.description->name ||
             (owner == "dinal" && *section.prefix == '\0'));
 }
 
-/// Entries with this name, globals first: `excitation` is the module and its class rather than run.excitation.
-std::vector<Hit> named(std::string_view name) {
-    std::vector<Hit> globals;
-    std::vector<Hit> others;
+/// The texts of the entries with this name; if it is global, such as `excitation`, not those of run.excitation.
+std::string entries_named(std::string_view name, const terminal::Display& screen) {
+    std::string globals, others;
+    const auto add = [](std::string& text, const std::string& entry) { text += (text.empty() ? "" : "\n") + entry; };
+    for (const HelpEntry& entry : entries()) {
+        if (!has_name(entry, name)) continue;
+        add(*entry.section->prefix == '\0' ? globals : others, member_text(*entry.section, *entry.member, screen));
+    }
     for (const Section& section : sections()) {
-        const bool is_function_table = *section.prefix == '\0';
-        for (const lua::Member& member : section.description->members) {
-            if (has_name(section, member, name)) {
-                (is_function_table ? globals : others).push_back({&section, &member});
-            }
-        }
-        if (!is_function_table && (name == section.description->name || name == section.prefix)) {
-            globals.push_back({&section, nullptr});
-        }
+        const bool is_name = name == section.description->name || name == section.prefix;
+        if (is_name && *section.prefix != '\0') add(globals, class_text(section, screen));
     }
     return globals.empty() ? others : globals;
-}
-
-/// The methods behind a name that only the user knows: help "rig:simulate", where rig is his variable.
-std::vector<Hit> named_by_method(std::string_view name) {
-    const std::size_t separator = name.find_last_of(".:");
-    return separator == std::string_view::npos ? std::vector<Hit>{} : named(name.substr(separator + 1));
 }
 
 /// Lower case, with blanks for underscores: "dead zone" finds dead_zone.
@@ -87,93 +93,69 @@ std::string searchable(std::string_view text) {
     return result;
 }
 
-/// Returns whether each word occurs in the text. Both must be searchable().
-bool has_words(const std::string& text, const std::string& wanted) {
-    for (std::size_t at = 0; at < wanted.size();) {
-        const std::size_t end = std::min(wanted.find(' ', at), wanted.size());
-        if (text.find(wanted.substr(at, end - at)) == std::string::npos) {
-            return false;
+/// Lines about the entries that contain all of the words, first those with the words in their names.
+std::string entries_that_mention(std::string_view wanted, const terminal::Display& screen) {
+    constexpr std::size_t most = 10;
+    const std::string words = searchable(wanted);
+    std::vector<HelpEntry> in_name, elsewhere;
+    for (const HelpEntry& entry : entries()) {
+        const lua::Doc& doc = entry.member->doc;
+        const std::string name = searchable(listed_name(*entry.section, *entry.member));
+        std::string all = fmt::format("{} {} {}", name, signature(doc), doc.summary);
+        for (const text::Call* call : calls_of(doc)) {
+            for (const text::Option& option : call->options) all.append(" ").append(option.meaning);
         }
-        at = end + 1;
-    }
-    return true;
-}
-
-std::string option_meanings(const lua::Doc& doc) {
-    std::string text;
-    for (const text::Call* call : calls_of(doc)) {
-        for (const text::Option& option : call->options) text.append(option.meaning).append(" ");
-    }
-    return text;
-}
-
-/// Applies `one` to each call that has an option of this name, and joins the results.
-template <class One>
-std::string about_option(std::string_view name, const One& one) {
-    std::string text;
-    for (const Section& section : sections()) {
-        for (const lua::Member& member : section.description->members) {
-            for (const text::Call* call : calls_of(member.doc)) {
-                for (const OptionLine& line : option_lines(call->options)) {
-                    text += line.option == name ? one(written_name(section, member), line) : "";
-                }
-            }
-        }
-    }
-    return text;
-}
-
-/// Entries that contain the words, first those with the words in their names.
-std::vector<Hit> mentioning(std::string_view words) {
-    std::vector<Hit> in_name;
-    std::vector<Hit> elsewhere;
-    const std::string wanted = searchable(words);
-    for (const Section& section : sections()) {
-        for (const lua::Member& member : section.description->members) {
-            const std::string name = searchable(listed_name(section, member));
-            if (has_words(name, wanted)) {
-                in_name.push_back({&section, &member});
-            } else if (has_words(searchable(fmt::format("{} {} {} {}", name, signature(member.doc), member.doc.summary,
-                                                        option_meanings(member.doc))),
-                                 wanted)) {
-                elsewhere.push_back({&section, &member});
-            }
+        const auto has_words = [&words](const std::string& text) {
+            const std::vector<std::string_view> each = words_of(words);
+            return std::all_of(each.begin(), each.end(),
+                               [&text](std::string_view word) { return text.find(word) != std::string::npos; });
+        };
+        if (has_words(name)) {
+            in_name.push_back(entry);
+        } else if (has_words(searchable(all))) {
+            elsewhere.push_back(entry);
         }
     }
     in_name.insert(in_name.end(), elsewhere.begin(), elsewhere.end());
-    return in_name;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, in_name.size()); ++i) {
+        const auto [section, member] = in_name[i];
+        text += line_about(listed_name(*section, *member), member->doc.summary, screen);
+    }
+    if (in_name.size() > most) {
+        text += fmt::format("  ... and {} more: use more of the word\n", in_name.size() - most);
+    }
+    return text;
 }
 
 /// The most similar name or option, otherwise the most similar longer word in the summaries.
 std::string likely(std::string_view word) {
     constexpr std::size_t shortest = 6;
-    std::vector<std::string> names;
-    std::vector<std::string> words;
-    for (const Section& section : sections()) {
-        names.emplace_back(section.description->name);
-        for (const lua::Member& member : section.description->members) {
-            const std::string whole = signature(member.doc);
-            for (const lua::Token& token : lua::tokens(whole)) {
-                if (token.kind == lua::TokenKind::name) {
-                    names.emplace_back(token.text);
-                }
-            }
-            for (const lua::Token& token : lua::tokens(member.doc.summary)) {
-                if (token.kind == lua::TokenKind::name && token.text.size() >= shortest) {
-                    words.push_back(text::lower(token.text));
-                }
-            }
+    std::vector<std::string> names, words;
+    for (const Section& section : sections()) names.emplace_back(section.description->name);
+    for (const HelpEntry& entry : entries()) {
+        const std::string whole = signature(entry.member->doc);
+        for (const lua::Token& token : lua::tokens(whole)) {
+            if (token.kind == lua::TokenKind::name) names.emplace_back(token.text);
+        }
+        for (const lua::Token& token : lua::tokens(entry.member->doc.summary)) {
+            const bool longer = token.kind == lua::TokenKind::name && token.text.size() >= shortest;
+            if (longer) words.push_back(text::lower(token.text));
         }
     }
     const std::string hint = text::did_you_mean(word, names);
     return hint.empty() ? text::did_you_mean(word, words) : hint;
 }
 
+/// The part of run.energy behind the last separator; "" without one.
+std::string_view last_name(std::string_view words) {
+    const std::size_t separator = words.find_last_of(".:");
+    return separator == std::string_view::npos ? "" : words.substr(separator + 1);
+}
+
 std::string no_help(std::string_view words) {
     std::string hint = likely(words);
-    if (const std::size_t last = words.find_last_of(".:"); hint.empty() && last != std::string_view::npos) {
-        hint = likely(words.substr(last + 1));  // run.enrgy
-    }
+    if (hint.empty() && !last_name(words).empty()) hint = likely(last_name(words));  // run.enrgy
     const std::string shown = text::quoted(words);  // control characters would steer the terminal
     return fmt::format("nothing about '{}'{}{}\n", shown.substr(1, shown.size() - 2), hint,
                        hint.empty() ? "; help \"contents\" lists what there is" : "");
@@ -182,143 +164,53 @@ std::string no_help(std::string_view words) {
 std::string contents(const terminal::Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
-        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section.title);
-        std::string names;
+        std::vector<std::string> names;
         for (const lua::Member& member : section.description->members) {
-            if (member.kind != lua::Kind::metamethod) {
-                names += (names.empty() ? "" : ", ") + written_name(section, member);
-            }
+            if (member.kind != lua::Kind::metamethod) names.push_back(written_name(section, member));
         }
         const std::size_t width = std::min(screen.width - 1, text::readable_width) - 2;
-        text += "  " + text::indented(text::wrapped(names, width), 2) + "\n";
+        text += fmt::format("{}{}\n  {}\n", text.empty() ? "" : "\n", section.title,
+                            text::indented(text::wrapped(fmt::format("{}", fmt::join(names, ", ")), width), 2));
     }
     return text + "\nhelp \"name\" says more about each of them.\n";
 }
 
-}  // namespace
-
-std::vector<std::string> help_names() {
-    std::vector<std::string> names = {"contents"};
-    for (const Section& section : sections()) {
-        if (*section.prefix != '\0') {
-            names.emplace_back(section.description->name);
-        }
-        for (const lua::Member& member : section.description->members) {
-            if (member.kind != lua::Kind::metamethod) {
-                names.push_back(written_name(section, member));
-                names.emplace_back(member.name);
-            }
-        }
-    }
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    return names;
-}
-
-std::vector<std::string> help_option_names() {
-    std::vector<std::string> names;
-    for (const Section& section : sections()) {
-        for (const lua::Member& member : section.description->members) {
-            for (const text::Call* call : calls_of(member.doc)) {
-                for (const text::Option& option : call->options) names.emplace_back(option.name);
-            }
-        }
-    }
-    return names;
-}
-
-namespace {
-
 /// Entries, options and mentions; empty without any.
 std::string found_about(std::string_view words, const terminal::Display& screen) {
-    constexpr std::size_t most = 10;
-    std::string text;
-    for (const Hit& hit : named(words)) {
-        text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
-    }
-    if (!text.empty()) {
-        const auto listed = [](const std::string& call, const OptionLine& /*line*/) { return ", " + call; };
-        const std::string calls = about_option(words, listed);
-        const std::size_t width = std::min<std::size_t>(screen.width, 80) - 1;
-        return calls.empty() ? text : text + text::wrapped("An option of: " + calls.substr(2), width) + "\n";
-    }
-    text = about_option(words, [&screen](const std::string& call, const OptionLine& line) {
-        return line_about(fmt::format("{}{{ {} }}", call, line.name), line.meaning, screen);
+    std::string calls, options, last;
+    each_option([&](const HelpEntry& entry, const OptionLine& line) {
+        if (line.option != words) return;
+        const std::string call = written_name(*entry.section, *entry.member);
+        // A function that is called in two ways has the option twice.
+        if (call != last) calls += (calls.empty() ? "" : ", ") + call;
+        last = call;
+        options += line_about(fmt::format("{}{{ {} }}", call, line.name), line.meaning, screen);
     });
-    if (!text.empty()) {
-        return text;
+    if (const std::string text = entries_named(words, screen); !text.empty()) {
+        const std::size_t width = std::min<std::size_t>(screen.width, 80) - 1;
+        return calls.empty() ? text : text + text::wrapped("An option of: " + calls, width) + "\n";
     }
-    for (const Hit& hit : named_by_method(words)) text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
-    if (!text.empty()) return text;
-    const std::vector<Hit> hits = mentioning(words);
-    for (std::size_t i = 0; i < std::min(most, hits.size()); ++i) {
-        text += hit_line(hits[i], screen);
-    }
-    if (hits.size() > most) {
-        text += fmt::format("  ... and {} more: use more of the word\n", hits.size() - most);
-    }
-    return text;
+    if (!options.empty()) return options;
+    // The name may be the user's: help "rig:simulate", where rig is a variable.
+    std::string text = last_name(words).empty() ? "" : entries_named(last_name(words), screen);
+    return text.empty() ? entries_that_mention(words, screen) : text;
 }
 
 /// A question without common words: "how do I fit a record" becomes "fit record".
 std::string without_small_words(std::string_view question) {
-    constexpr std::array<std::string_view, 22> small = {"how", "do",   "i",   "a",  "an",   "the", "to",   "can",
-                                                        "is",  "are",  "of",  "my", "for",  "in",  "what", "which",
-                                                        "why", "does", "you", "it", "make", "get"};
-    std::string rest;
-    for (std::size_t begin = 0; begin < question.size();) {
-        const std::size_t end = std::min(question.find(' ', begin), question.size());
-        const std::string word = text::lower(question.substr(begin, end - begin));
-        if (!word.empty() && std::find(small.begin(), small.end(), word) == small.end()) {
-            rest.append(rest.empty() ? "" : " ").append(question.substr(begin, end - begin));
-        }
-        begin = end + 1;
+    constexpr std::string_view small =
+        "how do i a an the to can is are of my for in what which why does you it make get";
+    std::vector<std::string_view> rest;
+    for (const std::string_view word : words_of(question)) {
+        if (!has_word(small, text::lower(word))) rest.push_back(word);
     }
-    return rest;
+    return fmt::format("{}", fmt::join(rest, " "));
 }
 
 bool is_question(std::string_view words) {
-    constexpr std::array<std::string_view, 6> heads = {"how ", "what ", "which ", "why ", "where ", "can "};
-    return std::any_of(heads.begin(), heads.end(),
-                       [&](std::string_view head) { return text::lower(words).starts_with(head); });
+    const std::vector<std::string_view> all = words_of(words);
+    return all.size() > 1 && has_word("how what which why where can", text::lower(all.front()));
 }
-
-std::string entries_named(std::string_view name, const terminal::Display& screen) {
-    std::string text;
-    for (const Hit& hit : named(name)) text += "\n" + hit_text(hit, screen);
-    return text;
-}
-
-}  // namespace
-
-std::string help_about(std::string_view words, const terminal::Display& screen) {
-    const std::string english = in_english(text::trimmed(words, " "));
-    words = english;
-    if (words == "contents") {
-        return contents(screen);
-    }
-    if (std::string word = lua_word(words); !word.empty()) {
-        return word + entries_named(words, screen);
-    }
-    const std::string rest = without_small_words(words);
-    std::string about(topic(rest.empty() ? words : rest));
-    if (about.empty()) about = lua_word(rest);
-    std::string found = is_question(words) ? "" : found_about(words, screen);
-    if (found.empty() && !rest.empty()) {
-        found = found_about(rest, screen);
-    }
-    for (std::size_t begin = 0; begin < rest.size() && about.empty() && found.empty();) {
-        const std::size_t end = std::min(rest.find(' ', begin), rest.size());
-        about = lua_word(std::string_view(rest).substr(begin, end - begin));
-        begin = end + 1;
-    }
-    if (about.empty() && found.empty()) {
-        return no_help(rest.empty() ? words : rest);
-    }
-    return about + (about.empty() || found.empty() ? "" : "\n") + found;
-}
-
-namespace {
 
 struct Topic {
     std::string_view words;  // words in lower case; one match is enough
@@ -411,7 +303,7 @@ constexpr std::array<Topic, 52> topics = {{
      "frequency frequencies period own mode shape damping parameter"},
     {"decrement dashpot",
      "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
-     "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
+     "theory.logarithmic_decrement converts zeta; theory.identify finds both dampings\nfrom three extremes.\n",
      "viscous damping ratio zeta"},
     {"adhesion static stiction coulomb",
      "Rd is the torque of friction while the mass slides, Re (>= Rd) the largest torque\n"
@@ -430,8 +322,8 @@ constexpr std::array<Topic, 52> topics = {{
      "minimise{ over = { Re = { .1, 2 } }, run = function(p) return cost end } finds the least\n"
      "value; identify fits a system to a record.\n",
      "best minimum minimal least tune"},
-    {"animate animation movie video", "run:animate() shows the motion; file = \"motion.svg\" writes it.\n",
-     "moving motion show"},
+    {"animate animation movie video",
+     "run:animate{ file = \"motion.svg\" } writes the motion, which a browser plays.\n", "moving motion show"},
     {"controller pid feedback actuator",
      "M may depend on the motion: M = function(t, theta, velocity) return -2*theta end.\n"
      "excitation.sampled has a memory and a sampling time, excitation.relay switches,\n"
@@ -522,7 +414,7 @@ constexpr std::array<Topic, 52> topics = {{
 }};
 
 /// Words of other languages with their English translations.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign = {{
     {"reibung rozamiento friccion fricción frottement attrito", "friction"},
     {"feder muelle resorte ressort molla", "spring"},
     {"daempfung dämpfung amortiguamiento amortissement smorzamento", "damping"},
@@ -541,19 +433,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign 
     {"figura gráfico grafico dibujar", "plot"},
     {"guardar", "save"},
     {"salir", "quit"},
+    {"embrague acoplamiento", "clutch"},
+    {"engranaje engranajes", "gear"},
+    {"archivo archivos", "file"},
+    {"amplitud", "amplitude"},
+    {"frecuencia", "frequency"},
+    {"evento eventos", "events"},
 }};
 
-bool has_word(std::string_view words, std::string_view wanted) {
-    for (std::size_t begin = 0; begin < words.size();) {  // not tokens: these letters may be invalid in Lua
-        const std::size_t end = std::min(words.find(' ', begin), words.size());
-        if (words.substr(begin, end - begin) == wanted) return true;
-        begin = end + 1;
-    }
-    return false;
-}
-
-}  // namespace
-
+/// Translates words of other languages, such as Reibung to friction; others stay.
 std::string in_english(std::string_view words) {
     const auto translated = [](std::string_view word) {
         std::string wanted = text::lower(word);
@@ -563,33 +451,68 @@ std::string in_english(std::string_view words) {
         return found == foreign.end() ? word : found->second;
     };
     if (const std::string_view whole = translated(words); whole != words) return std::string(whole);
-    std::string english;
-    for (std::size_t begin = 0; begin <= words.size();) {
-        const std::size_t end = std::min(words.find(' ', begin), words.size());
-        english += (begin == 0 ? "" : " ") + std::string(translated(words.substr(begin, end - begin)));
-        begin = end + 1;
-    }
-    return english;
+    std::vector<std::string_view> english = words_of(words);
+    std::transform(english.begin(), english.end(), english.begin(), translated);
+    return fmt::format("{}", fmt::join(english, " "));
 }
 
+/// Some lines about the topic that shares most words, ignoring case; empty if there is none.
 std::string_view topic(std::string_view words) {
     const std::string wanted = text::lower(words);
-    const Topic* best = nullptr;
+    std::string_view best;
     int most = 1;
     for (const Topic& one : topics) {
         int fits = 0;
-        for (std::size_t begin = 0; begin < wanted.size();) {
-            const std::size_t end = std::min(wanted.find(' ', begin), wanted.size());
-            const std::string_view word = std::string_view(wanted).substr(begin, end - begin);
+        for (const std::string_view word : words_of(wanted)) {
             fits += has_word(one.words, word) ? 2 : has_word(one.more, word) ? 1 : 0;
-            begin = end + 1;
         }
-        if (fits > most) {
-            best = &one;
-            most = fits;
-        }
+        if (fits > most) best = one.text;
+        most = std::max(most, fits);
     }
-    return best == nullptr ? std::string_view() : best->text;
+    return best;
+}
+
+}  // namespace
+
+std::vector<std::string> help_names() {
+    std::vector<std::string> names = {"contents"};
+    for (const Section& section : sections()) {
+        if (*section.prefix != '\0') names.emplace_back(section.description->name);
+    }
+    for (const auto& [section, member] : entries()) {
+        if (member->kind == lua::Kind::metamethod) continue;
+        names.push_back(written_name(*section, *member));
+        names.emplace_back(member->name);
+    }
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+std::vector<std::string> help_option_names() {
+    std::vector<std::string> names;
+    each_option([&names](const HelpEntry& /*entry*/, const OptionLine& line) { names.push_back(line.option); });
+    return names;
+}
+
+std::string help_about(std::string_view words, const terminal::Display& screen) {
+    const std::string english = in_english(text::trimmed(words, " "));
+    words = english;
+    if (words == "contents") return contents(screen);
+    if (std::string word = lua_word(words); !word.empty()) {
+        const std::string named = entries_named(words, screen);
+        return word + (named.empty() ? "" : "\n") + named;
+    }
+    const std::string rest = without_small_words(words);
+    std::string about(topic(rest.empty() ? words : rest));
+    if (about.empty()) about = lua_word(rest);
+    std::string found = is_question(words) ? "" : found_about(words, screen);
+    if (found.empty() && !rest.empty()) found = found_about(rest, screen);
+    for (const std::string_view word : words_of(rest)) {
+        if (about.empty() && found.empty()) about = lua_word(word);
+    }
+    if (about.empty() && found.empty()) return no_help(rest.empty() ? words : rest);
+    return about + (about.empty() || found.empty() ? "" : "\n") + found;
 }
 
 }  // namespace dinal::help

@@ -1,6 +1,7 @@
 // The stick/slip law, once for all integrators except that of 1989.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,12 +19,30 @@ inline double excess_over(double limit, double k, double M, double theta, double
     return std::fma(-k, side * theta, sum) + rest;
 }
 
-/// The excess of the torque at velocity zero over the holding limit, |M - k theta| - Re. M includes a nonlinear spring.
-inline double breakaway_excess(const Lowered& system, double M, double theta) {
-    const double k = system.stiffness();
-    M -= system.spring(theta);
-    const bool back = std::fma(-k, theta, M) < 0;
-    return excess_over(system.holding(back ? Motion::backward : Motion::forward), k, M, theta, back ? -1 : 1);
+/// The torque at velocity zero against what holds. It moves the mass if `beyond` is positive.
+struct Pull {
+    double beyond;   ///< by how much it exceeds the limit
+    Motion towards;  ///< the side to which it pulls
+};
+
+/// The pull of M, a spring k theta and the torque `spring` of a nonlinear one, against the limit of this side: a
+/// razor's edge.
+// NOTE: a stored theta stands for all angles within half a unit of its last place, so k theta is known to 2^-53 |k
+// theta| only. A smaller excess is no breakaway; otherwise theta0 = Re/k would stick or not depending on the rounding
+// of the quotient. M is taken as exact.
+inline Pull pull_on_spring(double limit, double k, double M, double theta, double spring, Motion towards) {
+    constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
+    constexpr double few = 8;  // roundings in a user's formula
+    const double beyond = excess_over(limit, k, M - spring, theta, sign_of(towards));
+    const double known = half_ulp * (std::fabs(k * theta) + few * std::fabs(spring));
+    return {beyond < known ? std::min(beyond, 0.0) : beyond, towards};
+}
+
+/// The pull on a mass at rest.
+inline Pull pull_at_rest(const Lowered& system, double M, double theta) {
+    const double k = system.stiffness(), spring = system.spring(theta);
+    const Motion towards = std::fma(-k, theta, M - spring) < 0 ? Motion::backward : Motion::forward;
+    return pull_on_spring(system.holding(towards), k, M, theta, spring, towards);
 }
 
 /// Returns whether a mass stuck at theta stays there however M changes, as long as |M| <= most_M.
@@ -34,17 +53,9 @@ inline bool cannot_break_away(const Lowered& system, double most_M, double theta
 
 /// The motion that starts at velocity zero under the torque M: none if |M - k theta| <= Re, otherwise towards M - k
 /// theta.
-// NOTE: a stored theta stands for all angles within half a unit of its last place, so k theta is known to 2^-53 |k
-// theta| only. A smaller excess is no breakaway; otherwise theta0 = Re/k would stick or not depending on the rounding
-// of the quotient. M is taken as exact.
 inline Motion motion_from_standstill(const Lowered& system, double M, double theta) {
-    constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-    constexpr double few = 8;  // roundings in a user's formula
-    const double excess = breakaway_excess(system, M, theta), own = system.spring(theta);
-    if (!(excess > 0) || excess < half_ulp * (std::fabs(system.stiffness() * theta) + few * std::fabs(own))) {
-        return Motion::stuck;
-    }
-    return motion_of(std::fma(-system.stiffness(), theta, M - own));
+    const Pull pull = pull_at_rest(system, M, theta);
+    return pull.beyond > 0 ? pull.towards : Motion::stuck;
 }
 
 /// The friction torque on the mass: against the motion while moving, -(M - k theta) while stuck.

@@ -149,33 +149,23 @@ void set_x_ticks(PaperPanel& panel, double limit) {
 
 constexpr double bar_gap = 1.0 * em, bar_width = 1.1 * em, bar_ticks = 0.5 * em;
 
-/// The labels of a colour bar: a band of a single number has it in the middle, other bands have numbers at their
-/// borders; continuous colours have round numbers.
+/// The labels of a colour bar: round numbers beside continuous colours; bands of a single number have it in the middle.
 ColourBar bar_of(const Shades& shades) {
-    if (const auto range = colour_range(shades)) {
-        constexpr std::size_t fine = 64;
-        const Ticks ticks = ticks_of(Axis{}, Scale(*range, false), 6);
-        ColourBar colours{.cells = fine, .continuous = true};
-        for (std::size_t i = 0; i < ticks.at.size(); ++i) {
-            const double place = fine * (ticks.at[i] - range->low) / range->length();
-            if (place > -0.5 && place < fine + 0.5) colours.labels.emplace_back(place, typeset(ticks.text[i]));
+    const auto range = colour_range(shades);
+    if (!range) {
+        const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
+        ColourBar colours{.cells = bands.size()};
+        for (std::size_t i = 0; i < bands.size(); ++i) {
+            colours.labels.emplace_back(static_cast<double>(i) + 0.5, typeset(bands[i].text));
         }
         return colours;
     }
-    const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
-    ColourBar colours{.cells = bands.size()};
-    for (std::size_t i = 0; i < bands.size(); ++i) {
-        const std::string& text = bands[i].text;
-        const std::size_t to = text.find(" to ");
-        const double place = static_cast<double>(i);
-        if (to == std::string::npos && !text.starts_with('<') && !text.starts_with('>')) {
-            colours.labels.emplace_back(place + 0.5, typeset(text));
-        } else if (!text.starts_with('<')) {
-            colours.labels.emplace_back(place, typeset(text.starts_with('>') ? text.substr(2) : text.substr(0, to)));
-        }
-        if (i + 1 == bands.size() && to != std::string::npos) {
-            colours.labels.emplace_back(place + 1, typeset(text.substr(to + 4)));
-        }
+    constexpr std::size_t fine = 64;
+    const Ticks ticks = ticks_of(Axis{}, Scale(*range, false), 6);
+    ColourBar colours{.cells = fine, .continuous = true};
+    for (std::size_t i = 0; i < ticks.at.size(); ++i) {
+        const double place = fine * (ticks.at[i] - range->low) / range->length();
+        if (place > -0.5 && place < fine + 0.5) colours.labels.emplace_back(place, typeset(ticks.text[i]));
     }
     return colours;
 }

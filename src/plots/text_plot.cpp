@@ -424,12 +424,13 @@ constexpr int letters_at_end = 3;    // columns right of the canvas for letters 
 
 constexpr std::size_t most_legend_lines = 5;
 
-struct Frame {
+struct BoxSigns {
     std::string_view side, tick, corner, floor, floor_tick, stuck;
 };
 
-Frame frame_of(Charset charset) {
-    return charset == Charset::braille ? Frame{"│", "┤", "└", "─", "┬", "━"} : Frame{"|", "+", "+", "-", "+", "="};
+BoxSigns frame_of(Charset charset) {
+    return charset == Charset::braille ? BoxSigns{"│", "┤", "└", "─", "┬", "━"}
+                                       : BoxSigns{"|", "+", "+", "-", "+", "="};
 }
 
 class TextPlot {
@@ -676,7 +677,7 @@ private:
     const TextFormat& format_;
     const View seen_;  // the figure's
     View view_;        // on the canvas
-    Frame frame_;
+    BoxSigns frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;
     std::size_t label_room_;

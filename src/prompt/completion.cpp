@@ -468,8 +468,6 @@ void TypedText::find_call() {
 
 namespace {
 
-constexpr int most_metatables = 10;  // an __index may lead to itself
-
 /// Returns whether a string literal has no escapes.
 bool is_plain_string(const lua::Token& token) {
     return token.kind == lua::TokenKind::string && !token.open && token.text.front() != '[' &&
@@ -481,22 +479,6 @@ const lua::Member* member_of(const lua::Class& description, std::string_view nam
         std::find_if(description.members.begin(), description.members.end(),
                      [name](const lua::Member& m) { return m.kind != lua::Kind::metamethod && m.name == name; });
     return found == description.members.end() ? nullptr : &*found;
-}
-
-/// A Lua function that reads a field of an object of ours.
-int field_of_object(lua_State* L) {
-    lua_gettable(L, 1);
-    return 1;
-}
-
-/// Replaces an object of ours and a key on the top by the field; nil on failure. Runs no user code.
-void ask_object(lua_State* L) {
-    lua_pushcfunction(L, field_of_object);
-    lua_insert(L, -3);
-    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
-        lua_pop(L, 1);
-        lua_pushnil(L);
-    }
 }
 
 /// The meaning of the value on the top.
@@ -517,40 +499,26 @@ public:
     Meaning result;
 
     void begin(const lua::Token& token) {
-        if (token.kind == lua::TokenKind::name) {
-            lua_pop(L_, 1);
-            lua_pushglobaltable(L_);
-            raw_field(token.text);
-        }
+        if (token.kind != lua::TokenKind::name) return;
+        lua_pop(L_, 1);
+        lua_pushglobaltable(L_);
+        go_to_field(token.text);
     }
 
     void go_to_field(std::string_view name) {
         const lua::Class* owner = class_here();
-        if (lua_isuserdata(L_, -1) != 0 && owner != nullptr) {
-            lua_pushlstring(L_, name.data(), name.size());
-            ask_object(L_);
-            result = meaning_of_top(L_);
-        } else if (!lua_isnil(L_, -1)) {
-            raw_field(name);
-        } else {
-            result = {};
-        }
+        lua_pushlstring(L_, name.data(), name.size());
+        errors::go_to_field(L_);
+        result = meaning_of_top(L_);
         if (const lua::Member* member = owner == nullptr ? nullptr : member_of(*owner, name)) {
             result = {Meaning::Kind::member, section_of(owner), member};
         }
     }
 
-    /// Follows an index with a number, in plain tables and our objects: run.events[1].
+    /// Follows an index with a number: run.events[1].
     void index(lua_Integer number) {
-        if (lua_istable(L_, -1)) {
-            lua_rawgeti(L_, -1, number);
-            lua_remove(L_, -2);
-        } else if (lua_isuserdata(L_, -1) != 0 && class_here() != nullptr) {
-            lua_pushinteger(L_, number);
-            ask_object(L_);
-        } else {
-            return forget();
-        }
+        lua_pushinteger(L_, number);
+        errors::go_to_field(L_);
         result = meaning_of_top(L_);
     }
 
@@ -581,29 +549,6 @@ private:
         const help::Section* section = field ? help::section_of_result(result.member->doc.signature) : result.section;
         const bool known = lua_isnil(L_, -1) && (field || result.kind == Meaning::Kind::object);
         return known && section != nullptr ? section->description : nullptr;
-    }
-
-    /// Replaces the value on the top by its field, following __index tables.
-    void raw_field(std::string_view name) {
-        for (int i = 0; i < most_metatables; ++i) {
-            if (lua_istable(L_, -1)) {
-                lua_pushlstring(L_, name.data(), name.size());
-                if (lua_rawget(L_, -2) != LUA_TNIL) {
-                    lua_replace(L_, -2);
-                    result = meaning_of_top(L_);
-                    return;
-                }
-                lua_pop(L_, 1);
-            }
-            if (lua_getmetatable(L_, -1) == 0) {
-                break;
-            }
-            lua_pushliteral(L_, "__index");
-            lua_rawget(L_, -2);
-            lua_replace(L_, -3);
-            lua_pop(L_, 1);
-        }
-        forget();
     }
 
     lua_State* L_;
@@ -658,7 +603,7 @@ void add_own_names(lua_State* L, std::vector<std::string>& names) {
     const int object = lua_gettop(L);
     lua_pushvalue(L, object);
     lua_pushliteral(L, "names");
-    ask_object(L);
+    errors::go_to_field(L);
     for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
         if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
             names.push_back(name);

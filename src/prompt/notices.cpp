@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "errors/habits.hpp"
 #include "errors/misspelling.hpp"
 #include "errors/source_text.hpp"
 #include "help/help_text.hpp"
@@ -24,22 +24,6 @@
 
 namespace dinal::prompt {
 namespace {
-
-/// Commands of shells, notebooks and other languages, with their equivalents.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 11> words_and_cures = {{
-    {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
-    {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
-    {"who whos dir",
-     ":who lists your variables; Tab after a name and a point lists its fields, help(name) explains them"},
-    {"_", "ans holds the last value that was computed"},
-    {"ls", ":ls lists the files of the current folder"},
-    {"cd pwd", ":cd folder changes the current folder, :pwd shows it"},
-    {"man", "help \"name\" explains a name"},
-    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them to a script"},
-    {"save", ":save lab.lua writes your inputs to a script, run:save(\"run.csv\") writes a run"},
-    {"reset", ":reset forgets your variables"},
-    {"hilfe ayuda aide aiuto hallo hello hola", "help() starts a tour, and ?name explains a name"},
-}};
 
 bool opens_block(const lua::Token& token) {
     return token.is("function") || token.is("do") || token.is("if") || token.is("repeat");
@@ -94,12 +78,8 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (is_global(L, name)) {
         return "";
     }
-    for (const auto& [words, cure] : words_and_cures) {
-        const std::vector<lua::Token> known = lua::tokens(words);
-        if (std::any_of(known.begin(), known.end(), [&](const lua::Token& word) { return word.text == name; })) {
-            return fmt::format("there is no such variable; {}", cure);
-        }
-    }
+    const std::string cure = errors::foreign_tokens(name, errors::Seen::typed);
+    if (!cure.empty()) return "there is no such variable" + cure;
     const std::string hint = errors::similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
 }
@@ -171,6 +151,8 @@ std::string unfinished_notice(lua_State* L, const std::string& text) {
     if (text.find('\n') != std::string::npos) return "";
     const std::vector<lua::Token> all = lua::tokens(text);
     if (std::string notice = python_block(all); !notice.empty()) return notice;
+    if (all.size() > 1 && all.front().is("cd")) return ":cd folder changes the current folder";  // cd ..
+    if (all.size() > 1 && all.front().is("ls")) return ":ls folder lists the files of a folder";
     const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
                          all[all.size() - 2].end() == all.back().at;
     return percent ? fmt::format("% is the remainder of a division; {0} percent are {0}/100", all[all.size() - 2].text)

@@ -7,6 +7,7 @@
 #include "lua/foreign.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
+#include "model/joint_options.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
@@ -39,61 +40,37 @@ std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole
 
 namespace {
 
+/// Receives options, and writes them as "I = 1", "k = 4".
+struct OptionTexts {
+    lua_State* L;
+    ValueText* whole;
+    std::vector<std::string> parts = {};
+
+    void add(const char* name, const std::string& text) { parts.push_back(fmt::format("{} = {}", name, text)); }
+    void body(const std::string& name) { parts.push_back(text::quoted(name)); }
+    void unless_0(const char* name, double x) {
+        if (x != 0) (*this)(name, x);
+    }
+    void operator()(const char* name, double x) { add(name, text::number_literal(x)); }
+    void operator()(const char* name, bool /*yes*/) { add(name, "true"); }
+    void operator()(const char* name, const model::Excitation& value) { add(name, describe(L, value, whole)); }
+    void operator()(const char* name, const model::UserFunction& value) { add(name, function_text(L, value, whole)); }
+    void operator()(const char* name, const model::Friction& value) { add(name, lua_text(L, value, whole)); }
+    void operator()(const char* name, const model::Spring& value) { add(name, lua_text(L, value, whole)); }
+    void operator()(const char* name, const model::Walls& value) { add(name, value.lua_text()); }
+    void operator()(const char* name, const std::vector<model::Friction>& laws) {
+        std::vector<std::string> texts;
+        for (const model::Friction& law : laws) texts.push_back(lua_text(L, law, whole));
+        add(name, fmt::format("{{ {} }}", fmt::join(texts, ", ")));
+    }
+};
+
 /// "{ I = 1, k = 4, Rd = 0.3 }", or for a link "{ \"motor\", \"load\", k = 90 }".
 std::string joint_text(lua_State* L, const model::System& system, std::size_t j, ValueText* whole) {
-    const model::Joint& joint = system.joints[j];
-    std::vector<std::string> parts;
-    const auto number = [&](const char* name, double value) {
-        if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
-    };
-    if (system.is_link(j)) {
-        const bool two = joint.of.size() == 2 && joint.of[0].by == 1;
-        for (const auto& [body, by] : joint.of) {
-            const std::string& name = system.bodies[body].name;
-            parts.push_back(two ? text::quoted(name) : fmt::format("{} = {}", name, text::number_literal(by)));
-        }
-        if (two && !joint.is_difference()) number("ratio", -joint.of[1].by);
-        if (joint.rigid) parts.emplace_back("rigid = true");
-    } else {
-        number("I", system.bodies[j].inertia);
-        if (const auto& moved = system.bodies[j].moved) {
-            parts.push_back(
-                fmt::format("{} = {}", moved->by_angle ? "theta" : "velocity", describe(L, moved->motion, whole)));
-        }
-    }
-    if (system.named) {
-        number("k", joint.stiffness);
-    } else {
-        parts.push_back("k = " + text::number_literal(joint.stiffness));
-    }
-    number("C", joint.damping);
-    if (!joint.spring.none()) parts.push_back("spring = " + lua_text(L, joint.spring, whole));
-    if (const model::Walls* walls = joint.any_walls()) parts.push_back("walls = " + walls->lua_text());
-    const model::ContactFriction& friction = joint.friction;
-    const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
-        if (value) parts.push_back(fmt::format("{} = {}", name, describe(L, *value, whole)));
-    };
-    if (friction.function != nullptr) parts.push_back("friction = " + function_text(L, *friction.function, whole));
-    varying("Rd", friction.sliding[1]);
-    varying("Re", friction.holding[1]);
-    const bool none = friction.law.under(1).none() || !friction.listed.empty();
-    if (!friction.listed.empty()) {
-        std::string list;
-        for (const model::Friction& law : friction.listed)
-            list += (list.empty() ? " " : ", ") + lua_text(L, law, whole);
-        parts.push_back("friction = {" + list + " }");
-    } else if (!friction.sliders.empty()) {
-        parts.push_back("friction = " + friction.sliders.front().lua_text());
-    }
-    if (const auto* law = friction.law.as<model::laws::Coulomb>(); law != nullptr && !none) {
-        parts.push_back(fmt::format("Rd = {}, Re = {}", law->kinetic, law->breakaway));
-    } else if (!none) {
-        parts.push_back("friction = " + lua_text(L, friction.law, whole));
-    }
-    if (friction.law.normal() != 1) parts.push_back(fmt::format("normal = {}", friction.law.normal()));
-    varying("normal", friction.normal);
-    if (!system.named && !system.units.usual()) parts.push_back("units = " + system.units.lua_text());
-    return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+    OptionTexts texts{L, whole};
+    model::give_options(system, j, texts);
+    if (!system.named && !system.units.usual()) texts.add("units", system.units.lua_text());
+    return fmt::format("{{ {} }}", fmt::join(texts.parts, ", "));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ void Fingerprint::add_value(int index) {
 /// ("x"):trim() does not name them.
 void Fingerprint::libraries() {
     const int top = lua_gettop(L_), globals = top + 1, fields = top + 2, library = top + 4, copy = top + 5;
-    std::vector<std::pair<std::string, Piece>> additions;
+    std::vector<std::pair<std::string, Visited>> additions;
     const auto note = [this](int index, const std::string& name) {
         if (const void* identity = lua_topointer(L_, index)) standard_[identity] += stirred(digest_of(name));
     };
@@ -115,7 +115,7 @@ void Fingerprint::libraries() {
     }
 }
 
-Fingerprint::Piece Fingerprint::piece(int index) {
+Fingerprint::Visited Fingerprint::piece(int index) {
     const int type = lua_type(L_, index);
     const std::uint64_t start = joined_digest(digest_start, static_cast<std::uint64_t>(type));
     switch (type) {
@@ -143,7 +143,7 @@ Fingerprint::Piece Fingerprint::piece(int index) {
     }
 }
 
-std::uint64_t Fingerprint::reference(const Piece& piece) {
+std::uint64_t Fingerprint::reference(const Visited& piece) {
     if (piece.object == nullptr) return piece.digest;
     const auto [place, is_new] = numbers_.try_emplace(piece.object, numbers_.size());
     if (is_new) order_.push_back(piece.object);
@@ -154,7 +154,7 @@ std::uint64_t Fingerprint::reference(const Piece& piece) {
 std::uint64_t Fingerprint::sketch(int index, int depth) {
     luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
     index = lua_absindex(L_, index);
-    const Piece own = piece(index);
+    const Visited own = piece(index);
     if (own.object == nullptr || depth == 0) return own.digest;
     auto& known = sketches_.at(static_cast<std::size_t>(depth) - 1);
     if (const auto found = known.find(own.object); found != known.end()) return found->second;
@@ -190,14 +190,14 @@ void Fingerprint::table(int index) {
     if (lua::documented(L_, index).owner != nullptr) return;  // a class of ours
     struct Entry {
         std::uint64_t key_sketch, value_sketch;
-        Piece key, value;
+        Visited key, value;
     };
     constexpr int deep_enough = std::tuple_size_v<decltype(sketches_)>;
     std::vector<Entry> entries;
     std::uint64_t sum = 0;  // digest of other fields, independent of the order of lua_next
     lua_pushnil(L_);
     while (lua_next(L_, index) != 0) {
-        const Piece key = piece(-2), value = piece(-1);
+        const Visited key = piece(-2), value = piece(-1);
         if (key.object == nullptr && value.object == nullptr) {
             sum += stirred(joined_digest(key.digest, value.digest));
         } else if (key.object == nullptr) {

@@ -31,15 +31,15 @@ public:
 
 private:
     /// A visited value: a complete digest, or a table, function or object to be visited later.
-    struct Piece {
+    struct Visited {
         std::uint64_t digest;
         const void* object = nullptr;
     };
 
     void join(std::uint64_t digest);
     void libraries();
-    Piece piece(int index);
-    std::uint64_t reference(const Piece& piece);
+    Visited piece(int index);
+    std::uint64_t reference(const Visited& piece);
     std::uint64_t reference(int index) { return reference(piece(index)); }
     std::uint64_t sketch(int index, int depth);
 

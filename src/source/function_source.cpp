@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "files/file.hpp"
+#include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "text/characters.hpp"
@@ -150,7 +151,7 @@ std::optional<std::string> whole_chunk(std::string_view source) {
                                    : "load(" + text::quoted(source) + ")";
 }
 
-/// Pushes the weak table of texts by function.
+/// Pushes the weak table of texts by function; false for one whose text is not at hand.
 void push_known(lua_State* L) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &known_key) == LUA_TTABLE) return;
     lua_pop(L, 1);
@@ -177,8 +178,9 @@ std::optional<std::string> function_source(lua_State* L, int index) {
     }
     push_known(L);
     lua_pushvalue(L, index);
-    if (lua_rawget(L, -2) == LUA_TSTRING) {
-        std::string known(lua::text_at(L, -1));
+    if (lua_rawget(L, -2) != LUA_TNIL) {
+        const bool is_text = lua_type(L, -1) == LUA_TSTRING;
+        auto known = is_text ? std::optional<std::string>(lua::text_at(L, -1)) : std::nullopt;
         lua_pop(L, 2);
         return known;
     }
@@ -199,13 +201,15 @@ std::optional<std::string> function_source(lua_State* L, int index) {
     }
     lua_settop(L, top);
     auto only = found.only();
+    push_known(L);
+    lua_pushvalue(L, index);
     if (only) {
-        push_known(L);
-        lua_pushvalue(L, index);
-        lua_pushlstring(L, only->data(), only->size());
-        lua_rawset(L, -3);
-        lua_pop(L, 1);
+        lua::push_text(L, *only);
+    } else {
+        lua_pushboolean(L, 0);
     }
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
     return only;
 }
 

@@ -20,37 +20,6 @@ namespace {
 
 constexpr std::size_t deepest = 50;  // nesting depth of tables and functions, which use the C++ stack
 
-const char sources_key = 0;  // registry key of a weak table: function -> its text, or false
-
-/// Caches function_source(), which may have to read a whole script, as sweeps run the same M often.
-std::optional<std::string> known_source(lua_State* L, int index) {
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &sources_key) != LUA_TTABLE) {
-        lua_newtable(L);
-        lua_newtable(L);
-        lua_pushliteral(L, "k");
-        lua_setfield(L, -2, "__mode");
-        lua_setmetatable(L, -2);
-        lua_pushvalue(L, -1);
-        lua_rawsetp(L, LUA_REGISTRYINDEX, &sources_key);
-        lua_replace(L, -2);
-    }
-    lua_pushvalue(L, index);
-    if (lua_rawget(L, -2) == LUA_TNIL) {
-        const auto source = function_source(L, index);
-        lua_pushvalue(L, index);
-        source ? static_cast<void>(lua_pushlstring(L, source->data(), source->size())) : lua_pushboolean(L, 0);
-        lua_pushvalue(L, -1);
-        lua_replace(L, -4);  // replaces nil
-        lua_rawset(L, -4);
-    }
-    std::optional<std::string> source;
-    if (lua_type(L, -1) == LUA_TSTRING) {
-        source = lua::text_at(L, -1);
-    }
-    lua_pop(L, 2);
-    return source;
-}
-
 }  // namespace
 
 std::string ValueText::nothing(std::string_view what) {
@@ -163,7 +132,7 @@ std::string ValueText::function(int index) {
     if (open_.size() > deepest) {
         return nothing("a function within too many others");
     }
-    const auto source = known_source(L_, index);
+    const auto source = function_source(L_, index);
     if (!source) {
         const lua::Foreign* other = lua::foreign(L_, index);
         if (aside_ && other != nullptr) return aside_(index);

@@ -170,18 +170,18 @@ constexpr std::size_t longest_bar = 30;  // columns between its ends
 constexpr std::size_t shortest_bar = 6;
 
 /// A text and its width in columns.
-struct Piece {
+struct MeasuredText {
     std::string text;
     std::size_t width = 0;
 };
 
-Piece ascii_piece(std::string text) {
+MeasuredText ascii_piece(std::string text) {
     const std::size_t width = text.size();
     return {std::move(text), width};
 }
 
 /// The label, cut to `columns`.
-Piece label_piece(const std::string& label, std::size_t columns, Letters letters) {
+MeasuredText label_piece(const std::string& label, std::size_t columns, Letters letters) {
     const std::string clean = text::displayable(label);
     const std::string shown = letters == Letters::utf8 ? clean : text::in_ascii(clean);
     if (text::columns(shown) <= columns) {
@@ -193,7 +193,7 @@ Piece label_piece(const std::string& label, std::size_t columns, Letters letters
 }
 
 /// A bar of `columns` including its ends.
-Piece bar_piece(double fraction, std::size_t columns, Letters letters) {
+MeasuredText bar_piece(double fraction, std::size_t columns, Letters letters) {
     constexpr std::array<const char*, 8> parts{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
     const std::size_t inner = columns - 2;
     const double filled = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(inner);
@@ -213,9 +213,9 @@ Piece bar_piece(double fraction, std::size_t columns, Letters letters) {
 }
 
 /// Joins pieces by blanks; empty ones take no space.
-Piece joined(const std::vector<Piece>& pieces) {
-    Piece result;
-    for (const Piece& piece : pieces) {
+MeasuredText joined(const std::vector<MeasuredText>& pieces) {
+    MeasuredText result;
+    for (const MeasuredText& piece : pieces) {
         if (piece.width > 0) {
             result.text += (result.width > 0 ? " " : "") + piece.text;
             result.width += (result.width > 0 ? 1 : 0) + piece.width;
@@ -224,7 +224,7 @@ Piece joined(const std::vector<Piece>& pieces) {
     return result;
 }
 
-Piece listed(const std::vector<std::string>& facts) {
+MeasuredText listed(const std::vector<std::string>& facts) {
     std::vector<std::string_view> there(facts.begin(), facts.end());
     there.erase(std::remove(there.begin(), there.end(), ""), there.end());
     return ascii_piece(fmt::format("{}", fmt::join(there, ", ")));
@@ -234,14 +234,14 @@ Piece listed(const std::vector<std::string>& facts) {
 
 std::string progress_text(const ProgressFacts& facts, std::size_t columns, Letters letters) {
     const bool known = facts.fraction >= 0;
-    const Piece label = label_piece(facts.label, columns / 3, letters);
+    const MeasuredText label = label_piece(facts.label, columns / 3, letters);
     // Rounded down: 100% must not appear before the end.
-    const Piece percent = ascii_piece(known ? fmt::format("{:3.0f}%", std::floor(100 * facts.fraction)) : "");
+    const MeasuredText percent = ascii_piece(known ? fmt::format("{:3.0f}%", std::floor(100 * facts.fraction)) : "");
     const std::string left = known ? duration_text(facts.seconds_left) + " left" : "";
     const std::array<std::vector<std::string>, 4> choices{
         {{facts.done, facts.rate, left}, {facts.rate, left}, {left}, {}}};
     for (std::size_t i = 0; i < choices.size(); ++i) {
-        const Piece tail = listed(choices.at(i));
+        const MeasuredText tail = listed(choices.at(i));
         const std::size_t taken = joined({label, percent, tail}).width + (known ? 1 : 0);
         const std::size_t room = columns > taken ? columns - taken : 0;
         const std::size_t least = (i == 0 ? 2 : 1) * shortest_bar + 2;

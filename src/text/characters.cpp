@@ -10,28 +10,29 @@
 namespace dinal::text {
 namespace {
 
-enum class Kind { letter, blank, control, none };
+enum class CharacterKind { letter, blank, control, none };
 
 struct Character {
     utf8proc_int32_t code = 0xFFFD;
     std::size_t bytes = 1;
-    Kind kind = Kind::none;  // none: a byte that is not UTF-8
+    CharacterKind kind = CharacterKind::none;  // none: a byte that is not UTF-8
     std::size_t columns = 1;
 };
 
-Kind kind_of(utf8proc_int32_t code) {
+CharacterKind kind_of(utf8proc_int32_t code) {
     if (code == '\t' || code == '\n' || code == '\r') {
-        return Kind::blank;
+        return CharacterKind::blank;
     }
     switch (utf8proc_category(code)) {
         case UTF8PROC_CATEGORY_CC:
-            return Kind::control;
+            return CharacterKind::control;
         case UTF8PROC_CATEGORY_CF:
         case UTF8PROC_CATEGORY_ZL:
         case UTF8PROC_CATEGORY_ZP:
-            return Kind::blank;
+            return CharacterKind::blank;
         default:
-            return (code & 0xFFFE) == 0xFFFE ? Kind::control : Kind::letter;  // noncharacters, which XML forbids
+            return (code & 0xFFFE) == 0xFFFE ? CharacterKind::control
+                                             : CharacterKind::letter;  // noncharacters, which XML forbids
     }
 }
 
@@ -46,7 +47,7 @@ Character first_of(std::string_view text) {
     first.bytes = static_cast<std::size_t>(size);
     first.kind = kind_of(first.code);
     // Not wcwidth(), which in the locale "C" knows only ASCII.
-    first.columns = first.kind == Kind::letter ? static_cast<std::size_t>(utf8proc_charwidth(first.code)) : 1;
+    first.columns = first.kind == CharacterKind::letter ? static_cast<std::size_t>(utf8proc_charwidth(first.code)) : 1;
     return first;
 }
 
@@ -144,7 +145,7 @@ std::string_view cut_to_columns(std::string_view text, std::size_t width) {
 bool is_printable(std::string_view text) {
     while (!text.empty()) {
         const Character next = taken_from(text);
-        if (next.kind != Kind::letter && next.code != '\n') {
+        if (next.kind != CharacterKind::letter && next.code != '\n') {
             return false;
         }
     }
@@ -155,10 +156,10 @@ std::string displayable(std::string_view text) {
     std::string result;
     while (!text.empty()) {
         const Character next = first_of(text);
-        result += next.kind == Kind::letter    ? text.substr(0, next.bytes)
-                  : next.kind == Kind::blank   ? " "
-                  : next.kind == Kind::control ? "?"
-                                               : "\xEF\xBF\xBD";
+        result += next.kind == CharacterKind::letter    ? text.substr(0, next.bytes)
+                  : next.kind == CharacterKind::blank   ? " "
+                  : next.kind == CharacterKind::control ? "?"
+                                                        : "\xEF\xBF\xBD";
         text.remove_prefix(next.bytes);
     }
     return result;
@@ -185,7 +186,7 @@ std::string quoted(std::string_view text, std::size_t limit, bool unicode) {
     std::size_t at = 0;
     while (at < text.size() && at < limit) {
         const Character next = first_of(text.substr(at));
-        const bool shown = next.kind == Kind::letter && (next.bytes == 1 || unicode);
+        const bool shown = next.kind == CharacterKind::letter && (next.bytes == 1 || unicode);
         if (text[at] == '"' || text[at] == '\\') {
             result += '\\';
         }

@@ -172,22 +172,18 @@ std::vector<std::string> suggestions(std::string_view word, const KnownNames& kn
             best.emplace_back(name);
         }
     }
-    if (best.size() > 2) {
-        best.clear();
-    }
+    if (best.size() > 2) best.clear();
     return best;
 }
 
+std::string did_you_mean_one_of(const std::vector<std::string>& names) {
+    if (names.empty() || names.size() > 2) return "";
+    const std::string other = names.size() == 2 ? " or '" + names.back() + "'" : "";
+    return "; did you mean '" + names.front() + "'" + other + "?";
+}
+
 std::string did_you_mean(std::string_view word, const KnownNames& known, Likeness likeness) {
-    const std::vector<std::string> best = suggestions(word, known, likeness);
-    if (best.empty()) {
-        return {};
-    }
-    std::string text = "; did you mean '" + best.front() + "'";
-    if (best.size() > 1) {
-        text += " or '" + best.back() + "'";
-    }
-    return text + "?";
+    return did_you_mean_one_of(suggestions(word, known, likeness));
 }
 
 }  // namespace dinal::text

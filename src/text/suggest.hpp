@@ -23,7 +23,10 @@ enum class Likeness { of_letters, of_meaning };
 std::vector<std::string> suggestions(std::string_view word, const KnownNames& known,
                                      Likeness likeness = Likeness::of_meaning);
 
-/// The same as the end of a sentence: "", "; did you mean 'theta'?" or "; did you mean 'Rd' or 'Re'?".
+/// "; did you mean 'theta'?" or "; did you mean 'Rd' or 'Re'?"; "" for none or more than two.
+std::string did_you_mean_one_of(const std::vector<std::string>& names);
+
+/// The same for the suggestions.
 std::string did_you_mean(std::string_view word, const KnownNames& known, Likeness likeness = Likeness::of_meaning);
 
 }  // namespace dinal::text

@@ -1,6 +1,5 @@
 #include "theory/theory_forced.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -18,20 +17,8 @@ double phase_lag(double r, double zeta) {
     return r == 1 ? pi / 2 : std::atan2(2 * zeta * r, detuning(r));
 }
 
-double transmissibility(double r, double zeta) {
-    return std::hypot(1, 2 * zeta * r) * magnification(r, zeta);
-}
-
-double equivalent_damping(double kinetic_friction, double omega, double amplitude) {
-    return 4 * kinetic_friction / (pi * omega * amplitude);
-}
-
 double equivalent_damping_ratio(double friction_ratio, double r, double magnification) {
     return 2 * friction_ratio / (pi * r * magnification);
-}
-
-double friction_work(double kinetic_friction, double amplitude) {
-    return 4 * kinetic_friction * amplitude;
 }
 
 // With zeta + zeta_eq instead of zeta, (1 - r^2)^2 Phi^2 + (2 zeta r Phi + g)^2 = 1, g = 4 gamma/pi: the positive root,
@@ -45,10 +32,6 @@ std::optional<Harmonic_motion> linearised_friction(double r, double zeta, double
     const double amplitude = rest / (c * g + std::hypot(d * std::sqrt(rest), c));
     if (!std::isfinite(amplitude)) return Harmonic_motion{amplitude, pi / 2};
     return Harmonic_motion{amplitude, std::atan2(c * amplitude + g, d * amplitude)};
-}
-
-double growth_at_resonance(double friction_ratio) {
-    return std::max(pi - 4 * friction_ratio, 0.0);
 }
 
 }  // namespace dinal::theory

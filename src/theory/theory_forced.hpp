@@ -19,15 +19,10 @@ inline double detuning(double r) {
 double magnification(double r, double zeta);
 /// The lag of the motion behind the load: atan2(2 zeta r, 1 - r^2), 0 to pi; pi/2 at r = 1 for any zeta.
 double phase_lag(double r, double zeta);
-/// The ratio of support torque to load torque, equal to that of the motions of mass and support.
-double transmissibility(double r, double zeta);
 
-/// The damping constant that dissipates as much energy as friction in a cycle of amplitude X: 4 Rd/(pi w X).
-double equivalent_damping(double kinetic_friction, double omega, double amplitude);
-/// The same as a damping ratio, for the amplitude Phi in units of M0/k: 2 gamma/(pi r Phi).
+/// The damping ratio that dissipates as much energy as friction in a cycle of amplitude Phi, in units of M0/k: 2
+/// gamma/(pi r Phi).
 double equivalent_damping_ratio(double friction_ratio, double r, double magnification);
-/// The energy that friction dissipates in a cycle of amplitude X without stops: 4 Rd X.
-double friction_work(double kinetic_friction, double amplitude);
 
 /// Amplitude and lag of a harmonic motion, or of the fundamental of another motion.
 struct Harmonic_motion {
@@ -37,9 +32,5 @@ struct Harmonic_motion {
 /// The motion with friction replaced by equivalent damping, for small gamma. None from gamma = pi/4 on, where friction
 /// would dissipate more than the load supplies.
 std::optional<Harmonic_motion> linearised_friction(double r, double zeta, double friction_ratio);
-
-/// The growth of the amplitude in a period at r = 1 without viscous damping, in M0/k: pi - 4 gamma, and 0 from gamma =
-/// pi/4 on.
-double growth_at_resonance(double friction_ratio);
 
 }  // namespace dinal::theory

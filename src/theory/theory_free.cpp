@@ -146,21 +146,14 @@ double logarithmic_decrement(double zeta) {
     return 2 * pi * zeta / (std::sqrt(1 - zeta) * std::sqrt(1 + zeta));
 }
 
-double zeta_of_decrement(double decrement) {
-    return decrement / std::hypot(decrement, 2 * pi);
-}
-
-double friction_decrement(double kinetic_friction, double stiffness) {
-    return 4 * kinetic_friction / stiffness;
-}
-
 std::optional<Dampings> identify(double X0, double X1, double X2) {
     X0 = std::fabs(X0), X1 = std::fabs(X1), X2 = std::fabs(X2);
     const double first = X0 - X1;
     const double second = X1 - X2;
     if (!(first > 0 && second > 0)) return {};
     const double q = second / first;
-    return Dampings{zeta_of_decrement(-2 * std::log(q)), (q * X0 - X1) / (1 + q)};
+    const double decay = -std::log(q);
+    return Dampings{decay / std::hypot(decay, pi), (q * X0 - X1) / (1 + q)};
 }
 
 namespace {

@@ -71,10 +71,6 @@ private:
 
 /// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2) from viscous damping alone; zeta < 1.
 double logarithmic_decrement(double zeta);
-/// The zeta that has this logarithmic decrement.
-double zeta_of_decrement(double decrement);
-/// The decrease of the amplitude in a cycle by dry friction alone: 4 Rd/k.
-double friction_decrement(double kinetic_friction, double stiffness);
 
 struct Dampings {
     double zeta = 0;

@@ -77,9 +77,9 @@ TEST_CASE("tables that fall, rise, nearly jump or have a narrow bump move as an 
         {.speed = {0, 1e-3, 2e-3, 3e-3, 1}, .torque = {0.5, 0.2, 0.5, 0.2, 0.3}},
     };
     for (const Tabulated& table : tables) {
-        check(table, {1.3, 0.2}, 0, 10, 25);
-        check(table, {0.4, -0.3}, 0.25, 10, 25);
-        check(table, {0.2, 1.5}, 0, 0.9, 25);
+        check(table, {1.3, 0.2}, 0, 10, 14);
+        check(table, {0.4, -0.3}, 0.25, 10, 14);
+        check(table, {0.2, 1.5}, 0, 0.9, 14);
     }
     // A bump is passed in about the time width/theta'', and takes height width/(2 theta'') of the speed: 1e-6 and more.
     // (Later one holds the mass at its speed for long, where the truth takes steps without end.)

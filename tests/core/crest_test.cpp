@@ -50,7 +50,7 @@ void check_pairs(const Crest& crest, const Excitation& M, const Integrator& meth
 TEST_CASE("a crest that passes the limit by rounding or little more slips and sticks, or holds, and the run goes on",
           "[long][exact][spectral][rk4][crest]") {
     for (const double Re : {0.3, 1.0, 1e-9}) {
-        for (const double above : {1e-16, 3e-15, 4e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-7}) {
+        for (const double above : {1e-16, 4e-15, 1e-13, 1e-11, 1e-9, 1e-7}) {
             for (const double omega : {0.1, 0.013, 1.0}) {
                 for (const double zeta : {0.0, 0.05, 1.0}) {
                     const Crest crest{Re, above, omega, zeta};

@@ -6,7 +6,7 @@
 namespace dinal::hybrid_test {
 
 TEST_CASE("systems of all kinds by lot agree with an independent integrator, event by event", "[hybrid][mixed]") {
-    truth::check_random_mixed(120);
+    truth::check_random_mixed(60);
 }
 
 }  // namespace dinal::hybrid_test

@@ -73,7 +73,7 @@ TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "
             system, [](double) { return 0.0; }, initial);
         // 17 panels of 16 new nodes each, a fifth of that more, and what is asked again at the end.
         CHECK(nothing.calls <= 1.2 * 17 * 16 + 20);
-        constexpr int pulses = 300;
+        constexpr int pulses = 150;
         for (const auto& [width, most] : {std::pair{0.07, 0.0}, {0.05, 0.02}, {0.03, 0.2}, {0.01, 0.75}}) {
             int missed = 0;
             for (int i = 0; i < pulses; ++i) {
@@ -90,7 +90,7 @@ TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "
 
 TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look][long]") {
     truth::Lot lot(12);
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < 70; ++i) {
         const bool resting = i % 2 == 0;
         const Oscillator system = nondimensional(0.05, resting ? 0.3 : 0.02);
         const State initial{resting ? 0.0 : 1.0, 0};

@@ -19,7 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("magnification, lag and transmissibility solve the equation of motion", "[theory]") {
+TEST_CASE("magnification and lag solve the equation of motion", "[theory]") {
     using Complex = std::complex<double>;
     for (const double zeta : {0.0, 0.02, 0.119, 0.7, 1.0, 3.0}) {
         for (const double r : {0.0, 0.1, 0.9, 1.1, 2.0, 50.0}) {
@@ -27,7 +27,6 @@ TEST_CASE("magnification, lag and transmissibility solve the equation of motion"
             CAPTURE(zeta, r);
             CHECK(magnification(r, zeta) == Approx(std::abs(answer)).epsilon(1e-14));
             CHECK(phase_lag(r, zeta) == Approx(std::abs(std::arg(answer))).epsilon(1e-14));
-            CHECK(transmissibility(r, zeta) == Approx(std::abs(answer * Complex(1, 2 * zeta * r))).epsilon(1e-14));
         }
     }
 }
@@ -41,17 +40,13 @@ TEST_CASE("near resonance the magnification keeps its digits, and at resonance i
     CHECK(phase_lag(1, 0.3) == pi / 2);
     CHECK(phase_lag(0.99, 0) == 0);
     CHECK(phase_lag(1.01, 0) == Approx(pi));
-    CHECK(transmissibility(std::sqrt(2.0), 0.4) == Approx(1).epsilon(1e-14));
 }
 
 TEST_CASE("equivalent damping takes from a cycle what dry friction takes", "[theory]") {
     const double Rd = 0.7, omega = 3, X = 0.2;
-    CHECK(pi * equivalent_damping(Rd, omega, X) * omega * X * X == Approx(friction_work(Rd, X)).epsilon(1e-15));
-    CHECK(friction_work(Rd, X) == Approx(4 * Rd * X).epsilon(1e-15));
-
-    // zeta = C/(2 sqrt(I k)), in the units I = 2, k = 5, M0 = 1.5.
+    // zeta = C/(2 sqrt(I k)), in the units I = 2, k = 5, M0 = 1.5. In a cycle C takes pi C omega X^2, friction 4 Rd X.
     const double omega0 = std::sqrt(2.5), M0 = 1.5;
-    const double C = equivalent_damping(Rd, omega, X);
+    const double C = 4 * Rd / (pi * omega * X);
     CHECK(equivalent_damping_ratio(Rd / M0, omega / omega0, X * 5 / M0) ==
           Approx(C / (2 * std::sqrt(10.0))).epsilon(1e-14));
 }
@@ -87,12 +82,6 @@ TEST_CASE("friction taken for viscous is the motion that its own equivalent damp
     CHECK(linearised_friction(1, 0, 0.5)->amplitude == infinite);
     CHECK_FALSE(linearised_friction(1.35, 0, pi / 4));
     CHECK_FALSE(linearised_friction(1.35, 0.3, 2));
-}
-
-TEST_CASE("figure 23: at resonance the amplitude grows by pi - 4 gamma a period, below pi/4", "[theory]") {
-    CHECK(std::fabs(growth_at_resonance(0.167) - 2.473593) <= 5e-7);
-    CHECK(growth_at_resonance(0) == pi);
-    CHECK(growth_at_resonance(0.8) == 0);
 }
 
 }  // namespace dinal::theory_forced_test

@@ -228,4 +228,17 @@ test("an event at a flat zero is at that zero", function()
     near(run.events[1].t, 1, 1e-15)
 end)
 
+test("the work of an act is what the springs and the mass have more behind it", function()
+    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.1, spring = spring.polynomial { [3] = 2 } }
+    local push = { when = function(t) return t - 1.3 end, act = function(_, theta, velocity) return theta + 0.3, velocity end }
+    closes(sys:simulate { theta0 = 1, t_end = 5, dt = 0.1, events = { push } })
+end)
+
+test("a mass that stands is not at rest while an act is still to come", function()
+    local kick = { when = function(t) return t - 50 end, act = function(_, _, velocity) velocity.a = 1 end }
+    local run = system { bodies = { a = { I = 1, k = 1, Rd = 0.3 } } }:simulate { theta0 = { a = 0.1 }, t_end = 10, events = { kick } }
+    equal(run.outcome, "stuck at the end")
+    assert(run:continue { t_end = 60 }.a.theta:max() > 0.5)
+end)
+
 finish()

@@ -1,4 +1,4 @@
--- run:animate into files, and what it says where there is nothing to show it on; tests/prompt/animate_test.py has a terminal.
+-- run:animate into files, and what it says without one.
 dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }
@@ -95,7 +95,7 @@ test("what nothing brings back turns as discs, in metres or on springs it slides
 end)
 
 test("what cannot be shown is said", function()
-    raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
+    raises_here(function() run:animate() end, "a terminal does not show animations", 'give file = "run.svg"')
     refuses(function(o) run:animate(o) end, {
         { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
         { { file = "x.svg", speed = 0 }, "speed", "positive" },
@@ -105,6 +105,20 @@ test("what cannot be shown is said", function()
         { { sped = 1 }, "did you mean 'speed'?" },
         { { file = "/nowhere/x.svg" }, "/nowhere/x.svg" },
     })
+end)
+
+test("bodies stand along their links in animations and plots, from the one that links name first", function()
+    local rig = system{ bodies = { brake = { I = 1, k = 9 }, load = { I = 3 }, motor = { I = 1 } },
+        links = { clutch = { "motor", "load", Rd = 2 }, rod = { "load", "brake", k = 3 } } }
+    local moving = rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }
+    local x = {}
+    for at, name in animated(moving, {}):gmatch '<text x="([%d.]+)"[^>]*>(%a+)</text>' do x[name] = tonumber(at) end
+    assert(x.motor < x.load and x.load < x.brake)
+    local file = temporary ".txt"
+    moving:plot{ file = file }
+    local order = {}
+    for name in read(file):gmatch "(%a+) θ" do order[#order + 1] = name end
+    equal(table.concat(order, " "), "motor load brake clutch")
 end)
 
 finish()

@@ -99,6 +99,14 @@ test("two bodies that stick to each other are one of both inertias", function()
     equal(#pair.events, #one.events)
 end)
 
+test("a body that goes on is that of the run of all bodies that goes on", function()
+    local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1, Rd = 0.2 }, b = { I = 1 } }, links = { link = { "a", "b", k = 4 } } }
+    local run = rig:simulate { M = { a = math.sin }, t_end = 3, dt = 0.1 }
+    local body, whole = run.b:continue { t_end = 5 }, run:continue { t_end = 5 }
+    equal(tostring(body.theta), tostring(whole.b.theta))
+    equal(tostring(body:continue { t_end = 6 }.velocity), tostring(whole:continue { t_end = 6 }.b.velocity))
+end)
+
 test("accelerations are those of the equation of motion, and 0 where a body is held", function()
     local rig = pair({ I = 2, k = 3, C = 0.1 }, { I = 1, Rd = 5 }, { k = 4 })
     local run = rig:simulate { M = { a = math.sin }, theta0 = { a = 0.5 }, velocity0 = { b = 0.2 }, t_end = 4, dt = 0.5 }
@@ -127,44 +135,6 @@ test("a gap between two bodies: momentum is conserved and the difference of spee
         :simulate { M = { a = 1 }, velocity0 = { a = 3 }, t_end = 2 }
     equal(run.events.kind[1] .. " " .. run.events.kind[2], "impact stick")
     near(run.link.theta[1001], 1, 1e-15)
-end)
-
-test("one body under a name moves as a system of one does, with all that a run may have", function()
-    local own = { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.4, walls = { upper = 0.6, restitution = 0.5 } }
-    -- Each makes the options of a run: of(theta) is the angle of the body, on(M) acts on it, and `name` is ".a" or nothing.
-    local cases = {
-        function(_, on) return { M = on(function(t) return t % 2 < 1 and 2 or -2 end) } end,
-        function(_, on, name) return { M = on(excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 }, of = "theta" .. name }) } end,
-        function(of, on)
-            return { M = on(excitation.sampled(function(_, theta, velocity) return 2 - 3 * of(theta) - of(velocity) end, { every = 0.2 })) }
-        end,
-        function(of, on) return { M = on(excitation.delayed(function(_, theta) return 1 - of(theta) end, { by = 0.3 })) } end,
-        function(_, on) return { belt = on(function(t) return 0.4 * math.sin(t) end) } end,
-        function() return { base = excitation.harmonic { amplitude = 2, omega = 1.5 } } end,
-        function(of, on)
-            return { M = on(function(_, _, _, z) return z.e end),
-                states = { e = { start = 1, rate = function(_, theta) return 0.3 - of(theta) end } } }
-        end,
-        function(of, on, name)
-            return { M = on(1), events = { { when = function(_, theta) return of(theta) - 0.3 end, act = function(_, theta, velocity)
-                if name == "" then return theta, velocity / 2 end
-                velocity.a = velocity.a / 2
-            end } } }
-        end,
-    }
-    local function run(sys, case, ...)
-        local options = case(...)
-        options.velocity0, options.t_end, options.dt = select(2, ...)(0.5), 12, 0.5
-        return sys:simulate(options)
-    end
-    for _, case in ipairs(cases) do
-        local one = run(system(own), case, function(x) return x end, function(x) return x end, "")
-        local named = run(system { bodies = { a = own } }, case, function(x) return x.a end, function(x) return { a = x } end, ".a")
-        near(named.a.theta, one.theta, 1e-10)
-        for _, kind in ipairs { "switch", "user" } do
-            equal(select(2, table.concat(named.events.kind):gsub(kind, "")), select(2, table.concat(one.events.kind):gsub(kind, "")))
-        end
-    end
 end)
 
 test("a pulse between the nodes is seen while all bodies stand, with a state beside", function()
@@ -257,8 +227,10 @@ test("a run of several bodies has their columns and pictures by name, and gives 
     local all, own = run:spectrum "a.theta", run.a:spectrum()
     equal(all.amplitude, own.amplitude)
     has(tostring(all), "spectrum of a.theta: 1024 samples of the motion")
+    local like = system { bodies = { a = { I = 1, k = 1 }, ab = { I = 1, k = 4 } } }:simulate { theta0 = { a = 1, ab = 1 }, t_end = 30, dt = 0.1 }
+    equal(like:spectrum("ab.theta").amplitude, like.ab:spectrum().amplitude)
     has(run:markdown(), "| a.theta, deg |")
-    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a.theta") end
+    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a θ") end
     equal(tostring(run.a.system), tostring(rig.a))
     equal(tostring(run.a.excitation), "excitation.constant{ amplitude = 0 }")
     equal(run.gap.excitation, nil)
@@ -406,7 +378,7 @@ test("several bodies take spectral and rk4, and say of exact that it is for one 
     equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
     near(long.b.theta, rk4.b.theta, 1e-8)
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body without a name and with constant friction: use integrator.spectral or rk4")
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
     -- each body alone would be stable with this h, and their common mode is not
     local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }
@@ -447,14 +419,6 @@ test("each body and link has the states, and the events of the user with its own
         equal(reloaded(run[part]).z, run.states.z)
     end
     equal(table.concat(run.rod.names, " "), "t theta velocity torque friction z")
-end)
-
-test("several bodies have no gap if their functions are read", function()
-    local rig = system { bodies = { a = { I = 1, k = 4, normal = function(t) return 1 + 0.1 * math.sin(t) end, Rd = 0.1 },
-        b = { I = 1 } } }
-    local function gap(M) return rig:simulate { M = { b = M }, t_end = 5 }.gap end
-    equal(gap(function(t, theta, velocity) return math.sin(t) - theta.b end), nil)
-    assert(gap(unread(function(t) return math.sin(t) end)) > 0)
 end)
 
 test("the lines that repeat a run of several bodies name its integrator, and list its times", function()

@@ -102,7 +102,7 @@ test("rows that memory can not hold are refused, of one body and of several, fro
 end)
 
 test("a run that ends at a wall, or as near to it as numbers come, goes on", function()
-    for i = 1, 30 do
+    for i = 1, 12 do
         local walled = system { I = 1, k = 1, walls = { lower = -0.1 - 0.00137 * i, restitution = 0.5 } }
         local function run(t_end) return walled:simulate { M = -0.5, theta0 = 0.3, t_end = t_end, dt = 0.5 } end
         local whole = run(6)
@@ -156,6 +156,12 @@ test("wrong uses get a sentence", function()
     local loaded = reloaded(run)
     equal(loaded.t_end, 3.0)
     raises_here(function() loaded:continue { t_end = 5 } end, "read from a file")
+end)
+
+test("a run that goes on has the gap of its parts", function()
+    local run = system { bodies = { a = { I = 1, k = 4 } } }:simulate { M = { a = unread(math.sin) }, t_end = 10 }
+    local gap = run.gap
+    equal(run:continue { t_end = 10.01 }.gap, gap)
 end)
 
 finish()

@@ -58,4 +58,17 @@ test("after a beginning that is over in a moment the run goes on as if it had no
     end
 end)
 
+test("a run that begins later meets the instants that follow, and a relay that is beyond its threshold from the start", function()
+    local at = {}
+    local M = excitation.sampled(function(t) at[#at + 1] = t return 0 end, { every = 0.3, at = 0.1 })
+    system { I = 1, k = 1 }:simulate { M = M, t_start = 0.65, t_end = 1.5 }
+    near(vector(at), vector { 0.7, 1, 1.3 }, 1e-12)
+    for _, start in ipairs { "on", "off" } do
+        local relay = excitation.relay { on = -0.1, off = 0.1, amplitude = 1, of = "theta", start = start }
+        local run = system { I = 1, k = 4 }:simulate { M = relay, theta0 = 1, t_end = 0.1, dt = 0.1 }
+        equal(run.M[1], -1.0)
+        equal(#run.events, 0)
+    end
+end)
+
 finish()

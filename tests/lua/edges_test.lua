@@ -123,4 +123,10 @@ test("an exponential that outgrows the motion is followed at once", function()
 
 end)
 
+test("a step of M at the end of a step of rk4 acts from there on", function()
+    local sys, options = system { I = 1, k = 4, C = 0.1, Rd = 0.1 }, { M = excitation.step { at = 1, amplitude = 2 }, theta0 = 0.5, t_end = 5, dt = 0.5 }
+    local exact = sys:simulate(options)
+    near(sys:simulate(merged(options, { integrator = integrator.rk4 { h = 0.01 } })).theta, exact.theta, 1e-7)
+end)
+
 finish()

@@ -186,6 +186,9 @@ test("LuGre under the normal load 2 is the law with Rd, Re, stiffness and dampin
         close(loaded[name], strong[name], name)
     end
     close(loaded:energy().total.dry, strong:energy().total.dry, "dry")
+    -- under a load below 0 they are apart
+    local apart = moved(system { I = 1, k = 4, C = 0.1, friction = law(1), normal = function() return -1 end })
+    close(apart.theta, moved(system { I = 1, k = 4, C = 0.1 }).theta, "theta")
 end)
 
 test("the same record gives the same errors with I or k given, and with a system", function()

@@ -148,4 +148,16 @@ test("a beat on a shaking base is no growth", function()
     has_not(told(run), "The motion grows")
 end)
 
+test("the story has the numbers of a contact that is open at first, of the hardest impact and of both ways of a law", function()
+    local function normal(t) return t - 1 end
+    says(system { I = 1, k = 1, Rd = 0.1, normal = normal }:simulate { theta0 = 1, t_end = 4 }, "It was open for 25 % of the time")
+    local walls = { lower = -0.3, upper = 0.5, restitution = 0.9 }
+    local run = system { I = 1, k = 1, C = 0.1, walls = walls }:simulate { velocity0 = -2, t_end = 6 }
+    local hit = of_kind(run, "impact")[1]
+    says(run, ("the hardest impact had velocity %.5g, at t = %.5g"):format(hit.velocity, hit.t))
+    local law = friction.asymmetric { forward = { Rd = 0.1, Re = 0.2 }, backward = { Rd = 0.3, Re = 0.5 } }
+    says(system { I = 1, k = 1, friction = law }:simulate { theta0 = 1, t_end = 1 },
+        "Rd = 0.1 while sliding forward and 0.3 backward; breakaway takes Re = 0.2 forward and 0.5 backward")
+end)
+
 finish()

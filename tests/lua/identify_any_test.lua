@@ -148,23 +148,6 @@ test("starts and offsets of bodies are given by name, a run of several bodies is
     has(fit, ">= 0.1, not determined by this record")
 end)
 
-test("a body is fitted as a system of one", function()
-    for _, normal in ipairs { 1, 2 } do
-        local body = { I = 1, k = 4, C = 0.05, Rd = 0.2 / normal, normal = normal }
-        local r = system(merged(body, { Rd = 0.1 / normal })):simulate { M = M, theta0 = 0.3, t_end = 20, dt = 0.05 }
-        local d = record(r, 3, 0.01)
-        local one = identify { data = d, system = system(body), M = M, free = { "Rd", "k" } }
-        local other = identify { data = { t = d.t, ["a.theta"] = d.theta }, system = system { bodies = { a = body } }, M = { a = M },
-            free = { "a.Rd", "a.k" }, measured = "a.theta" }
-        fits(one, { Rd = 0.1 / normal })
-        for _, name in ipairs { "Rd", "k", "theta0", "velocity0" } do
-            near(other["a." .. name], one[name], 1e-6 * math.max(math.abs(one[name]), one.std_error[name]))
-            near(other.std_error["a." .. name], one.std_error[name], 1e-4 * one.std_error[name])
-        end
-        equal(other.system.a.normal, normal)
-    end
-end)
-
 test("Re goes with Rd where both are one number, of each way of an asymmetric law, too", function()
     local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }

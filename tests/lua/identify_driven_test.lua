@@ -105,6 +105,7 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
         local seen = noisy(run, 1, 0.002):map(function(x) return math.max(-ends, math.min(ends, x)) end)
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
         fits(fit, { k = 40, Rd = 1.2 })
+        near(fit.noise, 0.002, 1e-4) -- of the samples that are not cut off
         has(fit, "samples have the extreme values of the record")
     end
     local exact = identify{ data = run, M = two }
@@ -162,6 +163,13 @@ test("noise alone is no system, and noise in a measured M is told", function()
         return tostring(identify{ data = run, M = measured, velocity0 = 0, theta0 = 0, offset = 0 }):find("the errors ignore the noise of M", 1, true)
     end
     assert(told(0.05) and not told(0))
+end)
+
+test("the errors of I and k go together: that of omega0 is far smaller", function()
+    local M = excitation.chirp{ amplitude = 1, from = 0.1, to = 0.6, duration = 40 }
+    local run = system{ I = 1, k = 4, C = 0.1, Rd = 0.1 }:simulate{ M = M, t_end = 40, dt = 0.1 }
+    local fit = identify{ data = record(run, 3, 1e-3), M = M }
+    assert(fit.std_error.omega0 / fit.omega0 < 0.2 * fit.std_error.k / fit.k)
 end)
 
 finish()

@@ -20,7 +20,7 @@ end)
 test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held by Re = Rd or by more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
-    local records = lots(200)
+    local records = lots(100)
     for seed = 1, records do
         local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
         local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
@@ -34,7 +34,7 @@ test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held
         part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
             velocity0 = run.velocity[1] })
     end
-    assert(records < 200 or part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
+    assert(records < 100 or part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
 end)
 
 test("what is given has no error, and a misspelt field is told", function()
@@ -298,7 +298,7 @@ test("noise with a memory widens the errors, and is told; white noise does neith
     local M = excitation.harmonic { amplitude = 1, omega = 1.7 } + excitation.harmonic { amplitude = 0.5, omega = 4 }
     local run = system { I = 1, k = 4, C = 0.2, Rd = 0.2 }:simulate { M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
     local within, told = 0, 0
-    for seed = 1, 20 do
+    for seed = 1, 12 do
         local white, x, colored = vector.normal { n = #run.t, std = 0.003, seed = seed }, 0, {}
         for i = 1, #run.t do
             x = 0.9 * x + white[i]
@@ -308,10 +308,9 @@ test("noise with a memory widens the errors, and is told; white noise does neith
         if math.abs(fit.k - 4) < 2 * fit.std_error.k then within = within + 1 end
         if tostring(fit):find "correlated from sample to sample" then told = told + 1 end
         equal(fit.misfit, nil)
-        local plain = identify { data = data { t = run.t, theta = run.theta + white }, M = M }
-        equal(#plain.notes, 0)
+        if seed % 4 == 0 then equal(#identify { data = data { t = run.t, theta = run.theta + white }, M = M }.notes, 0) end
     end
-    assert(within >= 17 and told == 20, within .. " " .. told) -- 19 and 20; without the memory 10 of 20
+    assert(within >= 10 and told == 12, within .. " " .. told) -- 95 %; without the memory half of them
 end)
 
 local rich = excitation.harmonic{ amplitude = 1.2, omega = 1.7 } + excitation.harmonic{ amplitude = 0.5, omega = 4 }
@@ -327,16 +326,14 @@ test("a wrong model is accused by what its residual follows: velocity, theta or 
     for _, case in ipairs{ { "velocity", stribeck, stribeck.theta }, { "theta", cubic, cubic.theta },
         { "time", honest, honest.theta + 0.001 * honest.t }, { "time", honest, honest.theta + 0.01 * (0.3 * honest.t):sin() } } do
         local what, run, theta = table.unpack(case)
-        for seed = 1, 3 do
-            local fit = identify{ data = { t = run.t, theta = theta + vector.normal{ n = #run, seed = seed, std = 0.003 } }, M = rich }
-            equal(fit.misfit, what)
-            has(fit, ("times the noise and follows %s: "):format(what == "theta" and what or "the " .. what), words[what], "standard errors are left out")
-            has_not(fit, "+-")
-            equal(fit.std_error.k, nil)
-            equal(#fit.notes, 2)
-            local times = tonumber(fit.notes[1]:match "is (%S+) times the noise")
-            near(times * 0.003, fit.noise, 0.1 * fit.noise)
-        end
+        local fit = identify{ data = { t = run.t, theta = theta + vector.normal{ n = #run, seed = 1, std = 0.003 } }, M = rich }
+        equal(fit.misfit, what)
+        has(fit, ("times the noise and follows %s: "):format(what == "theta" and what or "the " .. what), words[what], "standard errors are left out")
+        has_not(fit, "+-")
+        equal(fit.std_error.k, nil)
+        equal(#fit.notes, 2)
+        local times = tonumber(fit.notes[1]:match "is (%S+) times the noise")
+        near(times * 0.003, fit.noise, 0.1 * fit.noise)
     end
 end)
 
@@ -360,7 +357,7 @@ end)
 test("no white record is accused, and its errors cover the truth", function()
     local run = moved()
     local names, inside, twice, all = { "I", "k", "C", "Rd" }, 0, 0, 0
-    for seed = 1, lots(60) do
+    for seed = 1, lots(30) do
         local fit = identify{ data = record(run, seed, 0.003), M = rich }
         equal(fit.misfit, nil)
         equal(#fit.notes, 0)
@@ -369,7 +366,7 @@ test("no white record is accused, and its errors cover the truth", function()
             inside, twice, all = inside + (z < 1 and 1 or 0), twice + (z < 2 and 1 or 0), all + 1
         end
     end
-    -- 68 and 95 %, three binomial deviations of the 60 records, as the numbers of one hang together
+    -- 68 and 95 %, three binomial deviations of the 30 records, as the numbers of one hang together
     local n = all / #names
     near(inside / all, 0.683, 3 * (0.683 * 0.317 / n)^0.5)
     near(twice / all, 0.954, 3 * (0.954 * 0.046 / n)^0.5)
@@ -394,7 +391,7 @@ end)
 
 test("an instrument with steps errs alike as long as the mass rests: the errors know it", function()
     local judged, part, ratio = judge()
-    for seed = 1, lots(40) do
+    for seed = 1, lots(20) do
         math.randomseed(seed)
         local s = system{ I = 1, k = 3 + math.random(), C = 0.1 + 0.1 * math.random(), Rd = 0.1 + 0.1 * math.random() }
         local run = s:simulate{ theta0 = 1 + math.random(), t_end = 20, dt = 0.05 }

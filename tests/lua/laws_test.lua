@@ -152,4 +152,19 @@ test("a law without an Rd has none as a field, and elastic stops are the walls",
     raises_here(function() return stopped.dead_zone end, "with elastic walls a mass has no dead zone")
 end)
 
+test("energy: sliders on a belt, and an impact that turns a slider round", function()
+    local element = friction.jenkins { stiffness = 20, Rd = 1 }
+    local total = closes(system { I = 1, k = 4, friction = element }:simulate { belt = 0.5, t_end = 9 }).total
+    assert(total.dry > 0.1 and total.belt > 0.1)
+    local walls = { lower = -0.5, upper = 0.5, restitution = 0.9 }
+    local M = excitation.harmonic { amplitude = 4, omega = 1.3 }
+    local own = { I = 1, k = 1, walls = walls, friction = friction.jenkins { stiffness = 5, Rd = 0.6 } }
+    local run = system(own):simulate { M = M, t_end = 10, dt = 0.1 }
+    local function bend(_, _, v, z) if z.q >= 0.12 and v > 0 or z.q <= -0.12 and v < 0 then return 0 end return v end
+    local by_hand = system { I = 1, k = 1, walls = walls }:simulate { M = M + excitation.scripted(function(_, _, _, z) return -5 * z.q end),
+        t_end = 10, dt = 0.1, states = { q = { rate = bend } }, integrator = integrator.rk4 { h = 1e-3 } }
+    near(run.theta, by_hand.theta, 1e-3)
+    assert(#of_kind(run, "impact") > 2)
+end)
+
 finish()

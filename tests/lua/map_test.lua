@@ -27,6 +27,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     local result = "slope" -- which comes first is for sweep to say, by the alphabet
     equal(text{}, text{ x = "x", y = "y", z = result })
     equal(text{ z = "steps" }, text{ x = "x", y = "y", z = "steps" })
+    equal(tostring(map:sort(result):plot{ show = false }), text{})
     -- A line from the end of one curve to the beginning of the next would cross the corner below the diagonal of the last.
     local family = sweep{ over = { a = { 1, 2 }, b = vector.linspace(0, 1, 30) }, run = function(p) return { v = p.a * 10 + p.b * 0 } end }
     local lines, rows = tostring(family:plot{ y = "v", show = false, ascii = true }), 0

@@ -85,10 +85,6 @@ for heading, options in pairs(calls) do
                     if heading:find "plot" then
                         t.file, t.show = nil, false -- nothing is to be drawn where a test forgets to fail
                     end
-                    if option.name == "omega0" or option.name == "zeta" then
-                        t.system = nil -- which has them of its own
-                        t.omega0 = heading == "theory.free_response" and 1 or nil
-                    end
                     owner[option.name] = value
                     if partner(option) then
                         owner[partner(option)] = nil

@@ -24,7 +24,7 @@ local questions = {
   { "parameter study", "sweep{" },
   { "how do I vary two parameters", "sweep{" },
   { "optimise a parameter", "minimise{" },
-  { "animation", "run:animate()" },
+  { "animation", "run:animate{" },
   { "pid controller", "excitation.sampled has a memory" },
   { "feedback", "M may depend on the motion" },
   { "impulse", "excitation.pulse" },

@@ -111,6 +111,13 @@ test("a run in motion is on the page, and beside Markdown", function()
     raises_here(function() r:animate(run, { file = "x.svg" }) end, "file")
 end)
 
+test("a run of several bodies in motion is on the page with all of them", function()
+    local rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
+    local r = report{ title = "x" }
+    r:animate(rig:simulate{ velocity0 = { motor = 3 }, t_end = 1 })
+    has(saved(r, ".html"), "2 bodies as discs on one axis")
+end)
+
 test("the end of CDATA in a label leaves the picture well formed", function()
     local r = report{ title = "x" }
     r:plot{ { run.t, run.theta, label = "]]><!--" }, title = "]]>", xlabel = "a]]]>" }

@@ -246,6 +246,10 @@ test("a response over two parameters is a response at each value of the first", 
         local one, rows = sys:response{ amplitude = amplitude, over = { omega = omega } }, c:filter(function(row) return row.M0 == amplitude end)
         for _, name in ipairs{ "omega", "amplitude", "lag", "stable" } do equal(rows[name], one[name]) end
     end
+    for _, point in ipairs(c.points) do
+        local branch = c:filter(function(row) return row.branch == point.branch end)
+        assert(branch.M0:min() == point.M0 and branch.M0:max() == point.M0)
+    end
     -- Folds: Newton's method on the half period's map and its determinant, by Runge and Kutta's method.
     local folds = c.points:filter(function(p) return p.kind == "fold" and p.M0 == 0.5 end):sort("omega")
     near(folds.omega[1], 1.357937998722, 1e-8)

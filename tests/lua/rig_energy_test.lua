@@ -98,17 +98,6 @@ test("the energy of several bodies is that of the run itself: it asks no functio
     near(parts.finish.kinetic + parts.finish.spring - parts.start.kinetic - parts.start.spring, total.kinetic + total.spring, 1e-9)
 end)
 
-test("the energy of a body is that of a system of one, half cycles and words included", function()
-    local own, M = { I = 1, k = 1, Rd = 0.12, C = 0.03 }, excitation.harmonic { omega = 0.7 }
-    local options = { theta0 = 1, t_end = 20, dt = 5, integrator = integrator.spectral {} }
-    local one = system(own):simulate(merged(options, { M = M })):energy()
-    local rig = system { bodies = { a = own } }:simulate { M = { a = M }, theta0 = { a = 1 }, t_end = 20, dt = 5 }:energy()
-    equal(#rig.half_cycles, #one.half_cycles)
-    near(rig.half_cycles[2].dry, one.half_cycles[2].dry, 1e-12)
-    near(rig.total.flow, one.total.flow, 1e-12)
-    has(rig, "lost to dry friction", "half cycles")
-end)
-
 test("a run is told in sentences", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.1 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     says(rig:simulate { velocity0 = { motor = 3 }, t_end = 40 }, "There is no M.", "clutch links motor and load",
@@ -211,6 +200,13 @@ test("the energy of a link called as a column comes before that column", functio
     equal(energy.total.belt, 0.0)
     equal(#energy.dry, #run)
     raises(function() return energy.blt end, "belt")
+end)
+
+test("the energy at the start is that of all bodies and links", function()
+    local rig = pair({ I = 1, k = 4 }, { I = 2, k = 3 }, { k = 5 })
+    local e = rig:simulate { theta0 = { a = 0.5, b = -0.2 }, velocity0 = { a = 1, b = 2 }, t_end = 1 }:energy()
+    near(e.start.spring, (4 * 0.25 + 3 * 0.04 + 5 * 0.49) / 2, 1e-14)
+    near(e.start.kinetic, 0.5 + 4, 1e-14)
 end)
 
 finish()

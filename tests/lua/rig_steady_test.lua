@@ -160,24 +160,6 @@ test("rest, and what is refused", function()
         rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
 end)
 
-test("controllers that sample or wait settle as those of one body", function()
-    local body = { I = 1, k = 1, C = 0.6, Rd = 0.1, Re = 0.12 }
-    local one, rig = system(body), system { bodies = { a = body } }
-    for _, period in ipairs { 2, 6 } do -- of the sine, and of what is sampled of it, which is 0 at each return
-        local M = function() return excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = 0.3 }) end
-        local s, r = one:steady { M = M(), period = period }, rig:steady { M = { a = M() }, period = period }
-        equal(s.period, 6.0)
-        equal(r.period, 6.0)
-        near(r.a.amplitude, s.amplitude, 1e-12)
-    end
-    local s = one:steady { theta0 = 1, M = excitation.delayed(function(t, theta) return -1.5 * theta end, { by = 0.3 }) }
-    local r = rig:steady { theta0 = { a = 1 },
-        M = { a = excitation.delayed(function(t, theta) return -1.5 * theta.a end, { by = 0.3 }) } }
-    equal(s.status, "rest")
-    equal(r.status, "rest")
-    near(r.a.mean, s.mean, 1e-12)
-end)
-
 test("every member of a steady answer gives a value or a sentence, whatever the status, for one body and for several", function()
     local members = { "status", "period", "periods", "amplitude", "peak", "mean", "lag", "peak_lag", "stops", "stuck", "multipliers",
         "stable", "unique", "others", "symmetric", "rest", "growth", "run" }
@@ -361,6 +343,35 @@ end)
 test("a steady motion of several bodies that moves has no rest", function()
     local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1, C = 0.1 } } }
     equal(rig:steady { M = { a = excitation.harmonic { omega = 1 } } }.rest, nil)
+end)
+
+test("a motion is symmetric in its angles and velocities", function()
+    local C, k, w = 0.4, 4, 1.1
+    local phase = math.atan(2 * w * C, k - 4 * w * w)  -- half a period later the angle at the start is opposite, the velocity is not
+    local M = excitation.harmonic { omega = w } + excitation.harmonic { omega = 2 * w, phase = phase }
+    local own = { I = 1, k = k, C = C }
+    equal(system(own):steady { M = M }.symmetric, false)
+    equal(system { bodies = { a = own } }:steady { M = { a = M } }.symmetric, false)
+end)
+
+test("the stops of a body do not depend on where the period begins", function()
+    for phase = 0, 5 do
+        local s = system { bodies = { a = { I = 1, k = 1, Rd = 0.6 } } }:steady { M = { a = excitation.harmonic { omega = 0.4, phase = phase } } }
+        equal(s.a.stops, 2)
+    end
+end)
+
+test("bodies that stand anywhere are not the only ones, and a geared link stands at the angle of its bodies", function()
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { gear = { "a", "b", k = 0.1, ratio = 2 } } }
+    local s = rig:steady { theta0 = { a = 0.5, b = 0.1 } }
+    equal(s.unique, false)
+    near(s.gear.rest.lower, 0.3, 1e-12)
+end)
+
+test("a response in which the first body stands and another moves is steady", function()
+    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.5 }, b = { I = 1, k = 1, C = 0.1 } } }
+    local c = rig:response { over = { x = { 0.1, 1 } }, at = function(p) return { M = { b = sine(0.5, p.x) } } end }
+    equal(table.concat(c.status, " "), "steady steady")
 end)
 
 finish()

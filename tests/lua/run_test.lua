@@ -269,6 +269,7 @@ test("a run tells its cycle as data", function()
     near(c.period, 2.5, 1e-9)
     equal(c.stops, 2)
     equal(sys:simulate{ theta0 = 2, t_end = 20 }:cycle(), nil)
+    near(system{ I = 1, k = 1 }:simulate{ theta0 = 1, t_end = 40 }:cycle().since, math.pi, 1e-9)  -- the first event
 end)
 
 finish()

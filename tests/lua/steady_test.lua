@@ -294,4 +294,26 @@ test("multipliers beside a grazing are those of the motion, from wherever it was
     end
 end)
 
+test("what grows linearly does so by what its closed form says", function()
+    local uneven = friction.asymmetric { forward = { Rd = 0.1 }, backward = { Rd = 0.3 } }
+    near(system{ I = 1, k = 1, friction = uneven }:steady{ M = excitation.harmonic{ omega = 1 } }.growth, math.pi - 0.8, 1e-9)
+    local fed = system{ I = 1, k = 1 }:steady{ M = function(_, _, v) return v > 0 and 0.1 or -0.1 end, velocity0 = 1 }
+    near(fed.growth, 0.4, 0.02)
+end)
+
+test("a search begins with the states of the run, and where a step is over", function()
+    local flip = { when = function(t) return t - 5 end, act = function(_, theta, velocity, z) z.z = -1 return theta, velocity end }
+    local run = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }:simulate{ t_end = 20, dt = 1, events = { flip },
+        M = excitation.harmonic{ omega = 1.3 } + excitation.scripted(function(_, _, _, z) return z.z end),
+        states = { z = { start = 1, rate = function(_, _, _, z) return z.z - z.z^3 end } } }
+    near(run:steady{ omega = 1.3 }.run.states.z[1], -1, 1e-9)
+    local rubbed = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }
+    local function mean(M) return rubbed:steady{ M = M, belt = 0.1 }.mean end
+    near(mean(excitation.step{ amplitude = 1, at = 5 }), mean(1.0), 1e-8)
+    -- a mass that stands while a state still moves is not at rest
+    local s = system{ I = 1, k = 4, Rd = 0.5 }:steady{ M = function(_, _, _, z) return 2 * z.z end,
+        states = { z = { start = 0.1, rate = function(_, _, _, z) return 0.05 * (z.z - z.z^3) end } } }
+    near(s.rest.lower, 0.375, 1e-6)
+end)
+
 finish()

@@ -125,4 +125,11 @@ test("dry friction does not hold a body against an elastic stop that pushes hard
     near(run.theta, named.a.theta, 1e-13)
 end)
 
+test("what a pressed stop stores stands in the energy at the end as in its last row", function()
+    local run = system { I = 1, k = 1, walls = { upper = 0.1, stiffness = 20 } }:simulate { velocity0 = 1, t_end = 0.3, dt = 0.1 }
+    local e = closes(run)
+    near(e.finish.spring, e.spring[#run], 1e-13)
+    near(e.finish.kinetic, e.kinetic[#run], 1e-13)
+end)
+
 finish()

@@ -346,4 +346,39 @@ test("a point that takes longer than max_time is given up, in Lua or in a run, a
     end
 end)
 
+test("a part of a sweep has the random numbers of the whole, and a bifurcation begins where its runs do", function()
+    local function y(points)
+        return sweep { over = { x = vector.range(1, 6) }, points = points, run = function() return { y = math.random() } end }.y
+    end
+    equal(y { 3, 5 }, y():slice(3, 5))
+    local sys, M = system { I = 1, k = 4, C = 0.2 }, excitation.harmonic { omega = 1.3 }
+    local b = bifurcation { over = { x = { 1 } }, period = 2, skip = 1, keep = 3, at = function()
+        return { system = sys, M = M, t_start = 0.7, theta0 = 0.3 }
+    end }
+    near(b.theta, sys:simulate { M = M, t_start = 0.7, theta0 = 0.3, times = { 4.7, 6.7, 8.7 } }.theta, 1e-12)
+end)
+
+test("a file is of one sweep: another option of a controller in its function is another sweep", function()
+    local function f() return 0 end
+    local function start(x) return function() return { x = x } end end
+    local function sampled(o) return excitation.sampled(f, merged({ every = 0.1, start = start(0) }, o)) end
+    local function relay(o) return excitation.relay(merged({ on = -1, off = 1, amplitude = 1, of = "theta" }, o)) end
+    local scripted = excitation.scripted
+    local kinds = {
+        { sampled {}, sampled { start = start(1) }, sampled { every = 0.2 }, sampled { delay = 0.05 }, sampled { at = 0.05 } },
+        { relay {}, relay { on = -2 }, relay { off = 2 }, relay { amplitude = { 1, 0 } }, relay { of = "velocity" }, relay { start = "off" } },
+        { excitation.delayed(f, { by = 0.1 }), excitation.delayed(f, { by = 0.2 }) },
+        { scripted(f), scripted(f):delay(1), scripted(f):window(0, 1), 2 * scripted(f), scripted(f, { breaks = { 1 } }), scripted(f, { period = 1 }) },
+    }
+    for _, kind in ipairs(kinds) do
+        local file = temporary ".csv"
+        local function swept(M)
+            return sweep { over = { x = { 1 } }, workers = 1, file = file, run = function() return { y = M ~= nil } end }
+        end
+        swept(kind[1])
+        swept(kind[1])
+        for i = 2, #kind do raises(function() swept(kind[i]) end, "is there, and is not the result of this sweep") end
+    end
+end)
+
 finish()

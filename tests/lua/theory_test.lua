@@ -8,19 +8,12 @@ local calls = {
     free_response = { system = nd, theta0 = 1, velocity0 = 0, t = 0.3 },
     time_to_rest = { system = nd, theta0 = 1, velocity0 = 0.5 },
     rest_position = { system = nd, theta0 = 1, velocity0 = 0.5 },
-    half_cycle = { X = 1, zeta = 0.1, x_f = 0.05, dead_zone = 0.06, n = 2 },
     logarithmic_decrement = { zeta = 0.1 },
-    zeta_from_decrement = { decrement = 0.6 },
-    friction_decrement = { Rd = 2, k = 40 },
     identify = { X0 = 1, X1 = -0.7, X2 = 0.45 },
     magnification = { r = 0.5, zeta = 0.1 },
     phase_lag = { r = 0.5, zeta = 0.1 },
-    transmissibility = { r = 0.5, zeta = 0.1 },
-    equivalent_damping = { Rd = 2, omega = 6, amplitude = 0.5 },
     equivalent_zeta = { friction_ratio = 0.2, r = 0.5, magnification = 1.3 },
     linearised = { r = 0.5, friction_ratio = 0.1, zeta = 0.05 },
-    friction_work = { Rd = 2, amplitude = 0.5 },
-    growth_at_resonance = { friction_ratio = 0.2 },
     den_hartog = { r = 0.75, friction_ratio = 0.2, zeta = 0.1, breakaway_ratio = 0.25 },
     den_hartog_fundamental = { r = 0.75, friction_ratio = 0.2, zeta = 0.1, breakaway_ratio = 0.25 },
     stop_boundary = { r = 0.75, zeta = 0.1, Re_over_Rd = 1.25 },
@@ -76,11 +69,11 @@ test("a nan in a vector stays where it is", function()
     near(zeta[2], 2 * 0.4 / (math.pi * 0.9 * A[2]), 1e-15)
 end)
 
-test("omega0 and zeta do without a system", function()
-    local theta, velocity = theory.free_response { omega0 = 2, theta0 = 1, t = { -0.5, 0, 1 } }
+test("a free response is known before t = 0 as well", function()
+    local theta, velocity = theory.free_response { system = system { I = 1, k = 4 }, theta0 = 1, t = { -0.5, 0, 1 } }
     near(theta[3], math.cos(2), 1e-15)
     near(velocity[1], 2 * math.sin(1), 1e-15)
-    near(theory.free_response { omega0 = 2, zeta = 1, theta0 = 1, t = 1 }, 3 * math.exp(-2), 1e-15)
+    near(theory.free_response { system = system { I = 1, k = 4, C = 4 }, theta0 = 1, t = 1 }, 3 * math.exp(-2), 1e-15)
 end)
 
 test("extremes stop at rest, at count, or ask for it", function()
@@ -91,19 +84,6 @@ test("extremes stop at rest, at count, or ask for it", function()
         { { system = nondimensional {}, theta0 = 1 }, "theory.extremes: count is needed, because this motion never comes to rest" },
         { { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 }, "count is needed, because there are 5e+11 extremes until rest" },
         { { theta0 = 1 }, "theory.extremes needs system, for example" },
-    })
-end)
-
-test("half_cycle takes a system, too, and stops in the dead zone", function()
-    local sys = system { I = 1, k = 10, C = 0.4, Rd = 0.5, Re = 0.8 }
-    equal(theory.half_cycle { X = 1, system = sys },
-        theory.half_cycle { X = 1, zeta = sys.zeta, x_f = sys.Rd / sys.k, dead_zone = sys.dead_zone })
-    equal(theory.half_cycle { X = 0.08, system = sys }, 0.08)
-    refuses(theory.half_cycle, {
-        { { X = 1, system = sys, zeta = 0.1 }, "system excludes zeta" },
-        { { X = 1, system = nondimensional { zeta = 1 } }, "the system has zeta = 1: without a swing there is no next extreme" },
-        { { X = 1, zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
-        { { X = 1, x_f = 0.2, dead_zone = { 0.3, 0.1 } }, "dead_zone[2] = 0.1 must be at least x_f = 0.2" },
     })
 end)
 
@@ -124,9 +104,11 @@ test("wrong values are refused with the option, the element and the limit", func
         { {}, "theory.magnification needs r, for example" },
     })
     refuses(theory.free_response, {
-        { { t = 1, theta0 = 1 }, "theory.free_response needs system, or omega0" },
-        { { t = 1, system = nd, omega0 = 1 }, "system excludes omega0 and zeta" },
+        { { t = 1, theta0 = 1 }, "theory.free_response needs system, for example" },
         { { t = { 1, -1 }, system = nd, theta0 = 1 }, "t[2] = -1 must not be negative" },
+    })
+    refuses(theory.logarithmic_decrement, {
+        { { zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
     })
     raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
         "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")

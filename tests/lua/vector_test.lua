@@ -141,6 +141,8 @@ do
     near(vector{ 7 }:quantile(0.3), 7, 0)
     refuses(function(p) v:quantile(p) end, { { 1.5, "p = 1.5 must lie between 0 and 1" }, { "x", "v:quantile(p): p" } })
     raises(function() vector{}:quantile(0.5) end, "the vector is empty")
+    local hole = vector{ 1, -1, 2 }:sqrt()
+    assert(hole:max() ~= hole:max() and hole:min() ~= hole:min() and hole:argmax() == 3)
     for i, x in ipairs(vector.range(1, 1000):table()) do assert(x == i) end
     assert(#vector.range(0, 0.3, 0.1) == 4)
     assert(vector.range(3, 1, -1) == vector{ 3, 2, 1 } and #vector.range(2, 2) == 1)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/sticking.hpp"
+#include "motion/contact.hpp"
 
 namespace dinal::motion::engine {
 
@@ -17,7 +17,7 @@ std::optional<double> SampledLoads::at(std::size_t body, double x) {
     return cheb::value(series_[body], x);
 }
 
-Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Collocation& solver)
+Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver)
     : mechanics_(mechanics), conditions_(conditions), solver_(solver) {
     has_feedback_ = std::any_of(mechanics.loads().begin(), mechanics.loads().end(),
                                 [](const Signal& load) { return load.asks_the_motion(); });
@@ -97,9 +97,10 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
         return -wall * pull - (sticks ? mechanics.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
     }
     if (const Slipping& how = mode.friction[joint]; how.creeps != Motion::stuck) {
-        const double off = pull - model::sign_of(how.creeps) * mechanics.sliding(joint, {.way = how.creeps}, 0, at);
-        towards = off > 0 ? Motion::forward : Motion::backward;
-        return std::fabs(off) - how.apart;
+        const double sliding = mechanics.sliding(joint, {.way = how.creeps}, 0, at);
+        const model::Pull off = contact::pull_on_creep(pull, how.creeps, sliding, how.apart);
+        towards = off.towards;
+        return off.beyond;
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
     const double holding = mechanics.holding(joint, towards, at) + mode.friction[joint].blunt;
@@ -108,14 +109,9 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
         mode.presses[joint] != 0) {
         return std::fabs(pull) - balance.blurred - holding;
     }
-    // The limit is a razor's edge. The angle stands for all that are within half a unit of its last place.
     const model::Joint& own = mechanics.system().joints[joint];
     const double theta = at.y[0], spring = own.spring.torque(theta);
-    const double beyond =
-        model::excess_over(holding, own.stiffness, balance.loads[0] - spring, theta, model::sign_of(towards));
-    constexpr double few = 8;  // roundings that a formula of the user makes
-    const double grace = rounding / 2 * (std::fabs(own.stiffness * theta) + few * std::fabs(spring));
-    return beyond < grace ? std::min(beyond, 0.0) : beyond;
+    return model::pull_on_spring(holding, own.stiffness, balance.loads[0], theta, spring, towards).beyond;
 }
 
 }  // namespace dinal::motion::engine

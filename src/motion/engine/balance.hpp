@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "motion/engine/collocation.hpp"
 #include "motion/engine/conditions.hpp"
+#include "motion/engine/flow.hpp"
 #include "motion/engine/now.hpp"
 
 namespace dinal::motion::engine {
@@ -32,7 +32,7 @@ private:
 /// Evaluates balances. It decides conditions at the present, and changes nothing else.
 class Balances {
 public:
-    Balances(const Mechanics& mechanics, Conditions& conditions, const Collocation& solver);
+    Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver);
     /// Returns the inertia of all bodies.
     [[nodiscard]] double inertia() const { return inertia_; }
 
@@ -58,7 +58,7 @@ private:
 
     const Mechanics& mechanics_;
     Conditions& conditions_;
-    const Collocation& solver_;
+    const Flow& solver_;
     double inertia_ = 0;  ///< of all bodies
     bool has_feedback_;
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;

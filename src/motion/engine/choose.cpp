@@ -83,18 +83,18 @@ void Engine::choose(const Frame& frame) {
     segment_.end = to_limit ? limit : now_.t.after(2 * segment_.h);
     segment_.from_break = now_.after_break;
     segment_.to_break = to_limit && limit == breaks;
-    segment_.to_the_end = to_limit && (segment_.to_break || limit == problem_.window.end || problem_.step == 0);
+    segment_.to_the_end = to_limit;
 }
 
 /// Returns the time to the next wall, if all accelerations stay as they are.
 double Engine::until_wall(const Frame& frame) {
     double first = model::never;
-    if (!balances_->at_present(now_, frame, segment_, balance_)) return first;
+    if (!balances_->at_present(now_, frame, segment_, room_.balance)) return first;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];
         const model::Walls* walls = joint.any_walls();
         if (walls == nullptr || now_.mode.holds(j) || now_.mode.presses[j] != 0) continue;
-        const double rate = joint.sum(balance_.accelerations);
+        const double rate = joint.sum(room_.balance.accelerations);
         for (const int wall : {1, -1}) {
             const double apart = std::max(0.0, wall * now_.gap(problem_.system.joints[j], walls->at(wall)));
             const double v = wall * mechanics_.velocity(j, now_.y);
@@ -118,10 +118,11 @@ double Engine::longest_under_friction(const Frame& frame) {
         const model::Friction& law = joint.friction.law;
         const Slipping& how = now_.mode.friction[j];
         if (law.ranges() == 0 || how.way == Motion::stuck || how.riding || now_.mode.leans[j] != 0) continue;
-        if (!looked && !balances_->at_present(now_, frame, segment_, balance_)) return longest;
+        if (!looked && !balances_->at_present(now_, frame, segment_, room_.balance)) return longest;
         looked = true;
         const double sign = model::sign_of(how.way);
-        const double lightness = joint.lightness(problem_.system.bodies), first = joint.sum(balance_.accelerations);
+        const double lightness = joint.lightness(problem_.system.bodies),
+                     first = joint.sum(room_.balance.accelerations);
         const double C = joint.damping, v = mechanics_.velocity(j, now_.y);
         const double second = (std::fabs(joint.stiffness * v) + std::fabs(C * first)) * lightness;
         longest =
@@ -131,13 +132,13 @@ double Engine::longest_under_friction(const Frame& frame) {
     return longest;
 }
 
-void Engine::again(Collocation::Attempt attempt) {
+void Engine::again(Flow::Attempt attempt) {
     const int most = conditions_->samples() ? most_attempts_sampled : most_attempts;
     if (chatter_.too_many_attempts(now_.t.hi, most)) {
         fail(conditions_->samples() ? Outcome::chattering : Outcome::unresolved);
         return;
     }
-    if (attempt == Collocation::Attempt::failed) {
+    if (attempt == Flow::Attempt::failed) {
         pace_.bad_time = solver_->bad_time();
         const double near = std::max(near_failure * pace_.unit, 64 * rounding * std::fabs(now_.t.hi));
         if (problem_.step > 0 || now_.t.until(pace_.bad_time) <= near || !mechanics_.may_go_on())

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "model/sticking.hpp"
-
 namespace dinal::motion::engine {
 
 namespace {
@@ -108,7 +106,7 @@ bool Decider::decide() {
     full_ = released_ ? released_->joint : all_used ? memory().last_full : joints();
     if (loops && !all_used && !share_loops()) return false;
     for (std::size_t j = 0; j < joints() && told_; ++j) {
-        if (asked_[j].slid != Motion::stuck) settle_at_limit(j);
+        if (asked_[j].before.slid != Motion::stuck) settle_at_limit(j);
     }
     if (released_) {
         const Series series = cheb::fit(by_.last.holding[released_->joint]);
@@ -142,9 +140,9 @@ void Decider::ask() {
         const bool arrived = arrived_as != Motion::stuck;
         if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
         asked_[j] = {.asked = true,
-                     .was_held = !arrived && !(how.leaving && !how.riding),
-                     .was_creeping = how.creeps != Motion::stuck,
-                     .slid = arrived ? arrived_as : Motion::stuck,
+                     .before = {.slid = arrived ? arrived_as : Motion::stuck,
+                                .held = !arrived && !(how.leaving && !how.riding),
+                                .creeps = how.creeps},
                      .let_go = released_ && how.leaving && !how.riding && !arrived ? how.way : Motion::stuck};
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
@@ -162,8 +160,8 @@ bool Decider::settle(bool all_used) {
         }
         if (!by_.balances.at_present(now(), present, by_.last, found_)) return false;
         for (std::size_t j = 0; j < joints(); ++j) {
-            if (memory().of[j].crept && asked_[j].slid != Motion::stuck && mode().holds(j))
-                creep(j, asked_[j].slid, -found_.holding[j]);
+            if (memory().of[j].crept && asked_[j].before.slid != Motion::stuck && mode().holds(j))
+                creep(j, asked_[j].before.slid, -found_.holding[j]);
         }
         const std::optional<Worst> worst = farthest_beyond();
         if (!made_.good) return false;
@@ -187,7 +185,7 @@ bool Decider::ride_along(const Frame& frame) {
         const bool slides = now().rubs(j) && how.way != Motion::stuck && !how.riding && mode().leans[j] == 0;
         if (slides && together && how.leaving) how.riding = true, how.leaving = false;
         if (!slides || !together || how.riding || belt(j) != 0) continue;
-        asked_[j].slid = how.way, asked_[j].asked = true, grown = true;
+        asked_[j].before.slid = how.way, asked_[j].asked = true, grown = true;
         how.way = Motion::stuck;
     }
     return grown;
@@ -275,7 +273,7 @@ void Decider::let_go(const Worst& worst) {
         if (told_) tell(EventKind::stick, j);
         return;
     }
-    if (how.creeps != Motion::stuck) asked_[j].was_held = false;
+    if (how.creeps != Motion::stuck) asked_[j].before.held = false;
     if (mode().leans[j] == 0) {
         slide(j, way, true);
         // In a loop others may hold on, while this one gives all that it can.
@@ -332,23 +330,20 @@ void Decider::report() {
 /// Reports what a joint at slip 0 does now, if it did something else.
 void Decider::report(std::size_t j) {
     const Slipping& how = mode().friction[j];
-    const bool slides = how.way != Motion::stuck && !how.riding;
+    const Motion way = how.riding ? Motion::stuck : how.way;
     Contacts::Arrival& arrival = memory().of[j].arrival;
-    if (asked_[j].slid != Motion::stuck) {
-        if (!slides) {
-            tell(EventKind::stick, j);
-            arrival = {asked_[j].slid, -found_.holding[j]};
-        } else if (how.way != asked_[j].slid) {
-            tell(EventKind::turn, j);
-        }
-    } else if (asked_[j].was_held && slides) {
-        tell(EventKind::slip, j);
-        Told& slip = made_.told.back();
-        slip.unless = Told::Unless::touched, slip.slid = arrival.slid, slip.turns = how.way != arrival.slid;
-        slip.off = std::fabs(asked_[j].pull - arrival.pull), slip.size = size(j);
-    } else if (!asked_[j].was_held && !asked_[j].was_creeping && !slides) {
-        tell(EventKind::stick, j);
-        made_.told.back().unless = Told::Unless::taken_back;
+    const Asked& asked = asked_[j];
+    const auto kind = contact::event_of(asked.before, way);
+    if (!kind) return;
+    tell(*kind, j);
+    Told& told = made_.told.back();
+    if (*kind == EventKind::slip) {
+        told.slid = arrival.slid, told.way = way;
+        told.off = std::fabs(asked.pull - arrival.pull), told.size = size(j);
+    } else if (*kind == EventKind::stick && asked.before.slid != Motion::stuck) {
+        arrival = {asked.before.slid, -found_.holding[j]};
+    } else if (*kind == EventKind::stick) {
+        told.holds_again = true;
     }
 }
 
@@ -379,29 +374,23 @@ void Decider::settle_at_limit(std::size_t joint) {
         mechanics_.bodies() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && mode().leans[joint] == 0;
     if (!alone || own.stiffness == 0) return;
     if (!by_.balances.at_present(now(), frame(), by_.last, found_)) return;
-    constexpr double roundings = 1024 * rounding;
-    Motion towards = Motion::stuck;
-    const double beyond = excess(mechanics_, joint, found_, mode(), now().here(), towards);
-    if (!(beyond > 0) || beyond > roundings * std::max(memory().size_at_stop, before)) return;
-    const double way = model::sign_of(towards), limit = mechanics_.holding(joint, towards, now().here());
-    double place = (found_.loads[0] - way * limit) / own.stiffness;
-    while (model::excess_over(limit, own.stiffness, found_.loads[0], place, way) > 0) {
-        place = std::nextafter(place, way * model::never);
-    }
-    now().y[0] = place, now().low[0] = 0;
+    model::Pull pull{0, Motion::stuck};
+    pull.beyond = excess(mechanics_, joint, found_, mode(), now().here(), pull.towards);
+    const double limit = mechanics_.holding(joint, pull.towards, now().here());
+    const double place = contact::place_at_limit(pull, limit, own.stiffness, found_.loads[0], now().y[0],
+                                                 std::max(memory().size_at_stop, before));
+    if (place != now().y[0]) now().y[0] = place, now().low[0] = 0;
 }
 
-/// A slip that has come down to rounding may go on: no more than the friction of sliding balances its pull, and
-/// more would hold it.
 void Decider::creep(std::size_t joint, Motion way, double pull) {
     Slipping& how = mode().friction[joint];
-    const double level = mechanics_.sliding(joint, {.way = way}, 0, now().here());
-    if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, now().here()) > level)) return;
-    const double off = std::fabs(model::sign_of(way) * pull - level);
-    constexpr double balances = 1024 * rounding;  // of the torques
-    if (!(off <= balances * size(joint))) return;
-    how.creeps = way, how.apart = 2 * off + 64 * rounding * size(joint);
-    made_.creeping.emplace_back(joint, event_at(mechanics_, now(), EventKind::stick, joint));
+    if (how.creeps != Motion::stuck) return;
+    const double sliding = mechanics_.sliding(joint, {.way = way}, 0, now().here());
+    const double holding = mechanics_.holding(joint, way, now().here());
+    const auto within = contact::creeps_within(pull, way, sliding, holding, size(joint));
+    if (!within) return;
+    how.creeps = way, how.apart = *within;
+    memory().of[joint].creeping = event_at(mechanics_, now(), EventKind::stick, joint);
 }
 
 /// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "model/event.hpp"
+#include "motion/contact.hpp"
 #include "motion/engine/balance.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/frames.hpp"
@@ -18,8 +18,8 @@ struct DecisionRoom {
     /// The knowledge of a decision about a joint.
     struct Asked {
         bool asked = false;  ///< it is at slip 0
-        bool taken_back = false, was_held = false, was_creeping = false;
-        model::Motion slid = model::Motion::stuck;    ///< the way in which it slid until now; stuck: it did not
+        bool taken_back = false;
+        contact::Before before = {};
         model::Motion let_go = model::Motion::stuck;  ///< the way of what came to its limit at this instant, too
         int leant = 0;
         double pull = 0;  ///< that let it go
@@ -54,11 +54,10 @@ struct Cause {
 /// An event that a decision reports.
 struct Told {
     model::Event event;
-    /// An event of a joint that is let go, or held again, may take back the one before.
-    enum class Unless { never, touched, taken_back } unless = Unless::never;
-    model::Motion slid = model::Motion::stuck;  ///< of touched: the way in which it slid before it stuck; stuck: none
-    bool turns = false;                         ///< of touched: it goes the other way now
-    double off = 0, size = 0;                   ///< of touched: the change of its pull since then, and of its torques
+    bool holds_again = false;  ///< a stick of a joint that was let go: with its slip at this instant it is no event
+    model::Motion slid = model::Motion::stuck;  ///< of a slip: the way in which it slid before it stuck; stuck: none
+    model::Motion way = model::Motion::stuck;   ///< of a slip: the way in which it slides now
+    double off = 0, size = 0;                   ///< of a slip: the change of its pull since then, and of its torques
 };
 
 struct Decision {
@@ -66,7 +65,6 @@ struct Decision {
     Now now;           ///< the modes and velocities from now on
     Contacts contacts;
     std::vector<Told> told = {};
-    std::vector<std::pair<std::size_t, model::Event>> creeping = {};  ///< joints that creep now: they stick only later
 };
 
 /// Decides for all joints at slip 0 at once: what can hold holds; of those that can not, the one that is farthest

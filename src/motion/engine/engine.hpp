@@ -1,19 +1,22 @@
 // The loop of a run: from one event to the next.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/breaks.hpp"
-#include "motion/engine/collocation.hpp"
+#include "motion/engine/chatter.hpp"
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/decide.hpp"
+#include "motion/engine/flow.hpp"
 #include "motion/engine/frames.hpp"
 #include "motion/engine/now.hpp"
 #include "motion/engine/pace.hpp"
+#include "motion/engine/plain_steps.hpp"
 #include "motion/engine/recorder.hpp"
 #include "motion/engine/torque_sizes.hpp"
 #include "motion/engine/user_events.hpp"
@@ -31,6 +34,7 @@ private:
     // The loop (run.cpp).
     void begin();
     bool advance();
+    bool take_plain_steps();
     bool solve(const Frame& frame);
     bool stands_for_good(const Frame& present);
     bool rest(const Frame& present);
@@ -52,7 +56,7 @@ private:
     void choose(const Frame& frame);
     double longest_under_friction(const Frame& frame);
     double until_wall(const Frame& frame);
-    void again(Collocation::Attempt attempt);
+    void again(Flow::Attempt attempt);
 
     // The end (finish.cpp).
     void finish();
@@ -131,19 +135,16 @@ private:
     UserEvents users_;
     std::vector<Half> normal_halves_;  ///< of each joint, for the guards
     std::optional<Frames> frames_;
-    std::optional<Collocation> solver_;
+    std::unique_ptr<Flow> solver_;
     std::optional<Conditions> conditions_;
     std::optional<Balances> balances_;
     std::optional<Recorder> recorder_;
+    std::optional<PlainSteps> plain_steps_;
     // Room, so that a stretch need not allocate it.
-    Balance balance_;
     DecisionRoom room_;
     TorqueSizes sizes_;
     std::vector<double> departing_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
-
-/// The part of a pull by which a joint may pass its limit after it was let go and did not leave, of the torques.
-inline constexpr double most_blunt = 1e-9;
 
 }  // namespace dinal::motion::engine

@@ -20,6 +20,10 @@ public:
     }
     [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
         if (!(since_start > 0)) return {};
+        if (kept_.remade != nullptr) {
+            if (!remade_) remade_ = kept_.remade->works();
+            return remade_(std::min(since_start, kept_.length));
+        }
         if (!works_[joint]) works_[joint] = integrals(joint);
         const Integrals& own = *works_[joint];
         const double x = std::min(std::min(since_start, kept_.length) / kept_.h - 1, 1.0);
@@ -64,14 +68,17 @@ private:
             sums.stop = work(v, v);
             for (double& c : sums.stop) c *= own.stops->damping;
         }
-        if (at_nodes.belt != nullptr) sums.belt = work(friction, belt);
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
+        Series sliders{};  // their torques; friction does not include these
+        if (at_nodes.springs != nullptr && !at_nodes.presses) sliders = cheb::fit(*at_nodes.springs);
         if (at_nodes.slides != 0) {
             Series torque{};
             torque[0] = at_nodes.slides;
             const Integral more = work(torque, slip);
             for (std::size_t k = 0; k < more.size(); ++k) sums.dry[k] += more[k];
+            sliders[0] += at_nodes.slides;
         }
+        if (at_nodes.belt != nullptr) sums.belt = work(difference(friction, sliders), belt);
         return sums;
     }
 
@@ -79,6 +86,7 @@ private:
     std::size_t bodies_;
     const Kept& kept_;
     mutable std::vector<std::optional<Integrals>> works_;
+    mutable std::function<Work(double)> remade_;
 };
 
 /// An energy change that takes no time.
@@ -100,7 +108,8 @@ private:
 }  // namespace
 
 void History::add(Kept kept, bool for_good, double past) {
-    const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series)) +
+    const std::size_t bytes = sizeof(Kept) + (kept.remade != nullptr ? kept.remade->bytes() : 0) +
+                              kept.begin.size() * (sizeof(double) + sizeof(Series)) +
                               kept.acting.size() * sizeof(Kept::Acting);
     if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
     for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
@@ -130,6 +139,7 @@ std::vector<double> History::at(double t, Side side) const {
     const bool earlier = t < t_start_ || (t == t_start_ && side == Side::before);
     if (after == list_.begin() || earlier) return before_ != nullptr ? before_->at(t, side) : initial_;
     const Kept& kept = *(after - 1);
+    if (kept.remade != nullptr) return kept.remade->at(kept.start.until(t));
     std::vector<double> y = kept.begin;
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = kept.value(k, kept.x(t));
     return y;

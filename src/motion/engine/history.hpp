@@ -15,6 +15,20 @@
 
 namespace dinal::motion::engine {
 
+/// A stretch of one body that is computed again when it is asked for.
+class Remade {
+public:
+    Remade() = default;
+    Remade(const Remade&) = delete;
+    Remade& operator=(const Remade&) = delete;
+    virtual ~Remade() = default;
+    /// Angle and velocity.
+    [[nodiscard]] virtual std::vector<double> at(double since_start) const = 0;
+    /// The work by the time since the start, as a function that must not outlive the stretch.
+    [[nodiscard]] virtual std::function<Work(double)> works() const = 0;
+    [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
 /// The stored data of a stretch, or of its beginning if an event ended it there.
 struct Kept {
     Clock start;
@@ -33,6 +47,7 @@ struct Kept {
         bool holds = false;                     ///< whether friction holds without slip
     };
     std::vector<Acting> acting{};
+    std::shared_ptr<const Remade> remade{};  ///< instead of series and torques
 
     [[nodiscard]] double value(std::size_t k, double x) const {
         return x <= -1 ? begin[k] : begin[k] + cheb::value(series[k], std::min(x, 1.0));

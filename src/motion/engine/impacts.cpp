@@ -61,9 +61,8 @@ bool Engine::hit(std::size_t joint, int wall) {
     };
     if (stayed && before == 0) {
         now_.mode.leans[joint] = wall;
-        Slipping& how = now_.mode.friction[joint];
-        how.leaving = false;
-        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
+        now_.mode.friction[joint].leaving = false;
+        Chatter::too_blunt(now_.mode.friction[joint], torque_size(joint));  // it went, and did not get away
         if (!decide(true)) return false;
         stands();
         return goes_on();
@@ -178,9 +177,9 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
 
 /// A body that was thrown, and is soon back, is to be seen on its way.
 void Engine::see_flight() {
-    if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, balance_)) return;
+    if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, room_.balance)) return;
     for (std::size_t i = 0; i < n(); ++i) {
-        const double v = now_.y[n() + i], a = balance_.accelerations[i];
+        const double v = now_.y[n() + i], a = room_.balance.accelerations[i];
         if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * frames_->of(now_.mode).longest)) continue;
         pace_.h = std::min(pace_.h, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_.unit));
     }

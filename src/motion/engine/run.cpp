@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "model/springs/user_spring.hpp"
+#include "motion/engine/collocation.hpp"
 #include "motion/engine/engine.hpp"
 #include "motion/engine/guards.hpp"
 #include "motion/engine/moving.hpp"
+#include "motion/engine/runge_kutta.hpp"
 #include "motion/witness.hpp"
 
 namespace dinal::motion::engine {
@@ -63,15 +65,21 @@ Engine::Engine(const Request& problem, Run& result)
         if (!problem.before->watches.empty()) users_.go_on_with(problem.before->watches);
     }
     now_.keep_rigid_places(problem_.system);
-    recorder_.emplace(problem, mechanics_, result, now_);
+    set_pace();
+    recorder_.emplace(problem, mechanics_, result, now_, pace_.unit);
     if (problem.before != nullptr && !problem.before->heading.empty()) recorder_->go_on_with(problem.before->heading);
     asking_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
-    set_pace();
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
     conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
-    solver_.emplace(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    if (problem.step > 0 || problem.pair != nullptr) {
+        solver_ =
+            std::make_unique<RungeKutta>(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
+    } else {
+        solver_ = std::make_unique<Collocation>(mechanics_, problem.tolerance, pace_.longest);
+    }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
+    plain_steps_.emplace(problem, mechanics_, *conditions_);
 }
 
 // ---- the loop
@@ -111,7 +119,7 @@ void Engine::begin() {
         project(now_.side());
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
-            recorder_->creeps(j, event_at(mechanics_, now_, EventKind::stick, j));
+            contacts_.of[j].creeping = event_at(mechanics_, now_, EventKind::stick, j);
         }
         if (now_.after_break) ask_after_break();
     }
@@ -141,6 +149,7 @@ bool Engine::advance() {
     if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     const Frame& frame = frames_->of(now_.mode);
     if (stands_for_good(frame)) return rest(frame);
+    if (take_plain_steps()) return true;
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
@@ -148,8 +157,9 @@ bool Engine::advance() {
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
-    if (ending.by == By::condition && !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
-        again(Collocation::Attempt::shorten);
+    if (ending.by == By::condition && problem_.step == 0 &&
+        !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
+        again(Flow::Attempt::shorten);
         return outcome_ == Outcome::reached_end;
     }
     SampledLoads sampled(mechanics_, segment_);
@@ -158,9 +168,21 @@ bool Engine::advance() {
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
+/// Steps on which nothing happens need no segment.
+bool Engine::take_plain_steps() {
+    if (pace_.bad_time < model::never) return false;
+    const double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
+    if (!plain_steps_->take({now_, contacts_, walls_, *recorder_}, breaks)) return false;
+    walls_.follow(problem_.system, now_);
+    if (!mechanics_.has_functions()) return true;
+    result_.gap = std::max(result_.gap, plain_steps_->gap());
+    result_.unproven = std::max(result_.unproven, plain_steps_->gap());
+    return true;
+}
+
 /// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.
 bool Engine::solve(const Frame& frame) {
-    using Attempt = Collocation::Attempt;
+    using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
     for (const SlideChange& change : conditions_->ceased(now_)) recorder_->tell_slide(now_, change);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
@@ -240,11 +262,10 @@ Ending Engine::watch(const Frame& frame) {
 
 /// A joint was let go and does not leave: its slip is no event, and it must be pulled clearly farther.
 void Engine::hold_again(std::size_t joint, double torques) {
-    recorder_->take_back_slip(joint, now_.t.hi);
+    recorder_->tell_no_slip(joint, now_.t.hi);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
-    how.blunt = std::max(2 * how.blunt, 64 * rounding * torques);
-    if (chatter_.too_often(now_.t.hi) || how.blunt > most_blunt * torques) fail(Outcome::chattering);
+    if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);
 }
 
 /// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is

@@ -34,7 +34,7 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
       clock_{problem.window.start, 0},
       y_(problem.drive.start()),
       piece_end_(problem.window.start),
-      standstill_(problem, &events, -model::never),
+      contact_(problem, &events, -model::never),
       arc_(system_),
       line_(system_, arc_.free()),
       load_(arc_.free()) {
@@ -50,7 +50,7 @@ model::Outcome ExactEngine::run() {
     bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
         if (cost_.is_due() && asked_to_stop(clock_.hi)) {
-            if (standstill_.phase() == Standstill::Phase::arrived) decide();
+            if (contact_.phase() == LoneContact::Phase::arrived) decide();
             break;
         }
         alive = advance();
@@ -74,10 +74,10 @@ void ExactEngine::update_M() {
 }
 
 bool ExactEngine::advance() {
-    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
+    if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
-    if (!standstill_.stuck()) return move();
-    return standstill_.for_good(moment()) ? rest_until_end() : stay();
+    if (!contact_.stuck()) return move();
+    return contact_.for_good(moment()) ? rest_until_end() : stay();
 }
 
 /// Writes the remaining rows at rest, of which there may be many.
@@ -100,8 +100,8 @@ bool ExactEngine::rest_until_end() {
 
 void ExactEngine::finish() {
     while (rows_.next_time() < model::never) put_row();
-    if (standstill_.phase() == Standstill::Phase::arrived) decide();
-    if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
+    if (contact_.phase() == LoneContact::Phase::arrived) decide();
+    if (contact_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
 // ---- moving
@@ -116,7 +116,7 @@ bool ExactEngine::comes_from_afar() const {
 }
 
 bool ExactEngine::move() {
-    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    const bool leaving = contact_.phase() == LoneContact::Phase::leaving;
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
@@ -132,9 +132,9 @@ bool ExactEngine::move() {
     }
     bool crept = false, left = true;
     std::optional<double> zero;
-    if (!standstill_.passes()) {
+    if (!contact_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.failed_to_leave(moment()));
+        if (leaving && !left) return contact_.creep(moment()) || go_on(contact_.failed_to_leave(moment()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
@@ -148,11 +148,11 @@ bool ExactEngine::move() {
     if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
     theta_rest_ = theta.lo;
     if (crept) snap_to_equilibrium();
-    if (zero && standstill_.creep({clock_.hi, y_.theta, at_break ? M_before : M_})) return true;
+    if (zero && contact_.creep({clock_.hi, y_.theta, at_break ? M_before : M_})) return true;
     if (zero) {
-        standstill_.arrive();
+        contact_.arrive();
     } else {
-        standstill_.go_on();
+        contact_.go_on();
     }
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
@@ -171,7 +171,7 @@ bool ExactEngine::get_under_way(FirstExit& exit, double sign, double start_pull,
 }
 
 std::optional<double> ExactEngine::stop(double start_pull, double length, bool& crept, bool& left) {
-    const model::Motion motion = standstill_.motion();
+    const model::Motion motion = contact_.motion();
     WalkedCurve& velocity = arc_.velocity();
     FirstExit exit(velocity, inside(motion), 0);
     exit.bounded(bound_);
@@ -180,7 +180,7 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     creep_.fastest = creep_.least / creep_.resistance();
     exit.watch(creep_);
     double under_way = 0;
-    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    const bool leaving = contact_.phase() == LoneContact::Phase::leaving;
     Habit& usual = habits_.moves[motion == model::Motion::forward ? 1 : 0];
     habits_.rest = &habits_.rests[motion == model::Motion::forward ? 1 : 0];
     if (const double guess = leaving ? usual.length() : 0; guess > 0) {
@@ -211,7 +211,7 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
 /// Puts a mass that has crept within rounding of its equilibrium exactly there: the limit of sticking if Re = Rd.
 void ExactEngine::snap_to_equilibrium() {
     const double torques = std::fabs(M_) + system_.stiffness() * std::fabs(y_.theta) + system_.greatest_holding();
-    const double place = (M_ - system_.braking(standstill_.motion())) / system_.stiffness();
+    const double place = (M_ - system_.braking(contact_.motion())) / system_.stiffness();
     if (!(std::fabs(place - y_.theta) <= 64 * epsilon * torques / system_.stiffness())) return;
     y_.theta = place;
     theta_rest_ = 0;
@@ -233,18 +233,17 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const double third = (formula_.bend() - system_.damping() * second - k * first) / I;
         const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
         if (way == model::Motion::stuck) return;
-        const bool recorded =
-            standstill_.motion() == model::Motion::stuck || standstill_.last_event_time() == clock_.hi;
-        if (way != standstill_.motion()) recorded ? standstill_.set_direction(way) : standstill_.turned(moment());
+        const bool recorded = contact_.motion() == model::Motion::stuck || contact_.last_event_time() == clock_.hi;
+        if (way != contact_.motion()) recorded ? contact_.set_direction(way) : contact_.turned(moment());
         if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
-    } else if (standstill_.motion() == model::Motion::stuck) {
-        standstill_.set_direction(model::motion_of(y_.velocity));
+    } else if (contact_.motion() == model::Motion::stuck) {
+        contact_.set_direction(model::motion_of(y_.velocity));
     }
     // Tries the previous interval between turns first, otherwise walks.
     bool behind = false;  // whether the walk is at or before the last turn
     double turn = 0;
     while (velocity.place() < length) {
-        exit.set_band(inside(standstill_.motion()));
+        exit.set_band(inside(contact_.motion()));
         std::optional<Exit> found;
         if (exit.end().slope != 0) {
             const WalkedCurve::End start = exit.end();
@@ -267,7 +266,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
         turn = found->tau;
         // At a zero of the velocity the way is the one near it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
-        standstill_.turned({clock_.after(turn), theta, formula_.value(turn)});
+        contact_.turned({clock_.after(turn), theta, formula_.value(turn)});
         if (behind && !velocity.asked_ahead()) velocity.look_at(turn);
         velocity.accept_look();
     }
@@ -276,9 +275,9 @@ void ExactEngine::record_turns(double start_pull, double length) {
 // ---- the present
 
 bool ExactEngine::end_arc(double tau, model::State state, double start_pull) {
-    const bool standing = standstill_.stuck();
+    const bool standing = contact_.stuck();
     if (!rows_until(tau, state, standing)) return fail(model::Outcome::excitation_not_finite);
-    if (standstill_.passes()) record_turns(start_pull, tau);
+    if (contact_.passes()) record_turns(start_pull, tau);
     if (arcs_ != nullptr) keep(tau, start_pull, standing);
     const bool whole = clock_.after(tau) >= piece_end_;
     clock_ = whole ? Clock{piece_end_, 0} : clock_.later(tau);
@@ -295,7 +294,7 @@ void ExactEngine::keep(double tau, double start_pull, bool standing) {
                 .begin = y_,
                 .theta_rest = theta_rest_,
                 .pull = start_pull,
-                .motion = standing ? model::Motion::stuck : standstill_.motion(),
+                .motion = standing ? model::Motion::stuck : contact_.motion(),
                 .rests = standing});
 }
 
@@ -312,9 +311,9 @@ bool ExactEngine::rows_until(double& tau, model::State& end, bool standing) {
         }
         const double M = excitation_.value(t);
         if (!std::isfinite(M)) return false;
-        const model::Motion motion = standing               ? model::Motion::stuck
-                                     : standstill_.passes() ? model::Motion::forward
-                                                            : standstill_.motion();
+        const model::Motion motion = standing            ? model::Motion::stuck
+                                     : contact_.passes() ? model::Motion::forward
+                                                         : contact_.motion();
         rows_.put(state, M, model::friction_torque(system_, motion, M, state));
         if (count % rows_between_questions == 0 && asked_to_stop(t)) {
             tau = since;

@@ -1,5 +1,5 @@
 // The exact integrator: arcs in closed form (arc.hpp), each up to its first event. first_exit.hpp proves that it is the
-// first; standstill.hpp decides at velocity zero.
+// first; contact.hpp decides at velocity zero.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 #include "motion/exact/arcs.hpp"
 #include "motion/exact/first_exit.hpp"
 #include "motion/exact/lines.hpp"
+#include "motion/lone_contact.hpp"
 #include "motion/rows.hpp"
-#include "motion/standstill.hpp"
 
 namespace dinal::motion::exact {
 
@@ -28,8 +28,8 @@ public:
     void leave(Run& run) const {
         run.t_stop = clock_.hi;
         run.state_at_stop = y_;
-        run.motion_at_stop = standstill_.motion();
-        run.began_stuck = standstill_.began_stuck();
+        run.motion_at_stop = contact_.motion();
+        run.began_stuck = contact_.began_stuck();
     }
 
 private:
@@ -39,12 +39,11 @@ private:
     bool move();
     bool rest_until_end();
     void finish();
-    [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
+    [[nodiscard]] LoneContact::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
-        if (const double theta = standstill_.place_at_stop(moment()); theta != y_.theta)
-            y_.theta = theta, theta_rest_ = 0;
-        return standstill_.decide(moment());
+        if (const double theta = contact_.place_at_stop(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
+        return contact_.decide(moment());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
@@ -54,7 +53,7 @@ private:
         return false;
     }
     [[nodiscard]] double pull() const {
-        return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(standstill_.motion()));
+        return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(contact_.motion()));
     }
     /// M - k theta minus the braking of friction, rounded once: near the limit of sticking it is a small difference.
     [[nodiscard]] static double pull_of(double k, double theta, double M, double braking) {
@@ -76,7 +75,7 @@ private:
     bool rows_until(double& tau, model::State& end, bool standing);
     void keep(double tau, double start_pull, bool standing);
     void update_M();
-    void put_row() { rows_.put(y_, M_, model::friction_torque(system_, standstill_.motion(), M_, y_)); }
+    void put_row() { rows_.put(y_, M_, model::friction_torque(system_, contact_.motion(), M_, y_)); }
 
     // exact_stuck.cpp: the mass at rest.
     bool stay();
@@ -124,7 +123,7 @@ private:
     Creep creep_;
     double bound_ = 0;  // bound of the velocity's fourth derivative
     std::optional<double> pull_at_release_ = {};
-    Standstill standstill_;
+    LoneContact contact_;
     model::ClosedForm formula_;
     struct Record {
         const model::Samples* samples = nullptr;  // the record if M is nothing else

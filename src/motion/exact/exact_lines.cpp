@@ -52,10 +52,10 @@ void ExactEngine::find_record() {
 
 /// Advances from sample to sample as far as possible. Returns false if it did not advance.
 bool ExactEngine::along_lines() {
-    using Phase = Standstill::Phase;
+    using Phase = LoneContact::Phase;
     if (record_.samples == nullptr || clock_.lo != 0) return false;
-    const bool standing = standstill_.phase() == Phase::stuck;
-    if (!standing && standstill_.phase() != Phase::moving) return false;
+    const bool standing = contact_.phase() == Phase::stuck;
+    if (!standing && contact_.phase() != Phase::moving) return false;
     const std::vector<double>& times = record_.samples->t;
     std::size_t& i = record_.place;
     if (i >= times.size() || times[i] != clock_.hi) {
@@ -89,7 +89,7 @@ void ExactEngine::rest_along(double until) {
 void ExactEngine::move_along(double until) {
     // The rounding error of the angle is added every few lines; until then it is below the rounding of the pull.
     constexpr std::size_t lines_between_roundings = 16;
-    const model::Motion motion = standstill_.motion();
+    const model::Motion motion = contact_.motion();
     const double sign = model::sign_of(motion), braking = system_.braking(motion), k = system_.stiffness();
     const bool kept = arcs_ != nullptr;
     const double *t = record_.samples->t.data(), *samples = record_.samples->M.data();

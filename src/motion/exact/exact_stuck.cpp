@@ -28,18 +28,18 @@ bool ExactEngine::stay() {
     const double length =
         std::min({clock_.until(piece_end_), greatest_cost_at_rest / cost, formula_.grows_in() * growth_of_an_arc});
     cost_.spent += cost * length + Cost::of_a_line;
-    const bool held = standstill_.phase() == Standstill::Phase::held;
+    const bool held = contact_.phase() == LoneContact::Phase::held;
     if (!held) {
-        const model::Motion towards = standstill_.pulled(M_, y_.theta);
-        if (towards != model::Motion::stuck) return go_on(standstill_.release(moment(), towards));
+        const model::Motion towards = contact_.pulled(M_, y_.theta);
+        if (towards != model::Motion::stuck) return go_on(contact_.release(moment(), towards));
     }
     make_load();
     const double bound = load_.fourth_bound(length);
     if (!within_range(bound)) return fail(model::Outcome::excitation_not_finite);
     if (held) return stay_held(length);
     const double k_theta = system_.stiffness() * y_.theta;
-    const Band band{k_theta - standstill_.limit(model::Motion::backward),
-                    k_theta + standstill_.limit(model::Motion::forward)};
+    const Band band{k_theta - contact_.limit(model::Motion::backward),
+                    k_theta + contact_.limit(model::Motion::forward)};
     FirstExit exit(load_, band, 8 * epsilon * (system_.greatest_holding() + std::fabs(k_theta)));
     exit.bounded(bound);
     std::optional<Exit> found;
@@ -56,12 +56,12 @@ bool ExactEngine::stay() {
             return release_at(found->tau, side, true);
         }
         // M touches the limit within rounding: its exact value decides.
-        if (standstill_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
+        if (contact_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
             return release_at(found->tau, side, false);
         }
     }
     if (!end_arc(length, y_, 0)) return false;
-    standstill_.go_on();
+    contact_.go_on();
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -71,7 +71,7 @@ bool ExactEngine::stay_held(double length) {
     const model::Motion side = torque > 0 ? model::Motion::forward : model::Motion::backward;
     const double Re = system_.holding(side), limit = k_theta + model::sign_of(side) * Re;
     const double torques = Re + std::fabs(k_theta) + std::fabs(M_);
-    const double apart = 2 * std::max(standstill_.excess(M_, y_.theta), 0.0) + 64 * epsilon * torques;
+    const double apart = 2 * std::max(contact_.excess(M_, y_.theta), 0.0) + 64 * epsilon * torques;
     FirstExit exit(load_, {limit - apart, limit + apart}, 8 * epsilon * torques);
     std::optional<Exit> found;
     do {
@@ -84,7 +84,7 @@ bool ExactEngine::stay_held(double length) {
     } else if (!end_arc(length, y_, 0)) {
         return false;
     }
-    standstill_.go_on();
+    contact_.go_on();
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -93,10 +93,10 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
     if (!end_arc(tau, y_, 0)) return false;
     if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
     if (crosses) {
-        pull_at_release_ = model::sign_of(towards) * standstill_.limit(towards) - system_.braking(towards);
+        pull_at_release_ = model::sign_of(towards) * contact_.limit(towards) - system_.braking(towards);
     }
-    const bool sane = standstill_.release(moment(), towards);
-    if (standstill_.stuck()) pull_at_release_.reset();  // a creep that ended in rest
+    const bool sane = contact_.release(moment(), towards);
+    if (contact_.stuck()) pull_at_release_.reset();  // a creep that ended in rest
     return go_on(sane);
 }
 

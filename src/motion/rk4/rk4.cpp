@@ -40,12 +40,10 @@ text::Expected<model::State> Replay::at(double t) const {
     RowWriter rows(system(), *grid, run);
     Rk4Engine engine(problem, method_, rows, nullptr, nullptr);
 
-    auto step = static_cast<std::size_t>((t - window_.start) / method_.h);
-    while (step > 0 && engine.time(step) > t) --step;
-    while (step < engine.steps() && engine.time(step + 1) <= t) ++step;
+    const std::size_t step = engine.steps().at(t);
     const Rk4Checkpoint* next = checkpoints.after(step);
     // If no later checkpoint exists, the replay goes only to the end of the step.
-    const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
+    const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps().count);
     engine.run(checkpoints.before(step), last);
     if (run.size() > 0 && rows.next_row() == 0) {
         return text::Error{
@@ -70,12 +68,12 @@ Run Rk4::run(const Problem& problem) const {
     if (problem.limits.dense) replay = std::make_shared<Replay>(problem, *this);
     std::vector<model::Event> events;
     Rk4Engine engine(problem, *this, rows, &events, replay ? &replay->checkpoints : nullptr);
-    if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
+    if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps().count);
 
     run_whole(engine, problem, rows, events, std::move(replay), run);
     const bool samples = problem.drive.M().has_script() || problem.system.spring().as<model::springs::UserSpring>() ||
                          problem.system.friction().as<model::laws::UserLaw>();
-    if (samples) run.gap = run.unproven = engine.h() / 2;
+    if (samples) run.gap = run.unproven = engine.steps().h / 2;
     return run;
 }
 

@@ -45,8 +45,8 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     while (t_ < end) {
-        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(decide())) return false;
-        if (standstill_.stuck()) {
+        if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
+        if (contact_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
         }
@@ -55,9 +55,9 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
         if (!std::isfinite(s.M)) return fail(model::Outcome::excitation_not_finite);
         if (!std::isfinite(s.y.theta) || !std::isfinite(s.y.velocity)) return fail(model::Outcome::state_not_finite);
 
-        const double direction = model::sign_of(standstill_.motion());
+        const double direction = model::sign_of(contact_.motion());
         const bool crosses = !(direction * s.y.velocity > 0) || (direction * s.a0 < 0 && direction * s.a1 > 0);
-        if (standstill_.passes()) {
+        if (contact_.passes()) {
             if (crosses) record_turns(t_, length, direction, y_, s.a0, s.y, s.a1);
         } else if (crosses) {
             const auto zero = first_velocity_zero(direction, length, y_.velocity, s.a0, s.y.velocity, s.a1);
@@ -68,7 +68,7 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
         }
         rows_until(end, StepInterpolant(length, y_, s.a0, s.y, s.a1));
         t_ = end, y_ = s.y, M_ = s.M;
-        standstill_.go_on();
+        contact_.go_on();
     }
     return finite();
 }
@@ -76,12 +76,12 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
 Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
     if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
     // Samples exist for the whole step only; its end serves every piece that reaches it.
-    const bool whole = known != nullptr && length > full_.h * (1 - 1e-9);
+    const bool whole = known != nullptr && length > steps_.h * (1 - 1e-9);
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
     const double M1 = known != nullptr ? known->end : M_at(t_ + length, end, break_at_end, {});
     const double f0 = forcing(M_), f1 = forcing(M1);
     const model::State y =
-        whole ? full_(y_, f0, forcing(middle), f1) : AffineStep(system_, length)(y_, f0, forcing(middle), f1);
+        (whole ? block_.map : engine::AffineStep(block_.map.w, block_.map.c, length))(y_, f0, forcing(middle), f1);
     // A middle that is not finite must be noticed, also if the step is too short to change y.
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
 }
@@ -92,10 +92,10 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
         return model::State{y_.theta + h * v, y_.velocity + h * a};
     };
     const auto M = [&](double t, const model::State& y) {
-        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_side_of_motion(y) : y);
+        return M_at(t, end, break_at_end, asks == Asks::beside ? contact_.on_side_of_motion(y) : y);
     };
-    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_side_of_motion(y_)) : M_);
+    const bool leaving = contact_.phase() == LoneContact::Phase::leaving;
+    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, contact_.on_side_of_motion(y_)) : M_);
     const model::State y2 = along(length / 2, y_.velocity, a0);
     const double a2 = acceleration_at(y2, M(half, y2));
     const model::State y3 = along(length / 2, y2.velocity, a2);
@@ -104,9 +104,9 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
     const double a4 = acceleration_at(y4, M(t1, y4));
     const model::State y1{y_.theta + length / 6 * (y_.velocity + 2 * y2.velocity + 2 * y3.velocity + y4.velocity),
                           y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
-    const double way = model::sign_of(standstill_.motion());
+    const double way = model::sign_of(contact_.motion());
     const double least = std::min({way * y1.velocity, way * y2.velocity, way * y3.velocity, way * y4.velocity});
-    if (asks == Asks::freely && !(least > 0) && standstill_.jumps(t1, y1.theta)) {
+    if (asks == Asks::freely && !(least > 0) && contact_.jumps(t1, y1.theta)) {
         return feedback_step(length, end, break_at_end, Asks::beside);
     }
     const double M1 = M(t1, y1);
@@ -118,14 +118,14 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     if (zero <= 0 || t_ + zero <= t_) {
         if (y_.velocity != 0) {  // so near zero that t + zero rounds to t
             y_.velocity = 0;
-            M_ = standstill_.M_at_rest(t_, y_.theta, M_);
-            if (!standstill_.creep(moment())) standstill_.arrive();
+            M_ = contact_.M_at_rest(t_, y_.theta, M_);
+            if (!contact_.creep(moment())) contact_.arrive();
             return finite();
         }
-        if (!standstill_.creep(moment()) && !go_on(standstill_.failed_to_leave(moment()))) return false;
+        if (!contact_.creep(moment()) && !go_on(contact_.failed_to_leave(moment()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
-        standstill_.go_on();
+        contact_.go_on();
         return finite();
     }
     const bool at_end = t_ + zero >= end;
@@ -137,14 +137,14 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     // The velocity that the cubic leaves is of fourth order and is set to 0. A Newton step in time to remove it changed
     // no error by more than a twentieth.
     y_ = {s.y.theta, 0};
-    t_ = t, M_ = standstill_.M_at_rest(t, y_.theta, s.M);
-    if (!standstill_.creep(moment())) standstill_.arrive();
+    t_ = t, M_ = contact_.M_at_rest(t, y_.theta, s.M);
+    if (!contact_.creep(moment())) contact_.arrive();
     return finite();
 }
 
 /// Stays stuck up to the end of the piece or the first time with |M - k theta| > Re.
 bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
-    model::Motion next = standstill_.pulled(M_, y_.theta);
+    model::Motion next = contact_.pulled(M_, y_.theta);
     if (next == model::Motion::stuck) {
         double M_end = M_;
         const auto release = release_time(end, break_at_end, known, M_end);
@@ -152,17 +152,17 @@ bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
         rows_standing_until(release.value_or(end));
         t_ = release.value_or(end), M_ = M_end;
         if (!release) return finite();
-        next = standstill_.pulled(M_, y_.theta);
+        next = contact_.pulled(M_, y_.theta);
     }
-    return go_on(standstill_.release(moment(), next));
+    return go_on(contact_.release(moment(), next));
 }
 
 std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Sampled* known,
                                               double& M_end) const {
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
-    const auto excess_of = [&](double torque) { return standstill_.excess(torque, y_.theta); };
+    const auto excess_of = [&](double torque) { return contact_.excess(torque, y_.theta); };
     const auto excess = [&](double t) { return excess_of(M(t)); };
-    const bool whole = known != nullptr && end - t_ > full_.h * (1 - 1e-9);
+    const bool whole = known != nullptr && end - t_ > steps_.h * (1 - 1e-9);
     const double middle = t_ + (end - t_) / 2;
     const double M_middle = whole ? known->middle : M(middle);
     M_end = known != nullptr ? known->end : M(end);
@@ -194,7 +194,7 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
 bool Rk4Engine::lost_in_rounding(const model::State& y, double a) const {
     constexpr double few_ulps = 32 * std::numeric_limits<double>::epsilon();
     constexpr double nothing = 1e-290;  // products of smaller numbers underflow
-    return std::fabs(a) <= few_ulps * full_.w * std::fabs(y.theta) ||
+    return std::fabs(a) <= few_ulps * block_.map.w * std::fabs(y.theta) ||
            (std::fabs(y.velocity) < nothing && std::fabs(y.theta) < nothing);
 }
 
@@ -219,14 +219,14 @@ void Rk4Engine::record_turns(double t, double h, double direction, const model::
         if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
         y = {motion(x).theta, 0};
         a = slope;
-        standstill_.set_direction(model::motion_of(direction));
-        standstill_.turned({t + x, y.theta, excitation_.value(t + x, y)});
+        contact_.set_direction(model::motion_of(direction));
+        contact_.turned({t + x, y.theta, excitation_.value(t + x, y)});
         direction = -direction;
         if (x >= h) break;
         from = x;
     }
     // The next step begins with the velocity at the end of this one, whatever zeros were found.
-    standstill_.set_direction(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
+    contact_.set_direction(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
 }
 
 }  // namespace dinal::motion::rk4

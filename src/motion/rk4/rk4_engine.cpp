@@ -7,14 +7,6 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// The number of steps of h that cover the window; a remainder within the rounding of the division is ignored.
-std::size_t step_count(const Window& window, double h) {
-    const double ratio = (window.end - window.start) / h;
-    const double whole = std::round(ratio);
-    const double count = std::fabs(ratio - whole) <= 4e-16 * whole ? whole : std::ceil(ratio);
-    return static_cast<std::size_t>(std::clamp(count, 1.0, 9e18));
-}
-
 /// The interval up to which successive standstills count as chatter: two steps under feedback, which can stop the mass
 /// at every second one.
 // NOTE: a step too long for its system may have as many genuine events, so this applies to short steps only.
@@ -35,18 +27,19 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       window_(problem.window),
       rows_(rows),
       checkpoints_(checkpoints),
-      full_(problem.system, options.h),
-      steps_(step_count(problem.window, options.h)),
+      block_({problem.system.stiffness() / problem.system.inertia(),
+              problem.system.damping() / problem.system.inertia(), options.h},
+             problem.system.inertia()),
+      steps_(problem.window, options.h),
       steps_per_row_(rows.steps_per_row(options.h)),
-      inverse_inertia_(1 / problem.system.inertia()),
       feedback_(problem.drive.M().has_feedback() || system_.has_remainder()),
-      standstill_(problem, events, at_once(problem, options.h)) {}
+      contact_(problem, events, at_once(problem, options.h)) {}
 
 model::Outcome Rk4Engine::run() {
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
-    return run({0, initial_, M, standstill_.mark()}, steps_);
+    return run({0, initial_, M, contact_.mark()}, steps_.count);
 }
 
 model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
@@ -59,14 +52,14 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             outcome_ = model::Outcome::interrupted;
             break;
         }
-        if (standstill_.for_good(moment())) {
+        if (contact_.for_good(moment())) {
             rows_standing_until(model::never);  // nothing can move it again
             t_ = window_.end;
             break;
         }
         const std::size_t stop =
             checkpoints_ != nullptr ? std::min(last_step, std::max(checkpoints_->next(), n + 1)) : last_step;
-        const std::size_t count = standstill_.phase() == Standstill::Phase::arrived ? 0 : sample_block(n, stop);
+        const std::size_t count = contact_.phase() == LoneContact::Phase::arrived ? 0 : sample_block(n, stop);
         if (count > 0) {
             alive = run_block(n, count);
             n += count;
@@ -75,10 +68,10 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             ++n;
         }
     }
-    if (outcome_ == model::Outcome::chattering) standstill_.forget_chatter();
-    if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
+    if (outcome_ == model::Outcome::chattering) contact_.forget_chatter();
+    if (outcome_ == model::Outcome::reached_end && last_step == steps_.count) {
         rows_standing_until(model::never);
-        if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
+        if (contact_.finish()) outcome_ = model::Outcome::stuck_at_end;
     }
     return outcome_;
 }
@@ -86,37 +79,27 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
     t_ = time(from.step);
     y_ = from.state;
-    standstill_.return_to(from.mark);
-    friction_ = system_.braking(standstill_.motion());
+    contact_.return_to(from.mark);
+    friction_ = system_.braking(contact_.motion());
     M_ = from.M;
 }
 
 std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
     if (feedback_) return 0;
-    std::size_t count = std::min(block_steps, last_step - n);
+    std::size_t count = std::min(engine::AffineBlock::most, last_step - n);
     // The last step may be shorter than h, and ends exactly at t_end.
-    if (n + count == steps_) --count;
+    if (n + count == steps_.count) --count;
     const double next_break = excitation_.next_break(t_);
     while (count > 0 && time(n + count) >= next_break) count /= 2;
-    for (std::size_t i = 0; i < count; ++i) {
-        block_.times[2 * i] = time(n + i) + full_.h / 2;
-        block_.times[2 * i + 1] = time(n + i + 1);
-    }
-    const std::size_t good = excitation_.fill({block_.times.data(), 2 * count}, {block_.samples.data(), 2 * count});
-    if (good < 2 * count) {
-        // Stop before the value that is not finite; the careful step that follows ends the run.
-        count = good / 2;
-    }
-    return count;
+    // It stops before a value that is not finite; the careful step that follows ends the run.
+    return block_.sample(excitation_, steps_, n, count);
 }
 
 bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
     std::size_t i = 0;
     while (i < count) {
-        if (standstill_.phase() != Standstill::Phase::arrived) {
-            i = standstill_.passes()  ? move_freely(n, i, count)
-                : standstill_.stuck() ? rest(n, i, count)
-                                      : move(n, i, count);
+        if (contact_.phase() != LoneContact::Phase::arrived) {
+            i = contact_.passes() ? move_freely(n, i, count) : contact_.stuck() ? rest(n, i, count) : move(n, i, count);
             if (!finite()) return false;
         }
         if (i < count) {
@@ -132,59 +115,25 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
 // with the state at its beginning. A step is left to the careful way if the velocity changes sign in it, or dips
 // towards zero and returns, as it may have crossed zero twice.
 
-/// Prepares the samples for the present direction of motion; separate from the chain of steps, so that it vectorises.
-void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
-    const AffineStep full = full_;
-    block_.M[i] = M_;
-    for (std::size_t j = i; j < count; ++j) block_.M[j + 1] = block_.samples[2 * j + 1];
-    for (std::size_t j = i; j <= count; ++j) block_.forcing[j] = forcing(block_.M[j]);
-    for (std::size_t j = i; j < count; ++j) {
-        const double middle = forcing(block_.samples[2 * j]);
-        block_.push_theta[j] = full.push_theta(block_.forcing[j], middle);
-        block_.push_velocity[j] = full.push_velocity(block_.forcing[j], middle, block_.forcing[j + 1]);
-    }
-    block_.theta[i] = y_.theta;
-    block_.velocity[i] = y_.velocity;
-}
-
-/// Steps while the velocity certainly keeps its direction.
-// NOTE: plain local doubles; with a State in the loop g++ 12 keeps the motion in memory and takes twice as long.
-std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direction) {
-    const AffineStep m = full_;
-    double theta = block_.theta[i], velocity = block_.velocity[i];
-    double uphill = direction * ((block_.forcing[i] - m.c * velocity) - m.w * theta);  // acceleration along the motion
-    for (; i < stop; ++i) {
-        const double theta1 = (theta + block_.push_theta[i]) + (m.r11 * theta + m.r12 * velocity);
-        const double velocity1 = (velocity + block_.push_velocity[i]) + (m.r21 * theta + m.r22 * velocity);
-        const double uphill1 = direction * ((block_.forcing[i + 1] - m.c * velocity1) - m.w * theta1);
-        if (!(direction * velocity1 > 0) || (uphill < 0 && uphill1 > 0)) break;
-        block_.theta[i + 1] = theta = theta1;
-        block_.velocity[i + 1] = velocity = velocity1;
-        uphill = uphill1;
-    }
-    return i;
-}
-
 std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
-    begin_block(i, count);
+    block_.begin(i, count, y_, M_, friction_);
     const std::size_t first = i;
-    i = plain_steps(i, count, model::sign_of(standstill_.motion()));
-    if (i > first) standstill_.go_on();
+    i = block_.step(i, count, model::sign_of(contact_.motion()));
+    if (i > first) contact_.go_on();
     end_block(n, first, i);
     return i;
 }
 
 std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t count) {
-    begin_block(i, count);
+    block_.begin(i, count, y_, M_, friction_);
     const std::size_t first = i;
     while (i < count) {
-        i = plain_steps(i, count, model::sign_of(standstill_.motion()));
+        i = block_.step(i, count, model::sign_of(contact_.motion()));
         if (i == count) break;
         // A step in which the velocity changes sign is an ordinary step that records a turn.
-        const model::State y{block_.theta[i], block_.velocity[i]};
-        const model::State y1 = full_(y, block_.push_theta[i], block_.push_velocity[i]);
+        const model::State y = block_.at(i), y1 = block_.end_of(i);
         const double a = acceleration(block_.forcing[i], y), a1 = acceleration(block_.forcing[i + 1], y1);
-        record_turns(time(n + i), full_.h, model::sign_of(standstill_.motion()), y, a, y1, a1);
+        record_turns(time(n + i), steps_.h, model::sign_of(contact_.motion()), y, a, y1, a1);
         block_.theta[i + 1] = y1.theta;
         block_.velocity[i + 1] = y1.velocity;
         ++i;
@@ -217,7 +166,7 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
         } else if (rows_.next_time() < end) {
             const model::State y{block_.theta[i], block_.velocity[i]}, y1{block_.theta[i + 1], block_.velocity[i + 1]};
             t_ = time(n + i), y_ = y, M_ = block_.M[i];
-            rows_until(end, StepInterpolant(full_.h, y, acceleration(block_.forcing[i], y), y1,
+            rows_until(end, StepInterpolant(steps_.h, y, acceleration(block_.forcing[i], y), y1,
                                             acceleration(block_.forcing[i + 1], y1)));
         }
     }
@@ -226,8 +175,8 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
     // Well within the limit also between the samples: a parabola through three of them exceeds the highest by at most
     // an eighth of their second difference; a quarter is safe.
-    const double forward = standstill_.limit(model::Motion::forward);
-    const double backward = standstill_.limit(model::Motion::backward);
+    const double forward = contact_.limit(model::Motion::forward);
+    const double backward = contact_.limit(model::Motion::backward);
     const double limit = (forward + backward) / 2 * (1 - 1e-9);
     const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
     double e = std::fabs(M_ - middle_of_hold);

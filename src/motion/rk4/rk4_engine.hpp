@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "motion/checkpoints.hpp"
+#include "motion/engine/affine_block.hpp"
 #include "motion/interpolation.hpp"
+#include "motion/lone_contact.hpp"
 #include "motion/rk4/rk4.hpp"
-#include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
-#include "motion/standstill.hpp"
 
 namespace dinal::motion::rk4 {
 
@@ -19,7 +19,7 @@ struct Rk4Checkpoint {
     std::size_t step = 0;
     model::State state;
     double M = 0;
-    Standstill::Mark mark;
+    LoneContact::Mark mark;
 };
 
 class Rk4Engine {
@@ -32,28 +32,22 @@ public:
     model::Outcome run();
     model::Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
 
-    [[nodiscard]] std::size_t steps() const { return steps_; }
-    /// The length of a step.
-    [[nodiscard]] double h() const { return full_.h; }
-    /// The time at which step n begins.
-    [[nodiscard]] double time(std::size_t n) const {
-        return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
-    }
-    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, standstill_.mark()}; }
+    [[nodiscard]] const engine::StepTimes& steps() const { return steps_; }
+    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, contact_.mark()}; }
     /// Stores the time and state reached.
     void leave(Run& run) const {
         run.t_stop = t_;
         run.state_at_stop = y_;
-        run.motion_at_stop = standstill_.motion();
-        run.began_stuck = standstill_.began_stuck();
+        run.motion_at_stop = contact_.motion();
+        run.began_stuck = contact_.began_stuck();
     }
 
 private:
-    static constexpr std::size_t block_steps = 128;
     /// M in the middle and at the end of a step, if known.
     struct Sampled {
         double middle, end;
     };
+    [[nodiscard]] double time(std::size_t n) const { return steps_.time(n); }
     /// The result of one smooth step.
     struct Stepped {
         model::State y;
@@ -65,8 +59,6 @@ private:
     /// Samples the steps n, n + 1, ... that end before the next break; returns their number.
     std::size_t sample_block(std::size_t n, std::size_t last_step);
     bool run_block(std::size_t n, std::size_t count);
-    void begin_block(std::size_t i, std::size_t count);
-    std::size_t plain_steps(std::size_t i, std::size_t stop, double direction);
     std::size_t move(std::size_t n, std::size_t i, std::size_t count);
     std::size_t move_freely(std::size_t n, std::size_t i, std::size_t count);
     void end_block(std::size_t n, std::size_t first, std::size_t i);
@@ -93,20 +85,20 @@ private:
     void rows_standing_until(double end);
     void put_row(const model::State& y, double M) {
         if (std::isfinite(M) && std::isfinite(y.theta) && std::isfinite(y.velocity)) {
-            rows_.put(y, M, model::friction_torque(system_, standstill_.motion(), M, y));
+            rows_.put(y, M, model::friction_torque(system_, contact_.motion(), M, y));
         } else {
             failed_ = true;
         }
     }
-    [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
+    [[nodiscard]] LoneContact::Moment moment() const { return {t_, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
-        y_.theta = standstill_.place_at_stop(moment());
-        return standstill_.decide(moment());
+        y_.theta = contact_.place_at_stop(moment());
+        return contact_.decide(moment());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) {
-        friction_ = system_.braking(standstill_.motion());
+        friction_ = system_.braking(contact_.motion());
         return sane ? finite() : fail(model::Outcome::chattering);
     }
     bool fail(model::Outcome outcome) {
@@ -122,13 +114,13 @@ private:
         return break_at_end && t == end ? excitation_.value_before(t, y) : excitation_.value(t, y);
     }
     /// F/I for the torque M in the present direction of motion.
-    [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
+    [[nodiscard]] double forcing(double M) const { return (M - friction_) * block_.inverse_inertia; }
     /// theta'' under a torque that depends on the motion: M at this state, and the remainder of friction.
     [[nodiscard]] double acceleration_at(const model::State& y, double M) const {
-        return acceleration(forcing(M - system_.remainder(standstill_.motion(), y)), y);
+        return acceleration(forcing(M - system_.remainder(contact_.motion(), y)), y);
     }
     [[nodiscard]] double acceleration(double f, const model::State& y) const {
-        return f - full_.c * y.velocity - full_.w * y.theta;
+        return f - block_.map.c * y.velocity - block_.map.w * y.theta;
     }
 
     model::Lowered system_;
@@ -139,33 +131,18 @@ private:
     RowWriter& rows_;
     Checkpoints<Rk4Checkpoint>* checkpoints_;
 
-    AffineStep full_;
-    std::size_t steps_;
+    engine::AffineBlock block_;
+    engine::StepTimes steps_;
     std::size_t steps_per_row_;
-    double inverse_inertia_;
     bool feedback_;
 
     double t_ = 0;  // the present: time, state, M (from the right), motion
     model::State y_;
     double M_ = 0;
-    Standstill standstill_;
+    LoneContact contact_;
     double friction_ = 0;  // constant friction torque of the present motion
     bool failed_ = false;  // whether M was not finite at a row between the steps
     model::Outcome outcome_ = model::Outcome::reached_end;
-
-    // For each step of a block: M in the middle and at the end, the derived forcing, and the state.
-    template <std::size_t n>
-    using Each = std::array<double, n>;
-    struct {
-        Each<2 * block_steps> times{};
-        Each<2 * block_steps> samples{};
-        Each<block_steps + 1> M{};
-        Each<block_steps + 1> forcing{};
-        Each<block_steps> push_theta{};
-        Each<block_steps> push_velocity{};
-        Each<block_steps + 1> theta{};
-        Each<block_steps + 1> velocity{};
-    } block_;
 };
 
 }  // namespace dinal::motion::rk4

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
-#include "plots/ticks.hpp"
+#include "plots/neighbours.hpp"
 #include "text/characters.hpp"
 #include "text/html.hpp"
 
@@ -53,11 +52,10 @@ Interval reach_of(const std::vector<Frame>& frames, const motion::Run& run, cons
 
 }  // namespace
 
-text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt, const Take& take,
+text::Expected<Track> track_of(const RunData& run, const model::Excitation* belt, const Take& take,
                                const std::function<bool()>& go_on) {
-    Scene scene;
-    scene.seconds = take.seconds;
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(take.count())));
+    Track track;
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(take.steps())));
     const std::vector<Interval> stuck = stuck_intervals(*run.result);
     Frame frame;
     for (std::size_t i = 0; i <= count; ++i) {
@@ -71,61 +69,39 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
         frame.t = t;
         frame.theta = state->theta;
         frame.stuck = is_stuck(stuck, t);
-        scene.frames.push_back(frame);
+        track.frames.push_back(frame);
     }
-    scene.belt = belt != nullptr;
-    scene.theta_unit = run.units.theta;
-    scene.t_unit = run.units.t;
+    track.belt = belt != nullptr;
+    track.units = run.units;
     if (run.system) {
-        scene.walls = run.system->walls();
-        scene.spring = run.system->has_spring() || !run.system->spring().none();
+        track.walls = run.system->walls();
+        track.spring = run.system->has_spring() || !run.system->spring().none();
     }
-    scene.reach = reach_of(scene.frames, *run.result, scene.walls);
+    track.reach = reach_of(track.frames, *run.result, track.walls);
+    return track;
+}
+
+Scene scene_of(std::vector<Track> bodies, std::vector<Link> links, double seconds) {
+    Scene scene{.bodies = {}, .links = std::move(links), .seconds = seconds};
+    std::vector<std::size_t> place(bodies.size());  // the new position of each body
+    Interval all = bodies.front().reach;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (const Link& link : scene.links) pairs.emplace_back(link.first, link.second);
+    for (const std::size_t i : neighbours(bodies.size(), pairs)) {
+        place[i] = scene.bodies.size();
+        all = {std::min(all.low, bodies[i].reach.low), std::max(all.high, bodies[i].reach.high)};
+        scene.bodies.push_back(std::move(bodies[i]));
+    }
+    for (Link& link : scene.links) link.first = place[link.first], link.second = place[link.second];
+    for (Track& body : scene.bodies) body.reach = all;
+    constexpr double turn = 2 * std::numbers::pi;
+    scene.discs = scene.bodies.size() > 1 && all.length() > turn;
     return scene;
 }
 
-RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> links) {
-    RigScene rig;
-    std::vector<std::size_t> place(bodies.size(), bodies.size());  // the new position of each body
-    const auto is_end = [&](std::size_t i) {
-        return std::count_if(links.begin(), links.end(),
-                             [i](const RigScene::Link& link) { return link.first == i || link.second == i; }) < 2;
-    };
-    const auto put = [&](std::size_t i) {
-        place[i] = rig.bodies.size();
-        rig.bodies.push_back(std::move(bodies[i]));
-    };
-    while (rig.bodies.size() < bodies.size()) {
-        std::size_t next = bodies.size();
-        for (std::size_t i = bodies.size(); i-- > 0;) {
-            if (place[i] == bodies.size() && (next == bodies.size() || is_end(i) || !is_end(next))) next = i;
-        }
-        put(next);
-        for (bool found = true; found;) {
-            found = false;
-            for (const RigScene::Link& link : links) {
-                const std::size_t last = rig.bodies.size() - 1;
-                const bool from_first = place[link.first] == last, from_second = place[link.second] == last;
-                const std::size_t other = from_first ? link.second : link.first;
-                if ((!from_first && !from_second) || place[other] != bodies.size()) continue;
-                put(other);
-                found = true;
-                break;
-            }
-        }
-    }
-    for (RigScene::Link& link : links) link.first = place[link.first], link.second = place[link.second];
-    rig.links = std::move(links);
-    Interval all = rig.bodies.front().reach;
-    for (const Scene& body : rig.bodies) {
-        all = {std::min(all.low, body.reach.low), std::max(all.high, body.reach.high)};
-    }
-    constexpr double turn = 2 * std::numbers::pi;
-    rig.discs = all.length() > turn;
-    for (Scene& body : rig.bodies) body.reach = all;
-    return rig;
-}
+namespace {
 
+/// The corners of a spring with these windings: fractions of its length, and of its width from -1 to 1.
 std::vector<Point> spring_corners(int windings) {
     constexpr double straight = 0.06;  // straight part at each end, relative to the length
     std::vector<Point> corners{{0, 0}, {straight, 0}};
@@ -136,8 +112,6 @@ std::vector<Point> spring_corners(int windings) {
     corners.push_back({1, 0});
     return corners;
 }
-
-namespace {
 
 constexpr double sheet_width = 480;  // pixels; wider for many bodies
 
@@ -150,32 +124,50 @@ constexpr double hatch_width = 12;
 constexpr const char* grey_ink = "#444444";
 constexpr const char* stuck_colour = "#D55E00";
 
-/// An SVG sheet and its moving parts.
-class Sheet {
-protected:
-    explicit Sheet(const Scene& clock) : clock_(clock) {}
+/// One or several bodies, each in its own cell; below, their angles over t with a moving line.
+class AnimatedSvg {
+public:
+    explicit AnimatedSvg(const Scene& scene)
+        : scene_(scene),
+          clock_(scene.bodies.front()),
+          alone_(scene.bodies.size() == 1),
+          cell_(alone_ ? sheet_width - 2 * margin
+                       : std::max(most_cell / std::sqrt(static_cast<double>(scene.bodies.size())), least_cell)),
+          width_(std::max(sheet_width, cell_ * static_cast<double>(scene.bodies.size()) + 2 * margin)) {}
 
+    std::string text() {
+        begin(alone_ ? of_one_mass()
+                     : fmt::format("{} bodies {}; bodies and links are orange while they stick.", scene_.bodies.size(),
+                                   scene_.discs ? "as discs on one axis" : "side by side"));
+        for (std::size_t i = 0; i < scene_.bodies.size() && !scene_.discs; ++i) add_floor(i);
+        for (std::size_t k = 0; k < scene_.links.size(); ++k) add_link(scene_.links[k], k);
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) scene_.discs ? add_disc(i) : add_block(i);
+        add_graph();
+        return all_ + "</svg>\n";
+    }
+
+private:
     template <class... Arguments>
     void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
         all_ += fmt::format(format, std::forward<Arguments>(arguments)...);
     }
 
-    void begin(double width, double height, const std::string& seen) {
-        const std::string title = title_of(clock_);
+    void begin(const std::string& seen) {
+        const std::string title = title_of(scene_);
         add("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" viewBox=\"0 0 {1} {2}\" "
             "width=\"{1}\" height=\"{2}\" font-family=\"Arial, sans-serif\" font-size=\"11\" fill=\"{3}\">\n<title>{0}</title>\n",
-            title, width, height, grey_ink);
+            title, width_, tall, grey_ink);
         const Frame &first = clock_.frames.front(), &last = clock_.frames.back();
         const std::string axes = fmt::format(" Below, θ from {:.3g} to {:.3g} over t from {:.6g} to {:.6g}.",
                                              clock_.reach.low, clock_.reach.high, first.t, last.t);
-        add("<desc>{}</desc>\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", text::html(seen + axes), width,
-            height);
+        add("<desc>{}</desc>\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", text::html(seen + axes), width_,
+            tall);
     }
 
     template <class Value>
-    [[nodiscard]] static std::string values(const Scene& scene, const Value& value) {
+    [[nodiscard]] static std::string values(const Track& track, const Value& value) {
         std::string list;
-        for (const Frame& frame : scene.frames) {
+        for (const Frame& frame : track.frames) {
             if (!list.empty()) list += ';';
             list += value(frame);
         }
@@ -184,27 +176,27 @@ protected:
 
     /// Adds animateTransform of this type over all frames.
     template <class Value>
-    void add_motion(const char* attribute, const char* type, const Scene& scene, const Value& value) {
+    void add_motion(const char* attribute, const char* type, const Track& track, const Value& value) {
         // Viewers without animation, such as a printer, show the initial attribute.
-        const std::string start = value(scene.frames.front());
+        const std::string start = value(track.frames.front());
         all_.insert(all_.size() - 1, fmt::format(" {}=\"{}({})\"", attribute, type, start));
         add("<animateTransform attributeName=\"{}\" type=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
-            attribute, type, clock_.seconds, values(scene, value));
+            attribute, type, scene_.seconds, values(track, value));
     }
 
     /// Adds colour changes only where they occur.
-    void add_colours(const char* attribute, const Scene& scene, const char* moving) {
-        std::string times, colours;
-        const auto count = static_cast<double>(scene.frames.size() - 1);
-        for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-            const bool stuck = scene.frames[i].stuck;
-            if (i > 0 && stuck == scene.frames[i - 1].stuck) continue;
+    void add_colours(const char* attribute, const Track& track, const char* moving) {
+        std::string times, inks;
+        const auto count = static_cast<double>(track.frames.size() - 1);
+        for (std::size_t i = 0; i < track.frames.size(); ++i) {
+            const bool stuck = track.frames[i].stuck;
+            if (i > 0 && stuck == track.frames[i - 1].stuck) continue;
             times += fmt::format("{}{:.5g}", i == 0 ? "" : ";", static_cast<double>(i) / count);
-            colours += fmt::format("{}{}", i == 0 ? "" : ";", stuck ? stuck_colour : moving);
+            inks += fmt::format("{}{}", i == 0 ? "" : ";", stuck ? stuck_colour : moving);
         }
         add("<animate attributeName=\"{}\" calcMode=\"discrete\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" keyTimes=\"{}\" "
             "values=\"{}\"/>",
-            attribute, clock_.seconds, times, colours);
+            attribute, scene_.seconds, times, inks);
     }
 
     void words(double at_x, double at_y, const char* anchor, const std::string& text, const char* colour = grey_ink) {
@@ -214,10 +206,10 @@ protected:
 
     /// A polyline redrawn in each frame: scaling would distort its strokes.
     template <class Points>
-    void add_line(const std::string& style, const Scene& scene, const Points& points) {
-        add("<polyline fill=\"none\" {} points=\"{}\">", style, points(scene.frames.front()));
+    void add_line(const std::string& style, const Track& track, const Points& points) {
+        add("<polyline fill=\"none\" {} points=\"{}\">", style, points(track.frames.front()));
         add("<animate attributeName=\"points\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
-            clock_.seconds, values(scene, points));
+            scene_.seconds, values(track, points));
     }
     /// The corners of a spring between two places, at this height.
     [[nodiscard]] static std::string spring_points(double from, double to, double middle, double half) {
@@ -234,8 +226,8 @@ protected:
         return graph.left +
                (graph.right - graph.left) * static_cast<double>(frame) / static_cast<double>(clock_.frames.size() - 1);
     }
-    [[nodiscard]] static double graph_y(const Graph& graph, const Scene& scene, double theta) {
-        return graph.bottom - scene.at(theta) * (graph.bottom - graph.top);
+    [[nodiscard]] static double graph_y(const Graph& graph, const Track& track, double theta) {
+        return graph.bottom - track.at(theta) * (graph.bottom - graph.top);
     }
 
     /// Axes with their names and the numbers at their ends.
@@ -248,47 +240,19 @@ protected:
         words(graph.left, below, "middle", fmt::format("{:.6g}", clock_.frames.front().t));
         words(graph.right, below, "end", fmt::format("{:.6g}", clock_.frames.back().t));
         words((graph.left + graph.right) / 2, below, "middle",
-              clock_.t_unit.empty() ? "t" : fmt::format("t, {}", clock_.t_unit));
-        words(graph.left + 4, graph.top - 8, "start", fmt::format("θ, {}", clock_.theta_unit));
+              clock_.units.t.empty() ? "t" : fmt::format("t, {}", clock_.units.t));
+        words(graph.left + 4, graph.top - 8, "start", fmt::format("θ, {}", clock_.units.theta));
     }
 
-    void add_curve(const Graph& graph, const Scene& scene, const char* colour) {
+    void add_curve(const Graph& graph, const Track& track, const char* colour) {
         std::string path;
-        for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+        for (std::size_t i = 0; i < track.frames.size(); ++i) {
             path += fmt::format("{}{:.1f},{:.1f}", i == 0 ? "M" : " L", graph_x(graph, i),
-                                graph_y(graph, scene, scene.frames[i].theta));
+                                graph_y(graph, track, track.frames[i].theta));
         }
         add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, colour);
     }
 
-    const Scene& clock_;
-    std::string all_;
-};
-
-/// One or several bodies, each in its own cell.
-class RigSvg : Sheet {
-public:
-    explicit RigSvg(const RigScene& rig)
-        : Sheet(rig.bodies.front()),
-          rig_(rig),
-          alone_(rig.bodies.size() == 1),
-          cell_(alone_ ? sheet_width - 2 * margin
-                       : std::max(most_cell / std::sqrt(static_cast<double>(rig.bodies.size())), least_cell)),
-          width_(std::max(sheet_width, cell_ * static_cast<double>(rig.bodies.size()) + 2 * margin)) {}
-
-    std::string text() {
-        begin(width_, tall,
-              alone_ ? of_one_mass()
-                     : fmt::format("{} bodies {}; bodies and links are orange while they stick.", rig_.bodies.size(),
-                                   rig_.discs ? "as discs on one axis" : "side by side"));
-        for (std::size_t i = 0; i < rig_.bodies.size() && !rig_.discs; ++i) add_floor(i);
-        for (std::size_t k = 0; k < rig_.links.size(); ++k) add_link(rig_.links[k], k);
-        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) rig_.discs ? add_disc(i) : add_block(i);
-        add_graph();
-        return all_ + "</svg>\n";
-    }
-
-private:
     static constexpr double margin = 20, tall = 330, least_cell = 76, most_cell = 240;
     static constexpr double block = 36, post = 6, top = 74, floor = 106, middle = 86, radius = 30;
     static constexpr const char* colours[] = {"#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
@@ -302,22 +266,22 @@ private:
 
     [[nodiscard]] const char* colour(std::size_t i) const { return colours[i % std::size(colours)]; }
     [[nodiscard]] double centre(std::size_t i) const {
-        const double all = cell_ * static_cast<double>(rig_.bodies.size());
+        const double all = cell_ * static_cast<double>(scene_.bodies.size());
         return (width_ - all) / 2 + cell_ * (static_cast<double>(i) + 0.5);
     }
     /// The travel of a block, with room for the spring on the left.
     [[nodiscard]] double travel() const { return std::max(cell_ - block - 44, 8.0); }
     [[nodiscard]] double shift(double theta) const {
-        const Interval& reach = rig_.bodies.front().reach;
+        const Interval& reach = scene_.bodies.front().reach;
         return (theta - (reach.low + reach.high) / 2) / reach.length() * travel();
     }
     [[nodiscard]] double x_of(std::size_t i, double theta) const { return centre(i) + 12 + shift(theta); }
     [[nodiscard]] double x(std::size_t i, const Frame& frame) const {
-        return rig_.discs ? centre(i) : x_of(i, frame.theta);
+        return scene_.discs ? centre(i) : x_of(i, frame.theta);
     }
 
     void add_floor(std::size_t i) {
-        const Scene& body = rig_.bodies[i];
+        const Track& body = scene_.bodies[i];
         add("<defs><pattern id=\"floor{}\" width=\"{}\" height=\"8\" patternUnits=\"userSpaceOnUse\" y=\"{}\">", i,
             hatch_width, floor);
         if (body.belt) {
@@ -346,61 +310,60 @@ private:
     void add_block(std::size_t i) {
         add("<rect x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" fill=\"{}\">", -block / 2, top, block,
             floor - top, colour(i));
-        add_motion("transform", "translate", rig_.bodies[i],
+        add_motion("transform", "translate", scene_.bodies[i],
                    [&](const Frame& f) { return fmt::format("{:.1f}", x(i, f)); });
-        add_colours("fill", rig_.bodies[i], colour(i));
+        add_colours("fill", scene_.bodies[i], colour(i));
         all_ += "</rect>\n";
-        words(centre(i), floor + 24, "middle", rig_.bodies[i].name, colour(i));
+        words(centre(i), floor + 24, "middle", scene_.bodies[i].name, colour(i));
     }
 
     /// A disc with a rotating mark.
     void add_disc(std::size_t i) {
         add("<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{}\" fill=\"{}\">", centre(i), middle, radius, colour(i));
-        add_colours("fill", rig_.bodies[i], colour(i));
+        add_colours("fill", scene_.bodies[i], colour(i));
         all_ += "</circle>\n";
         const double at = centre(i);
         add("<path d=\"M{:.1f},{} V{}\" stroke=\"#ffffff\" stroke-width=\"4\">", at, middle, middle + 3 - radius);
-        add_motion("transform", "rotate", rig_.bodies[i], [at](const Frame& f) {
+        add_motion("transform", "rotate", scene_.bodies[i], [at](const Frame& f) {
             return fmt::format("{:.1f},{:.1f},{}", f.theta * 180 / std::numbers::pi, at, middle);
         });
         all_ += "</path>\n";
-        words(centre(i), middle + radius + 16, "middle", rig_.bodies[i].name, colour(i));
+        words(centre(i), middle + radius + 16, "middle", scene_.bodies[i].name, colour(i));
     }
 
     /// A link: straight between neighbours, otherwise above the bodies between.
-    void add_link(const RigScene::Link& link, std::size_t k) {
+    void add_link(const Link& link, std::size_t k) {
         const std::size_t left = std::min(link.first, link.second), right = std::max(link.first, link.second);
-        const Scene &a = rig_.bodies[left], &b = rig_.bodies[right];
-        const double half = rig_.discs ? radius : block / 2;
+        const Track &a = scene_.bodies[left], &b = scene_.bodies[right];
+        const double half = scene_.discs ? radius : block / 2;
         const double above = 12 + 9 * static_cast<double>(k % 5);
         const bool direct = right == left + 1 && first_between(left, k);
         const auto points = [&](const Frame& frame) {
-            const auto at = static_cast<std::size_t>(&frame - link.scene.frames.data());
+            const auto at = static_cast<std::size_t>(&frame - link.track.frames.data());
             const double from = x(left, a.frames[at]), to = x(right, b.frames[at]);
-            if (direct && link.scene.spring) return spring_points(from + half, to - half, middle, 6);
+            if (direct && link.track.spring) return spring_points(from + half, to - half, middle, 6);
             if (direct) return fmt::format("{:.1f},{} {:.1f},{}", from + half, middle, to - half, middle);
             return fmt::format("{0:.1f},{1} {0:.1f},{2} {3:.1f},{2} {3:.1f},{1}", from, top, above, to);
         };
-        add_line(fmt::format("stroke=\"{}\" stroke-width=\"{}\"", grey_ink, link.scene.spring ? 1.2 : 3), link.scene,
+        add_line(fmt::format("stroke=\"{}\" stroke-width=\"{}\"", grey_ink, link.track.spring ? 1.2 : 3), link.track,
                  points);
-        add_colours("stroke", link.scene, grey_ink);
+        add_colours("stroke", link.track, grey_ink);
         all_ += "</polyline>\n";
-        direct ? words((centre(left) + centre(right)) / 2, middle - 14, "middle", link.scene.name)
-               : words((centre(left) + centre(right)) / 2, above - 2, "middle", link.scene.name);
+        direct ? words((centre(left) + centre(right)) / 2, middle - 14, "middle", link.track.name)
+               : words((centre(left) + centre(right)) / 2, above - 2, "middle", link.track.name);
     }
     /// Returns whether no earlier link connects the same bodies, as it would hide this one.
     [[nodiscard]] bool first_between(std::size_t left, std::size_t k) const {
-        return std::none_of(rig_.links.begin(), rig_.links.begin() + static_cast<std::ptrdiff_t>(k),
-                            [left](const RigScene::Link& other) {
-                                return std::min(other.first, other.second) == left &&
-                                       std::max(other.first, other.second) == left + 1;
-                            });
+        return std::none_of(
+            scene_.links.begin(), scene_.links.begin() + static_cast<std::ptrdiff_t>(k), [left](const Link& other) {
+                return std::min(other.first, other.second) == left && std::max(other.first, other.second) == left + 1;
+            });
     }
 
     void add_graph() {
         const Graph graph{40, width_ - 16, 160, 306};
         add_axes(graph);
-        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) add_curve(graph, rig_.bodies[i], colour(i));
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_curve(graph, scene_.bodies[i], colour(i));
         add("<path d=\"M0,{} V{}\" stroke=\"{}\" stroke-width=\"1.2\">", graph.top - 4, graph.bottom + 4, stuck_colour);
         add_motion("transform", "translate", clock_, [&](const Frame& f) {
             return fmt::format("{:.1f}", graph_x(graph, static_cast<std::size_t>(&f - clock_.frames.data())));
@@ -408,7 +371,9 @@ private:
         all_ += "</path>\n";
     }
 
-    const RigScene& rig_;
+    const Scene& scene_;
+    const Track& clock_;
+    std::string all_;
     const bool alone_;
     const double cell_, width_;
 };
@@ -416,130 +381,12 @@ private:
 }  // namespace
 
 std::string title_of(const Scene& scene) {
-    return fmt::format("A run in motion, t = {:.6g} to {:.6g}", scene.frames.front().t, scene.frames.back().t);
-}
-
-std::string animated_svg(const RigScene& rig) {
-    return RigSvg(rig).text();
+    const std::vector<Frame>& frames = scene.bodies.front().frames;
+    return fmt::format("A run in motion, t = {:.6g} to {:.6g}", frames.front().t, frames.back().t);
 }
 
 std::string animated_svg(const Scene& scene) {
-    const RigScene alone{.bodies = {scene}, .links = {}};
-    return RigSvg(alone).text();
-}
-
-namespace {
-
-struct FrameSigns {
-    std::string_view mass, stuck, anchor, wall, coil[2], surface[4];
-};
-
-constexpr FrameSigns of_unicode{"█", "▓", "▐", "▌", {"/", "\\"}, {"─", "─", "─", "╱"}};
-constexpr FrameSigns of_ascii{"#", "X", "|", "|", {"/", "\\"}, {"-", "-", "-", "/"}};
-
-/// A row of cells, each one column wide.
-class Row {
-public:
-    explicit Row(int columns) : cells_(static_cast<std::size_t>(std::max(columns, 0)), " ") {}
-    void put(int column, std::string_view sign) {
-        if (column >= 0 && column < static_cast<int>(cells_.size())) cells_[static_cast<std::size_t>(column)] = sign;
-    }
-    void fill(int from, int to, std::string_view sign) {
-        for (int column = from; column < to; ++column) put(column, sign);
-    }
-    void write(int column, std::string_view ascii) {
-        for (std::size_t i = 0; i < ascii.size(); ++i) put(column + static_cast<int>(i), ascii.substr(i, 1));
-    }
-    [[nodiscard]] std::string text() const {
-        std::string all;
-        for (const std::string_view cell : cells_) all += cell;
-        all.erase(all.find_last_not_of(' ') + 1);
-        return all;
-    }
-
-private:
-    std::vector<std::string_view> cells_;
-};
-
-/// Columns: width of the mass, and its centre at both ends of its reach.
-struct Places {
-    int mass, first, last;
-    [[nodiscard]] double middle(double part) const { return first + part * (last - first); }
-};
-
-Places places_of(const Scene& scene, int columns) {
-    constexpr int narrow = 40;
-    const int mass = columns < narrow ? 3 : 5;
-    const int shortest_spring = columns < narrow ? 4 : 8;
-    const int first = (scene.spring ? shortest_spring : 1) + mass / 2 + 1;
-    return {mass, first, std::max(first + 1, columns - 2 - mass / 2)};
-}
-
-std::string status(const Scene& scene, const Frame& frame, const FrameFormat& format) {
-    const double step = (scene.frames.back().t - scene.frames.front().t) / static_cast<double>(scene.frames.size() - 1);
-    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(step, 1e-12)) - 1e-9)), 0, 9);
-    const std::string t_unit = scene.t_unit.empty() ? "" : " " + scene.t_unit;
-    const std::string line =
-        fmt::format("{}{}t = {:.{}f}{}  θ = {:+.3g} {}  {}", scene.name, scene.name.empty() ? "" : "  ", frame.t,
-                    digits, t_unit, frame.theta, scene.theta_unit, frame.stuck ? "stuck" : "");
-    const std::string clean = text::displayable(line);
-    std::string shown = format.charset == Charset::braille ? clean : text::in_ascii(clean);
-    if (text::columns(shown) <= static_cast<std::size_t>(format.columns)) return shown;
-    const std::string brief =
-        fmt::format("{:.{}f} {:+.2g} {}", frame.t, digits, frame.theta, frame.stuck ? "stuck" : "");
-    return std::string(text::cut_to_columns(brief, static_cast<std::size_t>(format.columns)));
-}
-
-std::string scale_line(const Scene& scene, const Places& places, int columns) {
-    const Scale scale(scene.reach, false);
-    const Ticks ticks = ticks_of({}, scale, std::max(1, (places.last - places.first) / 10));
-    Row row(columns);
-    int free = 0;
-    for (std::size_t i = 0; i < ticks.at.size(); ++i) {
-        const std::string& text = ticks.text[i];
-        const int length = static_cast<int>(text.size());
-        const int column = nearest_dot(places.middle(scene.at(ticks.at[i]))) - length / 2;
-        if (column < free || column + length > columns) continue;
-        row.write(column, text);
-        free = column + length + 1;
-    }
-    return row.text();
-}
-
-}  // namespace
-
-std::vector<std::string> text_frame(const Scene& scene, const Frame& frame, const FrameFormat& format) {
-    const FrameSigns& signs = format.charset == Charset::braille ? of_unicode : of_ascii;
-    const int columns = std::max(format.columns, 12);
-    const Places places = places_of(scene, columns);
-    const int left = nearest_dot(places.middle(scene.at(frame.theta))) - places.mass / 2;
-    Row upper(columns), lower(columns), surface(columns);
-    if (scene.spring) {
-        upper.put(0, signs.anchor);
-        lower.put(0, signs.anchor);
-        for (int column = 1; column < left; ++column) lower.put(column, signs.coil[column % 2]);
-    }
-    if (scene.walls) {
-        // The spring passes the lower wall.
-        const int half = places.mass / 2 + 1;
-        if (std::isfinite(scene.walls->lower)) {
-            upper.put(nearest_dot(places.middle(scene.at(scene.walls->lower))) - half, signs.wall);
-        }
-        if (std::isfinite(scene.walls->upper)) {
-            const int column = nearest_dot(places.middle(scene.at(scene.walls->upper))) + half;
-            upper.put(column, signs.wall);
-            lower.put(column, signs.wall);
-        }
-    }
-    for (Row* row : {&upper, &lower}) row->fill(left, left + places.mass, frame.stuck ? signs.stuck : signs.mass);
-    const int shift = nearest_dot(scene.shift(frame) * (places.last - places.first));
-    for (int column = 0; column < columns; ++column) {
-        surface.put(column, signs.surface[static_cast<std::size_t>(((column - shift) % 4 + 4) % 4)]);
-    }
-    std::vector<std::string> lines{status(scene, frame, {columns, format.charset, false}), upper.text(), lower.text(),
-                                   surface.text(), scale_line(scene, places, columns)};
-    if (format.colours && frame.stuck) lines[0] = "\x1b[33m" + lines[0] + "\x1b[0m";
-    return lines;
+    return AnimatedSvg(scene).text();
 }
 
 }  // namespace dinal::plots::animation

@@ -1,16 +1,16 @@
 // One classical Runge-Kutta step of I theta'' + C theta' + k theta = F(t) as an affine map.
 #pragma once
 
-#include "model/lowered.hpp"
+#include "model/oscillator.hpp"
 
-namespace dinal::motion::rk4 {
+namespace dinal::motion::engine {
 
 /// For a linear system the four stages combine to y1 = y0 + (R - 1) y0 + P0 f0 + Pm fm + P1 f1, with f = F/I at the
 /// beginning, middle and end of the step, R = 1 + Z + Z^2/2 + Z^3/6 + Z^4/24 and Z = h [0 1; -k/I -C/I]
 /// (docs/theory.md). R - 1 is stored rather than R: its rounding is smaller by the factor h w0.
 struct AffineStep {
-    AffineStep(const model::Lowered& system, double step)
-        : h(step), w(system.stiffness() / system.inertia()), c(system.damping() / system.inertia()) {
+    /// `stiffness` and `damping` by the inertia.
+    AffineStep(double stiffness, double damping, double step) : h(step), w(stiffness), c(damping) {
         // Horner: R - 1 = Z (1 + Z/2 (1 + Z/3 (1 + Z/4))), each product by [0 1; -w -c] h.
         double a11 = 1, a12 = 0, a21 = 0, a22 = 1;
         for (int n = 4; n >= 1; --n) {
@@ -48,4 +48,4 @@ struct AffineStep {
     double q0, qm, q1;
 };
 
-}  // namespace dinal::motion::rk4
+}  // namespace dinal::motion::engine

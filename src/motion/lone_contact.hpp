@@ -1,18 +1,19 @@
-// Stick or slip at velocity zero, for exact and rk4: evaluates the friction law and records the events.
+// The only contact of a mass on the ground, for exact and rk4: its state and its events. contact.hpp decides.
 //
 // An integrator computes the smooth motion. It reports when the velocity reaches zero or a pull passes the limit of
-// sticking; this class decides how the mass continues.
+// sticking; this class says how the mass continues.
 #pragma once
 
 #include <cmath>
 #include <vector>
 
 #include "model/sticking.hpp"
+#include "motion/contact.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion {
 
-class Standstill {
+class LoneContact {
 public:
     enum class Phase {
         moving,   ///< velocity not zero, or zero is not special (see passes())
@@ -27,9 +28,9 @@ public:
         double t, theta, M;
     };
 
-    /// `events` may be null. Many standstills, each within `at_once` of the one before, are chatter: a feedback that
+    /// `events` may be null. Many decisions, each within `at_once` of the one before, are chatter: a feedback that
     /// pushes at rest and brakes in motion.
-    Standstill(const Problem& problem, std::vector<model::Event>* events, double at_once);
+    LoneContact(const Problem& problem, std::vector<model::Event>* events, double at_once);
 
     [[nodiscard]] Phase phase() const { return phase_; }
     /// Returns whether it stands, as far as doubles show.
@@ -43,17 +44,17 @@ public:
     /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass goes on, or reverses when it has
     /// stopped.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
-        if (phase_ == Phase::creeping) return pulled_on(M, theta);
-        return model::motion_from_standstill(system_, M, theta);
+        const model::Pull pull = pull_of(M, theta);
+        return pull.beyond > 0 ? pull.towards : model::Motion::stuck;
     }
     /// The limit of M - k theta towards this side: the breakaway torque, or for a creeping mass the balance it is in,
     /// within rounding.
     [[nodiscard]] double limit(model::Motion side) const {
         if (phase_ != Phase::creeping) return system_.holding(side);
-        return side == motion_ ? apart_ + balance() : apart_ - balance();
+        return contact::limit_of_creep(side, motion_, balance(), apart_);
     }
     /// The excess of M over the limit; positive exactly if the law releases the mass.
-    [[nodiscard]] double excess(double M, double theta) const;
+    [[nodiscard]] double excess(double M, double theta) const { return pull_of(M, theta).beyond; }
     /// Returns whether M can never move it again: it is constant, or never large enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
@@ -78,7 +79,7 @@ public:
     /// the spring while breakaway friction is larger: such a mass slows down for ever.
     bool creep(const Moment& now);
 
-    // These functions return false after endless standstills.
+    // These functions return false after endless decisions.
 
     /// Decides after arrive(), and records the event.
     bool decide(const Moment& now);
@@ -95,7 +96,7 @@ public:
     void turned(const Moment& now);
     /// Ends the run; returns whether the mass stands.
     bool finish();
-    /// Ends a run of endless standstills: removes their events except the first.
+    /// Ends a run of endless decisions: removes their events except the first.
     void forget_chatter();
 
     /// The state needed to resume a run.
@@ -116,13 +117,16 @@ public:
 
 private:
     [[nodiscard]] bool at_start(double t) const { return t <= start_; }
-    [[nodiscard]] bool was_rounding_artefact(const Moment& now) const;
     [[nodiscard]] double torques(const Moment& now) const {
         return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
     }
     /// The friction torque of a creeping mass.
     [[nodiscard]] double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
-    [[nodiscard]] model::Motion pulled_on(double M, double theta) const;
+    [[nodiscard]] model::Pull pull_of(double M, double theta) const {
+        if (phase_ != Phase::creeping) return model::pull_at_rest(system_, M, theta);
+        return contact::pull_on_creep(std::fma(-system_.stiffness(), theta, M), motion_, balance(), apart_);
+    }
+    void stick(const Moment& now);
     void record_event(model::EventKind kind, const Moment& now);
     bool goes_on_after(double t);
 
@@ -138,11 +142,11 @@ private:
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
     double M_stuck_ = 0;                         // and M then
-    double torques_before_;                      // sum of torques at the standstill before
+    double torques_before_;                      // sum of torques at the stop before
     Moment crept_{};                             // when it began to creep
     double apart_ = 0;                           // tolerance of M around the balance of a creep
     bool began_stuck_ = false;
-    double last_ = -model::never;  // time of the last standstill
+    double last_ = -model::never;  // time of the last decision
     int at_once_in_a_row_ = 0;
 };
 

@@ -1,0 +1,164 @@
+#include "motion/engine/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/interpolation.hpp"
+#include "motion/roughness.hpp"
+
+namespace dinal::motion::engine {
+
+/// One step for the groups and states. In between, angles of rk4 are a polynomial that has the angles, velocities and
+/// accelerations of both ends, and all else one that has values and rates, and of a pair its bulge.
+Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& departing) {
+    constexpr std::size_t middle = node_count / 2, last = node_count - 1;
+    const double h = 2 * s.h;
+    const std::size_t groups = frame.groups(), size = 2 * groups + m_;
+    unknown_.resize(groups + m_), found_.resize(groups + m_);
+    std::vector<double> speeds(groups, 0);  // of the groups, at the start
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double v = s.y[n_ + i][0] - offsets_.velocities[i][0],
+                     momentum = mechanics_.system().bodies[i].inertia * v;
+        for (const auto& [group, by] : frame.bodies[i]) speeds[group] += by * momentum / frame.inertia[group];
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        const Frame::Shape& shape = frame.bodies[i];
+        if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offsets_.velocities[i][0]) / shape[0].by;
+    }
+    /// Puts changes at a node: the ways of the groups, the changes of their velocities, and those of the states.
+    const auto put = [&](std::size_t node, const std::vector<double>& change) {
+        for (std::size_t i = 0; i < n_; ++i) {
+            const Frame::Shape& shape = frame.bodies[i];
+            const double first = shape.empty() ? 0 : s.y[n_ + i][0] - offsets_.velocities[i][0];
+            s.moved[i][node] = offsets_.ways[i][node] + sum_of_groups(shape, [&](std::size_t g) { return change[g]; });
+            s.y[i][node] = s.y[i][0] + s.moved[i][node];
+            if (node == 0) continue;
+            s.y[n_ + i][node] = offsets_.velocities[i][node] +
+                                (first + sum_of_groups(shape, [&](std::size_t g) { return change[groups + g]; }));
+        }
+        for (std::size_t k = 0; k < m_; ++k) s.y[2 * n_ + k][node] = s.y[2 * n_ + k][0] + change[2 * groups + k];
+    };
+    const auto rates = [&](std::size_t node, const std::vector<double>& change, std::vector<double>& out) {
+        put(node, change);
+        if (!evaluate(s, mode, frame, node, node + 1, node == 0 ? &departing : nullptr)) return false;
+        out.resize(size);
+        for (std::size_t g = 0; g < groups; ++g) out[g] = speeds[g] + change[groups + g];
+        for (std::size_t k = 0; k < groups + m_; ++k) out[groups + k] = found_[k][node];
+        return true;
+    };
+    const auto along = [&](double length, const std::vector<double>& slope) {
+        std::vector<double> change(size);
+        for (std::size_t k = 0; k < size; ++k) change[k] = length * slope[k];
+        return change;
+    };
+    std::vector<double> a, b, c, d, e, z(size, 0);
+    if (pair_ != nullptr) {
+        if (!find_stages(s, rates, z)) return Attempt::failed;
+        a = last_.stages.front(), e = last_.stages.back();
+    } else {
+        if (!rates(0, z, a) || !rates(middle, along(h / 2, a), b) || !rates(middle, along(h / 2, b), c) ||
+            !rates(last, along(h, c), d)) {
+            return Attempt::failed;
+        }
+        for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+        if (!rates(last, z, e)) return Attempt::failed;
+    }
+    // In a small part of a step the places differ by rounding, of which no velocity can be made.
+    const bool quintic = h >= 1e-3 * step_ && pair_ == nullptr;
+    const auto cubic = [&](std::size_t k, double x) {
+        const double v0 = h * a[k], v1 = h * e[k];
+        return x * (v0 + x * ((3 * z[k] - 2 * v0 - v1) + x * (v0 + v1 - 2 * z[k])));
+    };
+    std::vector<double> change(size);
+    for (std::size_t j = 1; j < last; ++j) {
+        const double x = (1 + cheb::nodes[j]) / 2;
+        for (std::size_t k = 0; k < size; ++k) change[k] = cubic(k, x);
+        for (std::size_t k = 0; k < size && pair_ != nullptr; ++k)
+            change[k] += x * x * (1 - x) * (1 - x) * last_.bulge[k];
+        for (std::size_t g = 0; g < groups && quintic; ++g) {
+            const std::size_t v = groups + g;
+            const StepInterpolant motion(h, {0, a[g]}, a[v], {z[g], e[g]}, e[v]);
+            const model::State between = motion(x * h);
+            change[g] = between.theta, change[v] = between.velocity - a[g];
+        }
+        put(j, change);
+    }
+    if (!evaluate(s, mode, frame, 1, last, nullptr)) return Attempt::failed;
+    unknown_ = found_;
+    return Attempt::resolved;
+}
+
+Flow::Attempt RungeKutta::accept(Segment& s, const Mode& mode, const Frame& frame) {
+    const double error = pair_ != nullptr ? error_of_step(s, frame) : 0;
+    const std::vector<double> fastest = fastest_.rates;
+    judge(s, mode, frame);
+    s.proven = pair_ != nullptr || !mechanics_.has_functions();
+    if (pair_ == nullptr) return Attempt::resolved;
+    unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_->power));
+    growth_ = std::min(growth_, std::pow(error, -1 / pair_->power));
+    if (unresolved_ > 1) fastest_.rates = fastest;  // not those of a step that went far away
+    return look_between(s, mode, frame);
+}
+
+/// Stages of the pair that do not lie on nodes borrow the first inner nodes. Functions of the time alone have there the
+/// values of the polynomial through their samples. The stretch is resolved only if that polynomial is.
+template <class Rates>
+bool RungeKutta::find_stages(Segment& s, const Rates& rates, std::vector<double>& change) {
+    const std::span<const Pair::Stage> stages = pair_->stages;
+    std::vector<std::pair<Nodes*, Nodes>> lent;
+    const auto lend = [&](Nodes& values) {
+        const Series series = cheb::fit(lent.emplace_back(&values, values).second);
+        for (std::size_t i = 0; i < stages.size(); ++i) {
+            if (stages[i].at < 1) values[i + 1] = cheb::value(series, 2 * stages[i].at - 1);
+        }
+    };
+    lend(s.times);
+    for (auto* all : {&s.loads, &s.belts, &offsets_.velocities, &offsets_.rates, &offsets_.ways}) {
+        std::for_each(all->begin(), all->end(), lend);
+        if (!mechanics_.has_belts()) break;  // which move nothing
+    }
+    const auto sum_of_stages = [&](const Pair::Weights& weights, std::vector<double>& sum) {
+        sum.assign(change.size(), 0);
+        for (std::size_t i = 0; i < last_.stages.size(); ++i) {
+            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += 2 * s.h * weights[i] * last_.stages[i][k];
+        }
+    };
+    last_.stages.resize(1);
+    bool good = rates(0, change, last_.stages[0]);
+    for (std::size_t i = 0; i < stages.size() && good; ++i) {
+        sum_of_stages(stages[i].sum, change);
+        last_.stages.emplace_back();
+        good = rates(stages[i].at < 1 ? i + 1 : node_count - 1, change, last_.stages.back());
+    }
+    for (auto& [values, kept] : lent) *values = kept;
+    if (good) sum_of_stages(pair_->error, last_.error), sum_of_stages(pair_->bulge, last_.bulge);
+    return good;
+}
+
+/// Returns the estimated error of the last step of the pair, in units of what is allowed. A step that is much too long
+/// may go far away, where torques are huge: it is compared with those at its start. Noise of what acts is in the
+/// estimate, and a shorter step would not take it out.
+double RungeKutta::error_of_step(const Segment& s, const Frame& frame) const {
+    constexpr double of_longest = 4;  // an error of an angle counts like one of a velocity over a radian of the motion
+    const std::size_t groups = frame.groups();
+    double most = 0;
+    const auto note = [&](double error, std::size_t k, double acts) {
+        const double size = std::max(greatest(s.y[k]), s.h * std::fabs(s.f[k][0])), all = size + acts;
+        const double rough = std::min(of_tail * s.h * cheb::tail(s.rates[k]), most_noise * all);
+        most = std::max(most, error / (tolerance_ * size + 64 * rounding * all + rough + smallest / s.h));
+    };
+    for (std::size_t i = 0; i < n_; ++i) {
+        double way = 0, velocity = 0, per_torque = 0;
+        for (const auto& [group, by] : frame.bodies[i]) {
+            way += by * last_.error[group], velocity += by * last_.error[groups + group];
+            per_torque += s.h * by * by / frame.inertia[group];
+        }
+        note(std::max(std::fabs(velocity), of_longest / longest_ * std::fabs(way)), n_ + i,
+             per_torque * sizes_.at_start[i]);
+    }
+    for (std::size_t k = 0; k < m_; ++k)
+        note(std::fabs(last_.error[2 * groups + k]), 2 * n_ + k, s.h * fastest_.rates[k]);
+    return most;
+}
+
+}  // namespace dinal::motion::engine
