@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t most_stops = 5;  // stops reported one by one; of more, these:
 constexpr std::size_t first_stops = 2, last_stops = 2;
-constexpr std::size_t most_turns = 4;
+constexpr std::size_t most_turns = 4, most_slides = 3;
 
 constexpr const char* base_text =
     "The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.";
@@ -95,6 +95,7 @@ public:
         tell_start();
         tell_counts();
         tell_open();
+        tell_slides();
         tell_turns();
         tell_stops();
         tell_end();
@@ -401,6 +402,33 @@ private:
         }
     }
 
+    /// Describes motions along a surface on which M or the rate of a state jumps.
+    void tell_slides() {
+        using enum model::EventKind;
+        std::size_t n = 0;
+        double from = run_.t_start, all = 0;
+        bool slides = false, any = false;
+        const auto add_slide = [&](double to, const std::string& why) {
+            all += to - from, ++n;
+            if (n > most_slides) return;
+            say("From t = {} to {} it slid along a surface on which {} jumps and drives it back from both sides{}.",
+                at(from), at(to), whole_.drive.states.empty() ? "M" : "M or the rate of a state", why);
+        };
+        for (const model::Event& event : run_.events) {
+            if (event.kind == slide_begins) from = event.t, slides = true;
+            if (event.kind == slide_ends && (slides || !any)) {
+                const bool stops = std::any_of(run_.events.begin(), run_.events.end(), [&](const model::Event& other) {
+                    return other.t == event.t && (other.kind == stick || other.kind == rest || other.kind == impact);
+                });
+                add_slide(event.t, stops ? "; then a contact or a wall stopped it" : "; then one side no longer did");
+                slides = false;
+            }
+            any = any || event.kind == slide_begins || event.kind == slide_ends;
+        }
+        if (slides) add_slide(run_.t_stop, ", until the run ended");
+        if (n > most_slides) say("There were {} such slides, which lasted {} in all.", n, at(all));
+    }
+
     void tell_turns() {
         if (!undisturbed_) {
             tell_reach();
@@ -483,7 +511,12 @@ private:
                 : on_belt_ ? "stuck to the belt"
                            : "stopped",
                 at(begun.t), place(*(&stop - 1)));
-            if (has_reasons()) add(" because {}", reason(pull(begun)));
+            const double torque = pull(begun);
+            const bool driven_back =
+                excitation_.has_feedback() && std::fabs(torque) > limit(torque) && !at_limit(torque, begun);
+            if (has_reasons()) {
+                add(" because {}", driven_back ? "M drives it back from both sides of velocity 0" : reason(torque));
+            }
         }
         if (stop.ended_by) {
             add("; it stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));

@@ -298,14 +298,19 @@ std::optional<std::string> obstacle(lua_State* L, const model::Excitation& excit
 /// What a run knows of this function between its samples.
 std::string proof_of(model::UserFunction& function) {
     if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return "called at its instants only";
-    if (dynamic_cast<const model::DelayedController*>(&function) != nullptr) return "sampled: it depends on the past";
+    const auto* delayed = dynamic_cast<const model::DelayedController*>(&function);
     const auto* relay = dynamic_cast<const model::RelayController*>(&function);
     if (relay != nullptr && relay->function == nullptr) return "native terms";
-    auto* own = dynamic_cast<lua::LuaFunction*>(relay != nullptr ? relay->function.get() : &function);
+    auto* own = dynamic_cast<lua::LuaFunction*>(relay != nullptr     ? relay->function.get()
+                                                : delayed != nullptr ? delayed->function.get()
+                                                                     : &function);
     if (own == nullptr) return "sampled";
     if (const std::string why = own->obstacle(); !why.empty()) return "sampled: " + why;
     if (relay != nullptr && own->formula()->has_conditions_of_motion()) {
         return "sampled: a relay's function has conditions on the motion";
+    }
+    if (delayed != nullptr && own->formula()->has_conditions_of_motion()) {
+        return "sampled: the function of a delayed excitation has conditions on the motion";
     }
     const auto& steps = own->formula()->steps();
     const auto conditions = std::count_if(steps.begin(), steps.end(), [](const model::Formula::Step& step) {

@@ -203,9 +203,12 @@ bool sees_all(const model::System& system, const model::Drive& drive, bool locat
         if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return;  // nothing between instants
         const auto* relay = dynamic_cast<const model::RelayController*>(&function);
         if (relay != nullptr && relay->function == nullptr) return;
-        const auto* own = dynamic_cast<const lua::LuaFunction*>(relay != nullptr ? relay->function.get() : &function);
+        const auto* delayed = dynamic_cast<const model::DelayedController*>(&function);
+        const auto* own = dynamic_cast<const lua::LuaFunction*>(relay != nullptr     ? relay->function.get()
+                                                                : delayed != nullptr ? delayed->function.get()
+                                                                                     : &function);
         const model::Formula* read = own == nullptr ? nullptr : own->formula();
-        const bool sees_motion = located && relay == nullptr;
+        const bool sees_motion = located && relay == nullptr && delayed == nullptr;
         all = all && read != nullptr && !read->gave_up() && (sees_motion || !read->has_conditions_of_motion());
     };
     const auto see_in = [&](const std::optional<model::Excitation>& acting) {

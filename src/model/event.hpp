@@ -19,8 +19,10 @@ enum class EventKind {
     released,  ///< an elastic wall no longer pushes
     slider_sticks,
     slider_slips,  ///< slip of a slider in a Jenkins element; the contact as a whole does not slip
+    slide_begins,
+    slide_ends,  ///< a load begins or ceases to hold the motion on a surface where it jumps
 };
-inline constexpr int event_kind_count = 12;
+inline constexpr int event_kind_count = 14;
 
 constexpr std::string_view name(EventKind kind) {
     switch (kind) {
@@ -37,6 +39,8 @@ constexpr std::string_view name(EventKind kind) {
         case EventKind::impact:
             return "impact";
         case EventKind::switched:
+        case EventKind::slide_begins:
+        case EventKind::slide_ends:
             return "switch";
         case EventKind::user:
             return "user";
@@ -62,7 +66,7 @@ struct Event {
     double theta = 0;
     double M = 0;   ///< excitation just after t; with k theta it explains the decision
     int user = -1;  ///< index of a user's event
-    int where = 0;  ///< the joint of theta and velocity; for a relay its body
+    int where = 0;  ///< the joint of theta and velocity; for a relay or a slide its body
     double velocity = 0;
 };
 

@@ -78,6 +78,8 @@ std::string events_text(std::span<const model::Event> events) {
     };
     add(model::EventKind::stick, model::EventKind::slider_sticks);
     add(model::EventKind::slip, model::EventKind::slider_slips);
+    add(model::EventKind::switched, model::EventKind::slide_begins);
+    add(model::EventKind::switched, model::EventKind::slide_ends);
     std::string parts;
     for (const model::EventKind kind :
          {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest,
@@ -120,7 +122,7 @@ std::string chatter_text(const Run& run) {
             return "events follow each other endlessly at one time; bounces made by act never come to rest, those of "
                    "walls = {...} do";
         }
-        if (run.events.back().kind == model::EventKind::switched && !run.located) {
+        if (run.events.back().kind == model::EventKind::switched) {
             return "a relay switches endlessly at one time: its on and off are too close";
         }
     }

@@ -157,7 +157,9 @@ std::vector<Mark> marks_of_events(const motion::Run& run) {
     constexpr double apart = 1.0 / 200;  // part of the run
     std::vector<Mark> marks;
     for (const auto& [event, kind] : {std::pair{model::EventKind::impact, MarkKind::impact},
-                                      std::pair{model::EventKind::switched, MarkKind::switched}}) {
+                                      std::pair{model::EventKind::switched, MarkKind::switched},
+                                      std::pair{model::EventKind::slide_begins, MarkKind::switched},
+                                      std::pair{model::EventKind::slide_ends, MarkKind::switched}}) {
         double last = -model::never;
         for (const model::Event& e : run.events) {
             if (e.kind != event || e.t - last < apart * (run.t_stop - run.t_start)) {

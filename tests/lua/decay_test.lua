@@ -60,6 +60,20 @@ test("motions of smooth springs, drags and states without dry friction die out t
     end
 end)
 
+test("the steps of a spring's rounding are no jump, whatever else has acted before", function()
+    local exp = math.exp
+    for _, case in ipairs { { 1.0094667454716, 0.078544754255563, 0.1118 }, { 1.4622475993354, 0.0944729, -0.1015 },
+        { 0.41937436340377, 0.1035067, -0.17 }, { 1.2221352237742, 0.2781475, 0.06455 } } do
+        local c, g, start = table.unpack(case)
+        local run = system { I = 1, k = 0, spring = function(x) local e = exp(2 * x) return (e - 1) / (e + 1) end }:simulate {
+            M = function(_, _, v, z) return -c * v - g * z.z end, theta0 = 8.8635e-10, t_end = 200,
+            states = { z = { start = start, rate = function(_, _, v, z) return 1 - exp(z.z) + 0.3 * v end } },
+        }
+        equal(run.status, "end")
+        near(run.theta[#run], 0, 1e-14)
+    end
+end)
+
 test("a smooth motion that dies out follows its closed form down to rounding, and goes on from there", function()
     -- v' = 1 - (1 + v)^2 is solved by 1 + v = (1 + a exp(-2 t)) / (1 - a exp(-2 t)) with a = v0 / (2 + v0).
     local v0 = 0.5

@@ -112,7 +112,8 @@ test("outputs that are held, and relays of the motion, hide no pulse", function(
     for M, hides in pairs {
         [excitation.sampled(function(_, theta) return -theta end, { every = 0.5 })] = false,
         [excitation.relay { of = "theta", on = -0.1, off = 0.1, amplitude = { 1, -1 } }] = false,
-        [excitation.delayed(function(_, theta) return -theta end, { by = 0.5 })] = true,
+        [excitation.delayed(function(_, theta) return -theta end, { by = 0.5 })] = false,
+        [excitation.delayed(function(_, theta) return theta > 0.5 and 1 or 0 end, { by = 0.5 })] = true,
     } do
         local text = sys:simulate { M = M, theta0 = 1, t_end = 10, dt = 1 }:explain()
         equal(text:find("A pulse of a Lua function", 1, true) ~= nil, hides)

@@ -106,9 +106,9 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     run = system { I = 1, k = 0 }:simulate { theta0 = 1, t_end = 5, dt = 1,
         M = unread(function(t, theta, velocity) return theta + 0.2*velocity > 0 and -5 or 5 end) }
     has(run.outcome, "tanh would not, nor excitation.sampled or excitation.relay")
-    -- A jump in the rate of a state, which these two terms of M do not cure.
+    -- A jump in the rate of a state that is not read, which these two terms of M do not cure.
     run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 5, dt = 1,
-        states = { x = { start = 1, rate = function(t, theta, velocity, z) return z.x > 0 and -1 or 1 end } } }
+        states = { x = { start = 1, rate = unread(function(t, theta, velocity, z) return z.x > 0 and -1 or 1 end) } } }
     has(run.outcome, "the rate of x jumps to and fro and drives it back each time; a steep line or tanh in its place would not")
     has_not(run.outcome, "sampled")
 end)

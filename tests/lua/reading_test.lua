@@ -324,12 +324,15 @@ test("proof tells what is known between the samples, and why not", function()
     assert(proof(function(t) return #tostring(t) end):find "^sampled: .*reading_test.lua:%d+: it ")
     local function held(t, theta, v) return -v end
     equal(excitation.sampled(held, { every = 1 }):proof(), "called at its instants only")
-    equal(excitation.delayed(held, { by = 1 }):proof(), "sampled: it depends on the past")
+    equal(excitation.delayed(held, { by = 1 }):proof(), "read: bounded on every stretch")
+    local function cut(t, theta, v) return theta > 0 and 1 or 0 end
+    local sampled = "sampled: the function of a delayed excitation has conditions on the motion"
+    equal(excitation.delayed(cut, { by = 1 }):proof(), sampled)
     local function relay(of) return excitation.relay { on = 0, off = 1, amplitude = 1, of = of }:proof() end
     equal(relay("theta"), "native terms")
     equal(relay(held), "read: bounded on every stretch")
     equal(relay(function(t, theta, v) return theta > 0 and 1 or 0 end), "sampled: a relay's function has conditions on the motion")
-    equal(proof(excitation.delayed(held, { by = 1 }) + function(t) return t end), "sampled: it depends on the past; read: bounded on every stretch")
+    equal(proof(excitation.delayed(cut, { by = 1 }) + function(t) return t end), sampled .. "; read: bounded on every stretch")
 end)
 
 test("an error keeps its line", function()

@@ -178,4 +178,106 @@ test("a mass that its feedback holds, or that nothing moves, is not called movin
     has(system { I = 1, k = 1 }:simulate { theta0 = 1, t_end = 5 }, "moving at the end")
 end)
 
+-- A and dry friction are told apart by nothing: -A sgn v beside Rd and Re is dry friction Rd + A that breaks away at
+-- Re + A, whatever the function gives at velocity 0.
+local relays = {
+    read = function(A) return function(v) return v > 0 and -A or A end end,
+    ["with a value at 0"] = function(A) return function(v) return v > 0 and -A or v < 0 and A or 0 end end,
+    ["not read"] = function(A) return function(v) return select(1, v > 0 and -A or A) + tonumber("0") end end,
+}
+local function kinds_of(run)
+    local kinds = {}
+    for _, event in ipairs(run.events) do
+        if event.kind ~= "turn" then kinds[#kinds + 1] = event.kind == "rest" and "stick" or event.kind end
+    end
+    return table.concat(kinds, " ")
+end
+
+test("a feedback -A sgn v beside dry friction adds to it", function()
+    local function f(t) return 1.1 * math.sin(0.8 * t) + 0.5 * math.sin(2.1 * t) end
+    local ends = 0
+    for name, relay in pairs(relays) do
+        for _, case in ipairs { { 0.7, 0.3, 0.4 }, { 0.05, 0.3, 0.9 }, { 1.5, 0.2, 0.2 } } do
+            local A, Rd, Re = table.unpack(case)
+            local g = relay(A)
+            local task = { M = function(t, _, v) return g(v) + f(t) end, theta0 = 3.3, t_end = 40 }
+            local run = system { I = 1, k = 1.3, C = 0.05, Rd = Rd, Re = Re }:simulate(task)
+            task.M = f
+            local dry = system { I = 1, k = 1.3, C = 0.05, Rd = Rd + A, Re = Re + A }:simulate(task)
+            near(run.theta, dry.theta, 1e-11)
+            equal(kinds_of(run), kinds_of(dry), name)
+            ends = ends + #dry.events
+        end
+    end
+    assert(ends > 40)
+end)
+
+test("such a feedback also adds to the friction of belts and links", function()
+    local A = 0.4
+    local function on_belt(M, more)
+        return system { I = 1, k = 1.3, C = 0.05, Rd = 0.3 + more, Re = 0.6 + more }:simulate { M = M, belt = 0.3, t_end = 30 }
+    end
+    local run = on_belt(function(t, _, v) return (v > 0.3 and -A or A) + 0.8 * math.sin(1.7 * t) end, 0)
+    local dry = on_belt(function(t) return 0.8 * math.sin(1.7 * t) end, A)
+    near(run.theta, dry.theta, 1e-11)
+    equal(kinds_of(run), kinds_of(dry))
+    local function of_link(M, more)
+        local links = { c = { "a", "b", Rd = 0.2 + more, Re = 0.3 + more } }
+        return system { bodies = { a = { I = 1, k = 2 }, b = { I = 2, k = 1 } }, links = links }
+            :simulate { M = M, theta0 = { a = 2 }, t_end = 30 }
+    end
+    run = of_link({ c = function(_, _, v) return v.a - v.b > 0 and -A or A end }, 0)
+    dry = of_link(nil, A)
+    near(run.a.theta, dry.a.theta, 1e-11)
+    equal(kinds_of(run), kinds_of(dry))
+end)
+
+test("a slide that dies out beside dry friction is at rest to rounding, and ends in no error", function()
+    for _, Rd in ipairs { 0.01, 1 } do
+        local run = system { I = 1, k = 1, Rd = Rd }:simulate {
+            M = function(_, theta, v) return v + 5 * theta > 0 and -8 or 8 end, theta0 = 3, t_end = 40,
+        }
+        assert(run.status == "end" or run.status == "stuck", run.status)
+        near(run.theta[#run], 0, 1e-14)
+    end
+end)
+
+test("a state slides where its rate jumps, and follows the surface", function()
+    local function go(rate, start, M)
+        return system { I = 1, k = 1, C = 0.1 }:simulate {
+            M = M or function(_, _, _, z) return 0 * z.z end, states = { z = { rate = rate, start = start } }, theta0 = 0.5,
+            t_end = 8, dt = 0.1,
+        }
+    end
+    local run = go(function(_, _, _, z) return z.z > 0 and -1 or 1 end, 1)
+    for i, t in ipairs(run.t) do near(run.states.z[i], math.max(0, 1 - t), 1e-13) end
+    equal(#switches(run), 1)
+    near(switches(run)[1].t, 1, 1e-12)
+    run = go(function(t, theta, _, z) return z.z > theta and -2 or 2 end, 1, function(_, _, _, z) return 0.3 * z.z end)
+    for i, t in ipairs(run.t) do
+        if t > switches(run)[1].t then near(run.states.z[i], run.theta[i], 1e-13) end
+    end
+    -- on the surface M is 0.3 theta
+    local from = switches(run)[1]
+    local free = system { I = 1, k = 0.7, C = 0.1 }:simulate {
+        theta0 = from.theta, velocity0 = from.velocity, t_start = from.t, t_end = 8,
+    }
+    near(run.theta[#run], free.theta[#free], 1e-11)
+    -- it leaves where one side no longer drives it back
+    run = go(function(t, _, _, z) return (z.z > 0 and -1 or 1) + 0.5 * t end, 0)
+    near(switches(run)[1].t, 2, 1e-10)
+    near(run.states.z[#run.states.z], 0.25 * 6 ^ 2, 1e-10)
+end)
+
+test("explain() says when it slid, and why it no longer did", function()
+    local function told(run) return (run:explain():gsub("%s+", " ")) end
+    local story = told(system { I = 1, k = 0 }:simulate { M = function(t, _, v) return (v > 0 and -1 or 1) + 0.3 * t end, t_end = 8 })
+    has(story, "From t = 0 to 3.3333 it slid along a surface on which M jumps")
+    has(story, "then one side no longer did")
+    story = told(system { I = 1, k = 1 }:simulate { M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 3.3, t_end = 20 })
+    has(story, "until the run ended")
+    story = told(system { I = 1, k = 1.3, Rd = 0.3 }:simulate { M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 3.3, t_end = 20 })
+    has(story, "because M drives it back from both sides of velocity 0")
+end)
+
 finish()

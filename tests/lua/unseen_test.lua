@@ -81,12 +81,25 @@ end)
 test("what is sampled in a delayed excitation or a relay is told as the gap, and what is sampled at instants only is not", function()
     local function gap(M) return system(free):simulate { M = M, velocity0 = 1, t_end = 1, dt = .5 }.gap end
     local function narrow(t, theta, v) return exp(-((theta - .5) / 1e-6) ^ 2) end
-    assert(gap(excitation.delayed(narrow, { by = .01 })) > 0)
+    assert(gap(excitation.delayed(function(t, theta, v) return theta > .5 and theta < .6 and 1 or 0 end, { by = .01 })) > 0)
     assert(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = function(...) return narrow(...) end }) > 0)
     equal(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = narrow }), nil)
     equal(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = "theta" }), nil)
     equal(gap(excitation.sampled(narrow, { every = .1 })), nil)
     equal(gap(excitation.sampled(narrow, { every = .1 }) + function(t) return math.sin(t) end), nil)
+end)
+
+test("a narrow pulse over the past motion is found", function()
+    for _ = 1, 24 do
+        local p, w = lot(.3, 1.5), 10 ^ lot(-6, -2)
+        local M = excitation.delayed(function(t, theta, v) return exp(-((theta - p) / w) ^ 2) / w end, { by = .1 })
+        -- The velocity is still 1 while the pulse is passed.
+        local got, run = glide(free, { M = M })
+        assert(math.abs(got - 1 - root) < 1e-6, ("p %g w %g: %.12g"):format(p, w, got))
+        equal(run.gap, nil)
+    end
+    local _, run = glide(free, { M = excitation.delayed(function(t, theta, v) return -v end, { by = .1 }) })
+    equal(run.gap, nil)
 end)
 
 test("a small narrow pulse beside a sine is found", function()
@@ -139,6 +152,22 @@ test("a condition on something narrow is found", function()
     end
 end)
 
+test("a pulse before a condition is found where the formula has no value beyond it", function()
+    for _, w in ipairs { 1e-3, 1e-4, 3e-5, 1e-6 } do
+        for _, theta in ipairs { .7, 1.03447 } do
+            -- exp(2 (x - p)/w) overflows behind p, and the function is 0 there.
+            local got, run = glide(free, { M = function(t, x, v)
+                if x < theta then
+                    local e = exp(2 * (x - theta) / w)
+                    return 2 * e / (1 + e) ^ 2 / w
+                end
+                return 0
+            end })
+            assert(math.abs(got - math.sqrt(2)) < 1e-9 or run.gap, ("w %g: %g, gap %s"):format(w, got, run.gap))
+        end
+    end
+end)
+
 test("what could not be proven is told as the gap", function()
     local S = system { I = 1, k = 4, C = .2 }
     local function gap(M, o)
@@ -153,5 +182,13 @@ test("what could not be proven is told as the gap", function()
     for _, by in ipairs { integrator.rk4 { h = .01 }, integrator.dinal1989 { h = .01 } } do
         equal(gap(function(t) return math.sin(t) / (1.2 + math.cos(t)) end, { integrator = by }), .005)
     end
+    -- Also of a spring or a law of friction.
+    local function sampled(system_of)
+        system_of.I = 1
+        return system(system_of):simulate { theta0 = 1, t_end = 1, dt = .5, integrator = integrator.rk4 { h = .01 } }.gap
+    end
+    near(sampled { k = 1, spring = function(theta) return math.sin(theta) end }, .005, 1e-12)
+    near(sampled { k = 1, friction = function(speed) return .1 + speed end }, .005, 1e-12)
+    equal(sampled { k = 1, Rd = .1 }, nil)
 end)
 finish()

@@ -19,12 +19,14 @@ std::optional<double> SampledLoads::at(std::size_t body, double x) {
 
 Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver)
     : mechanics_(mechanics), conditions_(conditions), solver_(solver) {
+    has_feedback_ = std::any_of(mechanics.loads().begin(), mechanics.loads().end(),
+                                [](const Signal& load) { return load.asks_the_motion(); });
     for (const model::Body& body : mechanics.system().bodies) inertia_ += body.inertia;
 }
 
 bool Balances::at_present(const Moment& at, const Now& now, const Mode& mode, const Frame& frame, const Segment& last,
                           Balance& result) {
-    conditions_.decide(at, mode, last);
+    if (!at.freely) conditions_.decide(at, mode, last);
     result.blurred = 0;
     const auto rate = [&](std::size_t j) {
         const BeltSlope slope = now.belt_slopes[j];
@@ -73,6 +75,16 @@ bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, cons
     result.holding.assign(joints, 0);
     frame.multipliers(lacking_, result.holding);
     return good;
+}
+
+Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, Motion way, double speed,
+                   std::vector<double>& y) {
+    y.assign(at.y.begin(), at.y.end());
+    for (const auto& [body, by] : mechanics.system().joints[joint].of) {
+        double& v = y[mechanics.bodies() + body];
+        v += model::sign_of(way) * by * std::max(4 * rounding * std::fabs(v), speed);
+    }
+    return {at.t, at.side, y, true};
 }
 
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,

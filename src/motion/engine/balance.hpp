@@ -48,6 +48,9 @@ public:
     bool on_stretch(const Segment& segment, double x, const Moment& at, const Mode& mode, const Frame& frame,
                     Balance& result, SampledLoads* sampled = nullptr);
 
+    /// Returns whether some load depends on the motion.
+    [[nodiscard]] bool has_feedback() const { return has_feedback_; }
+
 private:
     template <class Rate, class Known>
     bool find(const Moment& at, const Mode& mode, const Frame& frame, const Rate& rate, const Known& known,
@@ -57,8 +60,14 @@ private:
     Conditions& conditions_;
     const Flow& solver_;
     double inertia_ = 0;  ///< of all bodies
+    bool has_feedback_;
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;
 };
+
+/// Returns the moment at which a joint that holds would slip this way with this speed, or with the least that is not
+/// lost in rounding; `y` is room for its state.
+Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, model::Motion way, double speed,
+                   std::vector<double>& y);
 
 /// Returns how far the torque that holds a joint is beyond what the joint can hold, and which way it would go. Only the
 /// part of a pull counts that is right whatever users' states are wrong by: what only touches a limit holds.

@@ -210,8 +210,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
     bool all_small = true;
     const Moment here = now.here();
     for (const auto& [function, condition] : ending.conditions) {
-        if (const auto joint = slides_.leave(*function, condition)) {
-            crossed.slides.push_back(*joint), crossed.jumps = true, all_small = false;
+        if (const auto change = slides_.leave(*function, condition)) {
+            crossed.slides.push_back(*change), crossed.jumps = true, all_small = false;
             continue;
         }
         const auto [step, beyond, of] = function->conditions()[condition];
@@ -229,7 +229,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         all_small = all_small && clear && jump < small * greatest_;
         if (!soon_again || !clear || ending.conditions.size() > 1) continue;
         if (const auto begun = slides_.begin(*function, jump, now)) {
-            crossed.slides.push_back(begun->joint), crossed.work = begun->work, chatter.crossed(false);
+            crossed.slides.push_back({begun->joint, true}), crossed.work = begun->work, chatter.crossed(false);
         }
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;

@@ -38,10 +38,10 @@ public:
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 
     struct Crossed {
-        bool jumps = false;                 ///< a function has jumped
-        std::size_t count = 0;              ///< functions that have jumped, other than laws of friction
-        std::vector<std::size_t> slides{};  ///< joints whose load begins or ceases to slide along its condition
-        double work = 0;                    ///< of the load of the first, which has put velocities on the condition
+        bool jumps = false;     ///< a function has jumped
+        std::size_t count = 0;  ///< functions that have jumped, other than laws of friction
+        std::vector<SlideChange> slides{};
+        double work = 0;  ///< of the load of the first, which has put velocities on the condition
         bool endless = false;
     };
     /// Crosses those at which the stretch has ended. Many jumps in a row that are next to nothing are digits that the
@@ -49,8 +49,8 @@ public:
     /// that rounding reverses. Where a load is driven back from both sides, it slides along the condition, and the
     /// velocities are put on it.
     Crossed cross(const Ending& ending, Now& now, Chatter& chatter);
-    /// Where contacts hold, loads no longer slide. Returns the joints whose load has ceased to, since the last call.
-    std::vector<std::size_t> ceased(const Now& now) {
+    /// Where contacts hold, loads no longer slide. Returns those that have ceased to since the last call.
+    std::vector<SlideChange> ceased(const Now& now) {
         if (slides_.any()) slides_.follow(now.mode);
         if (slides_.any() && (forgotten_ || slides_.lost(now.here()))) forget(), cease();
         return std::exchange(ceased_, {});
@@ -59,7 +59,7 @@ public:
 private:
     void let_go(double t);
     void cease() {
-        for (const std::size_t joint : slides_.end()) ceased_.push_back(joint);
+        for (const SlideChange& change : slides_.end()) ceased_.push_back(change);
     }
 
     Mechanics& mechanics_;
@@ -77,7 +77,7 @@ private:
     int small_in_a_row_ = 0;  ///< jumps
     double greatest_ = 0;     ///< value or jump so far
     Slides slides_;
-    std::vector<std::size_t> ceased_;
+    std::vector<SlideChange> ceased_;
     TorqueSizes sizes_;
     std::vector<double> soon_;   ///< the state, where a velocity that leaves 0 has left
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave

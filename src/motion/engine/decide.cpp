@@ -38,12 +38,20 @@ private:
         Motion way;
     };
     enum class Ways { right, changed, round };
+    /// What the loads on either side of slip 0 do to a joint that holds.
+    struct BothSides {
+        bool drive_back = false;
+        double beyond = -model::never;  ///< the limit of that side
+        Motion towards = Motion::forward;
+    };
     struct Box;
 
     void ask();
     bool settle(bool all_used);
     bool ride_along(const Frame& frame);
     std::optional<Worst> farthest_beyond();
+    double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards);
+    std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
     void settle_at_limit(std::size_t joint);
@@ -191,15 +199,16 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
     for (std::size_t j = 0; j < joints(); ++j) {
         if (!mode().holds(j)) continue;
         Motion towards = Motion::stuck;
-        const double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
+        double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
+        const bool own = released_ && released_->joint == j, may_go = own || asked_[j].let_go != Motion::stuck;
+        if (by_.balances.has_feedback() && (beyond > 0 || may_go || mode().friction[j].beside > 0))
+            beyond = excess_on_both_sides(j, beyond, towards);
         if (std::isnan(beyond)) {
             made_.good = false;
             return {};
         }
         const double rounded = mechanics_.bodies() > 1 ? 8 * rounding * size(j) : 0;
-        const bool own = released_ && released_->joint == j;
-        if ((own || asked_[j].let_go != Motion::stuck) &&
-            std::fabs(beyond) <= nearly * size(j) + 2 * found_.blurred + between_) {
+        if (may_go && std::fabs(beyond) <= nearly * size(j) + 2 * found_.blurred + between_) {
             worst = {j, own ? released_->way : asked_[j].let_go}, most_beyond = model::never;
             continue;
         }
@@ -208,6 +217,49 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
         if (!worst || part > most_beyond) worst = {j, towards}, most_beyond = part;
     }
     return worst;
+}
+
+/// The same for a joint that holds where loads may jump at slip 0, or at a slip that is rounding and stays so. If they
+/// drive it back from both sides, it holds while some value between both would let it (Filippov): it must be pulled
+/// beyond its limit by the loads of the side to which it goes. Otherwise their value at slip 0 counts.
+double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards) {
+    Slipping& how = mode().friction[j];
+    how.beside = 0;
+    if (!now().rubs(j) || mode().keeps_place(j) || how.way != Motion::stuck) return otherwise;
+    constexpr double later = 1e-9;  // of the unit of time
+    const double rounded = 64 * rounding * size(j) * by_.unit * joint_at(j).lightness(mechanics_.system().bodies);
+    std::vector<double> soon = now().y;
+    for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
+    for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
+        const auto both = both_sides(j, speed, now().here());
+        if (!both || !both->drive_back) continue;
+        if (speed == rounded) {
+            const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
+            if (!then || !then->drive_back) continue;
+        }
+        how.beside = speed, towards = both->towards;
+        return both->beyond;
+    }
+    return otherwise;
+}
+
+/// Returns none if something is not finite.
+std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, double speed, const Moment& here) {
+    constexpr double clearly = 1e-9;  // of the torques
+    BothSides both;
+    double pull_backward = 0, pull_forward = 0;
+    std::vector<double> y;
+    for (const Motion side : {Motion::backward, Motion::forward}) {
+        Balance beside;
+        const Moment at = just_beside(mechanics_, here, j, side, speed, y);
+        if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
+        (side == Motion::forward ? pull_forward : pull_backward) = -beside.holding[j];
+        Motion way = Motion::stuck;
+        const double beyond = excess(mechanics_, j, beside, mode(), now().here(), way);
+        if (way == side && beyond > both.beyond) both.beyond = beyond, both.towards = side;
+    }
+    both.drive_back = pull_backward - pull_forward > clearly * size(j);
+    return both;
 }
 
 void Decider::let_go(const Worst& worst) {
@@ -483,7 +535,9 @@ Decision decide(const Evaluation& by, Now&& now, Contacts&& contacts, const Caus
 }
 
 model::Event event_at(const Mechanics& mechanics, const Now& now, EventKind kind, std::size_t where, int user) {
-    const std::size_t loaded = kind == EventKind::switched ? where : mechanics.system().joints[where].first();
+    const bool of_load =
+        kind == EventKind::switched || kind == EventKind::slide_begins || kind == EventKind::slide_ends;
+    const std::size_t loaded = of_load ? where : mechanics.system().joints[where].first();
     return {.t = now.t.hi,
             .kind = kind,
             .theta = mechanics.angle(where, now.y),

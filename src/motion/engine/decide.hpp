@@ -38,6 +38,7 @@ struct Evaluation {
     Projection& projection;
     const Segment& last;  ///< the stretch that ended now
     DecisionRoom& room;
+    double unit;  ///< of time
 };
 
 struct Cause {

@@ -37,8 +37,9 @@ bool Engine::handle(const Ending& ending) {
         case By::condition: {
             const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
             result_.jumps += crossed.count;
-            if (crossed.work != 0) recorder_->add_jump(now_.t.hi, crossed.slides.front(), {.input = crossed.work});
-            for (const std::size_t joint : crossed.slides) recorder_->tell_slide(now_, joint);
+            if (crossed.work != 0)
+                recorder_->add_jump(now_.t.hi, crossed.slides.front().joint.value_or(0), {.input = crossed.work});
+            for (const SlideChange& change : crossed.slides) recorder_->tell_slide(now_, change);
             if (crossed.endless && crossed.jumps) return fail(Outcome::chattering);
             return decide(true);
         }
@@ -120,7 +121,7 @@ bool Engine::turn_slider(const Ending& ending) {
 
 /// Applies the decision of contacts, and reports it.
 bool Engine::decide(bool told, std::optional<Cause::Released> released) {
-    const Evaluation by{mechanics_, *frames_, *balances_, projection_, segment_, room_};
+    const Evaluation by{mechanics_, *frames_, *balances_, projection_, segment_, room_, pace_.unit};
     const Cause cause{released, told && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);

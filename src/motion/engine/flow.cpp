@@ -61,11 +61,23 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
 /// Between the nodes nothing may happen that was not seen at them.
 Flow::Attempt Flow::look_between(Segment& s, const Mode& mode, const Frame& frame) {
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
-    const Proofs::Beside beside{tolerance_, sizes_.all, noise_.floor(), fastest_.belts, fastest_.rates};
-    if (unresolved_ <= 1 && !proofs_.hides_nothing(s, mode, beside)) unresolved_ = 2;
+    if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
     if (unresolved_ > 1) return Attempt::shorten;
     noise_.pass(s);
     return Attempt::resolved;
+}
+
+bool Flow::hides_nothing(Segment& s, const Mode& mode, double until) {
+    const Proofs::Beside beside{tolerance_, sizes_.all, noise_.floor(), fastest_.belts, fastest_.rates};
+    return proofs_.hides_nothing(s, mode, beside, until);
+}
+
+bool Flow::hides_nothing_until(double x, Segment& s, const Mode& mode) {
+    if (s.proven || !(x < 1)) return true;
+    s.proven = true;
+    if (!(x > -1) || hides_nothing(s, mode, x)) return true;
+    unresolved_ = 2;
+    return false;
 }
 
 void Flow::make_room(Segment& s) const {

@@ -29,6 +29,9 @@ public:
     /// something is not finite at bad_time().
     Attempt solve(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                   const std::vector<double>& departing);
+    /// The stretch is used up to a place only: functions are proven there if they were not on the whole of it. Returns
+    /// false if one hides something. Not for steps, which prove nothing.
+    bool hides_nothing_until(double x, Segment& segment, const Mode& mode);
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
@@ -111,6 +114,7 @@ private:
     void note(const Series& series, double scale, double allowed);
     [[nodiscard]] double lost_of_loads(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;
+    bool hides_nothing(Segment& segment, const Mode& mode, double until);
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     /// Returns how great the torques on the angle of a joint are, from those on its bodies.

@@ -122,9 +122,8 @@ bool Guards::may_creep(std::size_t joint) const {
 
 /// The torque that holds a joint passes its limit.
 void Guards::watch_release(std::size_t joint) {
-    Nodes pull{};
-    for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
-    const Series series = cheb::fit(pull);
+    const double beside_zero = now_.mode.friction[joint].beside;
+    const bool between = beside_zero > 0;
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
     for (const Motion side : {Motion::forward, Motion::backward}) {
@@ -136,7 +135,20 @@ void Guards::watch_release(std::size_t joint) {
             return;
         }
         if (std::isinf(most[0])) continue;  // a freewheel, backward
-        Nodes values{};
+        const auto find_balance = [&](double x, const Moment& at, Balance& found) {
+            std::vector<double> beside;
+            return of_.balances.on_stretch(segment_, x,
+                                           between ? just_beside(mechanics_, at, joint, side, beside_zero, beside) : at,
+                                           now_.mode, frame_, found);
+        };
+        Nodes pull{}, values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            Balance found;
+            if (between && !find_balance(cheb::nodes[j], segment_.moment(j, point_), found)) good_ = false;
+            pull[j] = between ? -found.holding[joint] : -segment_.holding[joint][j];
+        }
+        if (!good_) return;
+        const Series series = cheb::fit(pull);
         const double blunt = now_.mode.friction[joint].blunt;
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
         const Series left = cheb::fit(values);
@@ -150,7 +162,7 @@ void Guards::watch_release(std::size_t joint) {
             segment_.state(x, y);
             const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
             Balance found;
-            if (!of_.balances.on_stretch(segment_, x, at, now_.mode, frame_, found)) return false;
+            if (!find_balance(x, at, found)) return false;
             Motion towards = Motion::stuck;
             return excess(mechanics_, joint, found, now_.mode, at, towards) > 0 && towards == side;
         };

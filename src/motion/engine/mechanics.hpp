@@ -36,6 +36,9 @@ struct Slipping {
     bool riding = false;    ///< at slip 0 because other joints hold; its friction is at the limit
     std::size_t range = 0;  ///< speed range of its law while it slides
     double blunt = 0;       ///< excess over the limit needed for the next release, after a release without motion
+    /// Not 0 if loads jump at slip 0 and drive the joint back from both sides: then the limit forward counts for the
+    /// loads at this slip forward, and the limit backward for those backward.
+    double beside = 0;
     /// The direction of a creep slower than rounding, or `stuck`. During a creep `way` is stuck, and the joint holds
     /// while its pull stays within `apart` of its balance with sliding friction.
     model::Motion creeps = model::Motion::stuck;
@@ -277,6 +280,12 @@ public:
             if (when.has_pieces()) f(when);
         }
     }
+    /// The user's state of which this is the rate.
+    [[nodiscard]] std::optional<std::size_t> state_of(const Piecewise& rate) const {
+        const auto found =
+            std::find_if(rates_.begin(), rates_.end(), [&rate](const Piecewise& each) { return &each == &rate; });
+        return found == rates_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - rates_.begin()));
+    }
     /// Sets the direction of users' friction laws according to the mode.
     void let_laws_act(const Mode& mode) {
         for (std::size_t j = 0; j < contacts_.size(); ++j) {
@@ -299,6 +308,8 @@ public:
         const model::terms::Piece* piece = nullptr;
     };
     [[nodiscard]] Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
+    /// The rate beyond the surface along which it slides.
+    [[nodiscard]] Asked asked_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
     [[nodiscard]] Asked asked_when(std::size_t event) const {
         return {drive_.events[event].when.get(), whens_[event].piece()};
     }

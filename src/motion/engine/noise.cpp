@@ -66,9 +66,13 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
                                     : most_noise_of_rate * tolerance * ever;
         double& noise = floor_.noise[i];
         if (!(tail > tolerance * size)) continue;
-        if (!(tail <= most)) {  // the motion is nothing beside the numbers that its functions calculate with
+        // The motion may be nothing beside the numbers that its functions calculate with.
+        const auto is_rounding = [&] {
             if (known.empty()) known = proofs.roundings(s, mode);
-            if (tail <= few_roundings * known[i] && noise < 2 * tail) noise = std::max(2 * tail, known[i]), any = true;
+            return tail <= few_roundings * known[i] && noise < 2 * tail;
+        };
+        if (!(tail <= most)) {
+            if (is_rounding()) noise = std::max(2 * tail, known[i]), any = true;
             continue;
         }
         if (noise > 0 && tail <= varies * noise) {
@@ -77,6 +81,10 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             continue;
         }
         if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
+        if (is_rounding()) {  // also where it has steps, on which shorter stretches are smooth
+            noise = std::max(2 * tail, known[i]), any = true;
+            continue;
+        }
         const auto here = [&](double t) {
             s.state(s.start.until(t) / s.h - 1, y);
             const Moment at{t, Side::at, y};

@@ -54,14 +54,13 @@ void Recorder::write_recent() {
     recent_.clear();
 }
 
-void Recorder::tell_slide(const Now& now, std::size_t joint) {
+void Recorder::tell_slide(const Now& now, const SlideChange& change) {
     if (!(now.t.hi > problem_.window.start)) return;
-    const bool again = last_slide_.t == now.t.hi && last_slide_.joint == joint;
-    last_slide_ = {again ? -model::never : now.t.hi, joint};
-    if (again) {
-        is_none(EventKind::switched, joint, now.t.hi);
-    } else {
-        tell(now, EventKind::switched, joint);
+    const auto [own, other] = change.begins ? std::pair(EventKind::slide_begins, EventKind::slide_ends)
+                                            : std::pair(EventKind::slide_ends, EventKind::slide_begins);
+    for (std::size_t j = 0; j < told_joints(); ++j) {
+        if (change.joint && *change.joint != j) continue;
+        if (!is_none(other, j, now.t.hi)) tell(now, own, j);
     }
 }
 

@@ -36,9 +36,9 @@ public:
     [[nodiscard]] bool told_user_at(double t) const {
         return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
     }
-    /// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin
-    /// where a run goes on.
-    void tell_slide(const Now& now, std::size_t joint);
+    /// A load, or the rate of a state, which concerns all joints, begins or ceases to slide along a condition. Both at
+    /// one instant are no event, nor does a slide begin where a run goes on.
+    void tell_slide(const Now& now, const SlideChange& change);
     /// A joint that was let go at this time did not leave.
     void tell_no_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
     /// A turn of a body without dry friction changes nothing in its motion: it is recorded only. `sizes` and `noise`
@@ -103,10 +103,6 @@ private:
     std::size_t next_row_ = 0;
     Balance balance_;
     std::vector<double> row_, point_;
-    struct {
-        double t = -model::never;
-        std::size_t joint = 0;
-    } last_slide_;
 };
 
 }  // namespace dinal::motion::engine

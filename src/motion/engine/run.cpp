@@ -157,6 +157,11 @@ bool Engine::advance() {
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
+    if (ending.by == By::condition && problem_.step == 0 &&
+        !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
+        again(Flow::Attempt::shorten);
+        return outcome_ == Outcome::reached_end;
+    }
     SampledLoads sampled(mechanics_, segment_);
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
                             solver_->noise().of_torques());
@@ -179,7 +184,7 @@ bool Engine::take_plain_steps() {
 bool Engine::solve(const Frame& frame) {
     using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, departing_);
-    for (const std::size_t joint : conditions_->ceased(now_)) recorder_->tell_slide(now_, joint);
+    for (const SlideChange& change : conditions_->ceased(now_)) recorder_->tell_slide(now_, change);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
     const Attempt attempt = solver_->solve(segment_, now_.mode, frame, now_.y, departing);

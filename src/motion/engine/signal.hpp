@@ -29,6 +29,7 @@ struct Moment {
     double t;
     Side side;
     std::span<const double> y;
+    bool freely = false;  ///< whether functions are evaluated here, not on the pieces that hold on the stretch
 };
 
 /// The calling convention of user functions.
@@ -98,8 +99,8 @@ public:
     }
     [[nodiscard]] double value(const Moment& at) const {
         if (law_) return value(at, law_->way * law_->slip(at));
-        if (slide_) return sliding(at);
-        if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
+        if (slide_ && !at.freely) return sliding(at);
+        if (piece_.conditions.empty() || at.freely) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
@@ -242,6 +243,18 @@ public:
             f(*read, part.piecewise ? part.piecewise->piece() : nullptr, part.function->delay, c.gain);
             if (part.piecewise && part.piecewise->beyond() != nullptr)
                 f(*read, part.piecewise->beyond(), part.function->delay, c.gain);
+        }
+    }
+    /// Visits its formulas of the past motion that act at this time, with their gain, and a function that returns the
+    /// motion that they are given at a time.
+    template <class F>
+    void for_each_delayed(double t, F f) const {
+        for (const Part& part : parts_) {
+            const model::Component& c = *part.component;
+            if (part.delayed == nullptr || c.gain == 0 || t < c.from || t >= c.to) continue;
+            model::Formula* read = part.delayed->function->read();
+            if (read == nullptr) continue;
+            f(*read, c.gain, [&](double now) { return asking_->past(now - part.delayed->by, Side::at); });
         }
     }
     /// Returns whether some function of the motion has unknown pieces.

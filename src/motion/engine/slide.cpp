@@ -48,18 +48,35 @@ double Slides::share(Piecewise& function, const Moment& at) const {
     return (own.rate + back * own.margin) / (own.rate - beyond.rate);
 }
 
+std::optional<Slides::Sliding> Slides::owner_of(Piecewise& function, double t) const {
+    std::optional<Sliding> owner;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        mechanics_.loads()[j].for_each_piecewise(t, [&](Piecewise& each) {
+            if (&each == &function) owner = {&function, j};
+        });
+    }
+    if (mechanics_.state_of(function)) owner = {&function, std::nullopt};
+    return owner;
+}
+
+/// Moves velocities and states the way in which both sides differ.
+void Slides::put_on_surface(const Side& own, const Side& beyond, Now& now, double& work) const {
+    const std::size_t n = mechanics_.bodies();
+    const double by = own.margin / (beyond.rate - own.rate);
+    for (std::size_t k = n; k < now.y.size(); ++k) {
+        const double change = -by * (beyond.rates[k] - own.rates[k]);
+        if (k < 2 * n) work += mechanics_.own_inertia(k - n) * change * (now.y[k] + change / 2);
+        now.y[k] += change;
+    }
+}
+
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now) {
     constexpr std::size_t most = 2;    // each asks the others
     constexpr double clearly = 1e-12;  // of the difference between both sides
     constexpr double near = 1e-9;      // part of a time unit
     if (mechanics_.has_belts() || sliding_.size() >= most) return {};
-    std::optional<std::size_t> joint;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        mechanics_.loads()[j].for_each_piecewise(now.t.hi, [&](Piecewise& each) {
-            if (&each == &function) joint = j;
-        });
-    }
-    if (!joint) return {};
+    const auto owner = owner_of(function, now.t.hi);
+    if (!owner) return {};
     const Piecewise before = function;
     const auto share_at = [this, &function](const Moment& at) { return share(function, at); };
     const auto no = [&] {
@@ -68,9 +85,16 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now
     };
     const std::size_t n = mechanics_.bodies();
     std::vector<double> one_side = now.y, other_side = now.y;
-    for (const auto& [body, by] : mechanics_.system().joints[*joint].of) {
-        const double away = near * unit_ * by * jump / mechanics_.system().bodies[body].inertia;
-        one_side[n + body] += away, other_side[n + body] -= away;
+    const auto apart = [&](std::size_t k, double by) {
+        const double away = near * unit_ * by * jump;
+        one_side[k] += away, other_side[k] -= away;
+    };
+    if (owner->joint) {
+        for (const auto& [body, by] : mechanics_.system().joints[*owner->joint].of) {
+            apart(n + body, by / mechanics_.system().bodies[body].inertia);
+        }
+    } else {
+        apart(2 * n + *mechanics_.state_of(function), 1);
     }
     const Moment here = now.here();
     if (!function.slide({here.t, here.side, one_side}, {here.t, here.side, other_side}, share_at)) return no();
@@ -79,27 +103,21 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now
     // Both rates are those of the margin of one side: there it must fall, and beyond the surface it must rise.
     const double least = clearly * (std::fabs(own.rate) + std::fabs(beyond.rate));
     if (!(own.rate < -least && beyond.rate > least)) return no();
-    const double by = own.margin / (beyond.rate - own.rate);
-    double work = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        double& v = now.y[n + i];
-        const double change = -by * (beyond.rates[n + i] - own.rates[n + i]);
-        work += mechanics_.own_inertia(i) * change * (v + change / 2);
-        v += change;
-    }
+    Begun begun{owner->joint, 0};
+    put_on_surface(own, beyond, now, begun.work);
     function.watch_others(now.here(), near * unit_ * std::max(-own.rate, beyond.rate));
-    sliding_.push_back({&function, *joint});
-    return Begun{*joint, work};
+    sliding_.push_back(*owner);
+    return begun;
 }
 
-std::optional<std::size_t> Slides::leave(Piecewise& function, std::size_t condition) {
+std::optional<SlideChange> Slides::leave(Piecewise& function, std::size_t condition) {
     const auto found = std::find_if(sliding_.begin(), sliding_.end(),
                                     [&](const Sliding& sliding) { return sliding.function == &function; });
     if (found == sliding_.end()) return {};
     function.leave(condition);
-    const std::size_t joint = found->joint;
+    const SlideChange change{found->joint, false};
     sliding_.erase(found);
-    return joint;
+    return change;
 }
 
 bool Slides::lost(const Moment& here) const {
@@ -108,11 +126,11 @@ bool Slides::lost(const Moment& here) const {
     });
 }
 
-std::vector<std::size_t> Slides::end() {
-    std::vector<std::size_t> joints;
-    for (const Sliding& sliding : sliding_) sliding.function->let_go(), joints.push_back(sliding.joint);
+std::vector<SlideChange> Slides::end() {
+    std::vector<SlideChange> changes;
+    for (const Sliding& sliding : sliding_) sliding.function->let_go(), changes.push_back({sliding.joint, false});
     sliding_.clear();
-    return joints;
+    return changes;
 }
 
 }  // namespace dinal::motion::engine

@@ -1,5 +1,5 @@
-// Motions along a surface on which a load jumps, where both sides drive them back (Filippov): the load is the mixture
-// of both sides that keeps the motion on the surface.
+// Motions along a surface on which a load, or the rate of a state, jumps, where both sides drive them back (Filippov):
+// the load is the mixture of both sides that keeps the motion on the surface.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,12 @@
 
 namespace dinal::motion::engine {
 
+/// A load, or the rate of a state, begins or ceases to slide.
+struct SlideChange {
+    std::optional<std::size_t> joint;  ///< of the load; none: a rate
+    bool begins;
+};
+
 /// Knows which functions slide, and finds their mixtures. It reports no event.
 class Slides {
 public:
@@ -18,8 +24,8 @@ public:
 
     [[nodiscard]] bool any() const { return !sliding_.empty(); }
     struct Begun {
-        std::size_t joint;  ///< of the load
-        double work;        ///< of the load on the velocities, which are put on the surface
+        std::optional<std::size_t> joint;  ///< of the load; none: a rate
+        double work;                       ///< of the load on the velocities, which are put on the surface
     };
     /// Slides along the condition of a function that was crossed to and fro and jumps by so much. Returns none if that
     /// is not possible, or both sides do not drive the motion back.
@@ -28,10 +34,10 @@ public:
     void follow(const Mode& mode) { mode_ = mode; }
     /// Returns whether contacts now hold the velocities of a surface, so that the load does not move them.
     [[nodiscard]] bool lost(const Moment& here) const;
-    /// Ends a slide at one of its conditions. Returns the joint of the load; none if this function does not slide.
-    std::optional<std::size_t> leave(Piecewise& function, std::size_t condition);
-    /// All functions are decided anew. Returns the joints of their loads.
-    std::vector<std::size_t> end();
+    /// Ends a slide at one of its conditions. Returns none if this function does not slide.
+    std::optional<SlideChange> leave(Piecewise& function, std::size_t condition);
+    /// All functions are decided anew. Returns those that have slid.
+    std::vector<SlideChange> end();
 
 private:
     struct Side {
@@ -49,8 +55,10 @@ private:
     Mode mode_;
     struct Sliding {
         Piecewise* function;
-        std::size_t joint;
+        std::optional<std::size_t> joint;  ///< of the load
     };
+    [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
+    void put_on_surface(const Side& own, const Side& beyond, Now& now, double& work) const;
     std::vector<Sliding> sliding_;
 };
 

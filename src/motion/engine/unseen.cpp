@@ -121,7 +121,8 @@ double Unseen::deviation_on(const Part& part, double allowed, std::optional<doub
         }
         return 0;
     }
-    return std::min(off, enclosure.apart + decay_of_error(cheb::degree) * r);
+    const double most = std::min(off, enclosure.apart + decay_of_error(cheb::degree) * r);
+    return std::isnan(most) ? model::never : most;
 }
 
 Unseen::Found Unseen::search(double allowed, int budget) {
@@ -156,7 +157,7 @@ constexpr double clearly = 64, of_last_iteration = 1e-9;
 class StretchProof {
 public:
     StretchProof(const Mechanics& mechanics, Unseen& unseen, Segment& s, const Mode& mode, const Proofs::Beside& beside,
-                 int budget)
+                 int budget, double until)
         : mechanics_(mechanics),
           unseen_(unseen),
           s_(s),
@@ -164,6 +165,8 @@ public:
           beside_(beside),
           n_(mechanics.bodies()),
           budget_(budget),
+          middle_((until - 1) / 2),
+          half_((until + 1) / 2),
           late_(std::max(std::fabs(s.start.hi), std::fabs(s.end))) {}
 
     void loads();
@@ -172,19 +175,21 @@ public:
     void contact(std::size_t joint, const Moment& middle);
     /// Returns false as soon as a function was found to do something else.
     [[nodiscard]] bool good() const { return !place_; }
-    [[nodiscard]] std::optional<double> place() const { return place_; }
+    [[nodiscard]] double place() const { return middle_ + half_ * *place_; }
 
 private:
     [[nodiscard]] Series whole(std::size_t k) const {
         Series series = s_.series[k];
         series[0] += s_.y[k][0];
-        return series;
+        return on_part(series, middle_, half_);
     }
     [[nodiscard]] Series time(double delay) const;
-    bool give_motion(const model::Formula& formula, const Series* speed = nullptr);
+    bool give_motion(const model::Formula& formula, const Series* speed = nullptr,
+                     const std::vector<Series>* past = nullptr);
     bool begin(const Mechanics::Asked& asked, const Series& first, const Series* speed = nullptr);
     void look(double size, double allowed, double part);
     void look_at(const Signal& signal, double size, double noise);
+    void look_at_past(const Signal& signal, double size, double noise);
     [[nodiscard]] bool found(const Unseen::Found& what);
     /// The size of what acts on a body: the torques, and what the body has in its motion.
     [[nodiscard]] double size_on(std::size_t body) const {
@@ -203,6 +208,7 @@ private:
     const Proofs::Beside& beside_;
     std::size_t n_;
     int budget_;
+    double middle_, half_;  ///< of the part of the stretch that is looked at
     double late_;
     std::optional<double> place_;
 };
@@ -211,16 +217,18 @@ private:
 Series StretchProof::time(double delay) const {
     constexpr double hair = 16;
     Series t{};
-    t[0] = s_.start.hi + s_.h - delay, t[1] = s_.h;
+    t[0] = s_.start.hi + s_.h * (1 + middle_) - delay, t[1] = s_.h * half_;
     if (s_.from_break || s_.to_break) t[1] -= hair * rounding * late_;
     return t;
 }
 
-/// Gives a formula the motion and, before all states, a speed. Returns false if it wants other states.
-bool StretchProof::give_motion(const model::Formula& formula, const Series* speed) {
+/// Gives a formula the motion, or that of the past, and, before all states, a speed. Returns false if it wants other
+/// states.
+bool StretchProof::give_motion(const model::Formula& formula, const Series* speed, const std::vector<Series>* past) {
+    const auto of = [&](std::size_t k) { return past != nullptr ? (*past)[k] : whole(k); };
     const bool named = mechanics_.system().named;
     const std::size_t told = 2 * n_ + mechanics_.states_of_user();
-    if (formula.takes_motion() && !named) unseen_.give(1, whole(0)), unseen_.give(2, whole(n_));
+    if (formula.takes_motion() && !named) unseen_.give(1, of(0)), unseen_.give(2, of(n_));
     const std::size_t count = formula.state_count(), from = named ? 0 : 2, more = speed != nullptr ? 1 : 0;
     if (count == 0) return true;
     if (count != told - from + more) {
@@ -228,7 +236,7 @@ bool StretchProof::give_motion(const model::Formula& formula, const Series* spee
         return false;
     }
     if (speed != nullptr) unseen_.give(formula.first_state(), *speed);
-    for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, whole(k));
+    for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, of(k));
     return true;
 }
 
@@ -250,6 +258,10 @@ bool StretchProof::found(const Unseen::Found& what) {
 /// `size` is the size of what the function acts beside, `allowed` how much of that, or `part` of itself, is allowed.
 void StretchProof::look(double size, double allowed, double part) {
     if (unseen_.is_told(allowed, part)) return;
+    // When the motion has died out, the numbers that the function calculates with have not.
+    constexpr double few_roundings = 16;
+    const double rounded = few_roundings * unseen_.rounded();
+    if (std::isfinite(rounded)) allowed += rounded;
     std::optional<std::size_t> last;
     const auto* piece = unseen_.piece();
     for (std::size_t k = 0; piece != nullptr && k < piece->conditions.size() && good(); ++k) {
@@ -278,22 +290,46 @@ void StretchProof::look_at(const Signal& signal, double size, double noise) {
         });
 }
 
+/// The same for functions of the past motion, which is smooth on a stretch as what broke it is repeated as a break.
+void StretchProof::look_at_past(const Signal& signal, double size, double noise) {
+    signal.for_each_delayed(s_.time(0), [&](model::Formula& formula, double gain, const auto& past_at) {
+        if (!good()) return;
+        std::vector<Nodes> values;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            const std::vector<double> y = past_at(s_.time(middle_ + half_ * cheb::nodes[j]));
+            values.resize(y.size());
+            for (std::size_t k = 0; k < y.size(); ++k) values[k][j] = y[k];
+        }
+        std::vector<Series> past;
+        for (const Nodes& each : values) past.push_back(cheb::fit(each));
+        unseen_.begin(formula, nullptr);
+        unseen_.give(0, time(0));
+        if (!give_motion(formula, nullptr, &past)) return;
+        look(size / std::fabs(gain),
+             of_last_iteration * size / std::fabs(gain) + (clearly * noise + smallest) / std::fabs(gain), 0);
+    });
+}
+
 void StretchProof::loads() {
     double slowest = model::never;
     for (std::size_t i = 0; i < n_; ++i) slowest = std::min(slowest, size_on(i) / inertia(i));
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Weight& first = mechanics_.system().joints[j].of.front();
-        look_at(mechanics_.loads()[j], size_on(first.body) / std::fabs(first.by), rough(first.body));
+        const double size = size_on(first.body) / std::fabs(first.by);
+        look_at(mechanics_.loads()[j], size, rough(first.body));
+        look_at_past(mechanics_.loads()[j], size, rough(first.body));
     }
     look_at(mechanics_.base_signal(), slowest, 0);
 }
 
 void StretchProof::rates() {
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
-        if (!begin(mechanics_.asked_rate(k), time(0))) continue;
         const double size =
             std::max({greatest(s_.y[2 * n_ + k]) / s_.h, greatest(s_.f[2 * n_ + k]), beside_.fastest_rate[k]});
-        look(size, of_last_iteration * size + clearly * rough(n_ + k) + smallest, 0);
+        const double allowed = of_last_iteration * size + clearly * rough(n_ + k) + smallest;
+        if (begin(mechanics_.asked_rate(k), time(0))) look(size, allowed, 0);
+        const Mechanics::Asked beyond = mechanics_.asked_beyond(k);
+        if (beyond.piece != nullptr && begin(beyond, time(0))) look(size, allowed, 0);
     }
 }
 
@@ -331,7 +367,8 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
     const Slipping& how = mode_.friction[j];
     const Mechanics::Asked law = mechanics_.asked_law(j);
     if (law.function == nullptr || how.way == model::Motion::stuck || mode_.leans[j] != 0 || how.riding) return;
-    Series speed = difference(between(n_), cheb::fit(s_.belts[j]));
+    Series speed = between(n_);
+    if (mechanics_.has_belt(j)) speed = difference(speed, on_part(cheb::fit(s_.belts[j]), middle_, half_));
     for (double& c : speed) c *= model::sign_of(how.way);
     const bool alone = joint.friction.function == nullptr;
     if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
@@ -339,18 +376,18 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
 
 }  // namespace
 
-bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside) {
+bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside, double until) {
     constexpr int thorough = 64, tired = 4;
     const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
     if (!any_ || s.h <= 64 * rounding * late) return true;
-    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < tired ? thorough : 1);
+    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < tired ? thorough : 1, until);
     proof.loads();
     proof.rates();
     proof.events();
     for (std::size_t j = 0; j < mechanics_.joints() && proof.good(); ++j) {
         proof.contact(j, s.moment(node_count / 2, point_));
     }
-    if (proof.place()) seen_ = s.time(*proof.place());
+    if (!proof.good()) seen_ = s.time(proof.place());
     if (proof.good()) failed_in_a_row_ = s.proven ? 0 : failed_in_a_row_ + 1;
     return proof.good();
 }

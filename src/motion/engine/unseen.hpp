@@ -80,8 +80,9 @@ public:
     };
     explicit Proofs(const Mechanics& mechanics) : mechanics_(mechanics), any_(mechanics.has_functions()) {}
 
-    /// Returns false if one does something else, at seen(). The stretch is marked if that could not be proven.
-    bool hides_nothing(Segment& segment, const Mode& mode, const Beside& beside);
+    /// Returns false if one does something else, at seen(), before the place `until`. The stretch is marked if that
+    /// could not be proven.
+    bool hides_nothing(Segment& segment, const Mode& mode, const Beside& beside, double until = 1);
     /// Returns the rounding of functions that are read, at the beginning of the stretch: of the torques on each body
     /// and of the rate of each state.
     std::vector<double> roundings(const Segment& segment, const Mode& mode);

@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
 #include "motion/engine/plain.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
@@ -69,6 +71,9 @@ Run Rk4::run(const Problem& problem) const {
     if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps().count);
 
     run_whole(engine, problem, rows, events, std::move(replay), run);
+    const bool samples = problem.drive.M().has_script() || problem.system.spring().as<model::springs::UserSpring>() ||
+                         problem.system.friction().as<model::laws::UserLaw>();
+    if (samples) run.gap = run.unproven = engine.steps().h / 2;
     return run;
 }
 

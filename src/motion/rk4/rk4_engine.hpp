@@ -40,7 +40,6 @@ public:
         run.state_at_stop = y_;
         run.motion_at_stop = contact_.motion();
         run.began_stuck = contact_.began_stuck();
-        if (excitation_.has_script()) run.gap = run.unproven = steps_.h / 2;
     }
 
 private:
