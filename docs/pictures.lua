@@ -50,14 +50,15 @@ local creep = plot{ { stays.t, stays.theta, label = "dry friction" }, { creeps.t
   xlabel = "t", ylabel = "θ, rad", ends = true, title = "Under 60 % of the limit", ylim = { -0.05, 0.6 }, show = false }
 local leaning = system{ I = 1, k = 1, C = 0.05, Rd = 0.1, spring = spring.polynomial{ [3] = 0.5 } }
 local c = leaning:response{ amplitude = 0.5, over = { frequency = vector.linspace(0.14, 0.45, 80) } }
-draw("resonance", { creep, c:plot{ overlay = "jumps", title = "A stiffening spring", ylabel = "amplitude, rad", show = false },
+draw("resonance", { creep, c:plot{ overlay = "jumps", title = "A stiffening spring", xlabel = "frequency, 1/time",
+    ylabel = "amplitude, rad", show = false },
   size = { 17, 6.5 } })
 
 -- The manual: where a brake squeals, as in example 323.
 local brake = system{ I = 1, k = 4, C = 0.1, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.3 } }
 local squeal = brake:response{ over = { C = vector.linspace(0.15, 0.4, 11), speed = vector.linspace(0.3, 0.9, 25) },
   at = function(p) return { belt = p.speed, system = brake:with{ C = p.C } } end }
-squeal:plot{ overlay = "points", file = file "map", size = { 12, 7 } }
+squeal:plot{ overlay = "points", ylabel = "speed, rad/time", file = file "map", size = { 12, 7 } }
 drawn[#drawn + 1] = file "map"
 
 return drawn

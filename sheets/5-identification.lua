@@ -94,7 +94,7 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
       return math.abs(zeta - viscous.zeta) <= bars "zeta" -- that fit has no errors: its model is wrong
     end
     return {
-      { name = "a", asks = "omega0", unit = "rad per time unit", answer = true_system.omega0, within = bars "omega0", task = "5.2",
+      { name = "a", asks = "omega0", unit = "rad per time unit", answer = true_system.omega0, within = bars "omega0", task = "5.3",
         how = "identify{ data = record, velocity0 = 0 }.omega0",
         mistakes = {
           { 2*math.pi/true_system.omega0, "that is the period" },
@@ -108,7 +108,7 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
           { 2*x_f, "that is lost in each half cycle, 2 Rd/k" },
           { true_system.Rd, "that is Rd; the record of a decay tells Rd/k only" },
         } },
-      { name = "d", asks = "zero of the sensor", unit = "rad", answer = secret.offset, within = bars "offset", task = "5.2", how = "fit.offset",
+      { name = "d", asks = "zero of the sensor", unit = "rad", answer = secret.offset, within = bars "offset", task = "5.3", how = "fit.offset",
         mistakes = {
           { -secret.offset, "the size is right: the offset is what the record shows where the spring is relaxed" },
           { secret.offset + secret.rest, "that is where it came to rest: with dry friction that is not the middle" },

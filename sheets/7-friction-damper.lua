@@ -136,6 +136,8 @@ page:plot{ { torque, peaks }, xlabel = "Rd", ylabel = "peak, rad" }]] },
         mistakes = {
           { limit/given.mu, "that takes the machine along; the damper has the inertia mu" },
           { limit/2, "half of it: look at the amplitude once more" },
+          { limit/omega^2, "the amplitude of the acceleration is omega^2 times that of the angle" },
+          { function(x) return math.abs(x - 2*given.M0) < 0.001*given.M0 end, "that is without C, which makes the amplitude smaller: take it from steady(100, omega)" },
         } },
       { name = "e", asks = "slip torque with the least peak over all omega", unit = "torque", answer = Rd, tolerance = 0.1, task = "7.4",
         how = "the lowest place of the greatest amplitude over omega, as a curve over Rd",
@@ -172,6 +174,10 @@ page:plot{ { torque, peaks }, xlabel = "Rd", ylabel = "peak, rad" }]] },
         "no está a mitad de camino: resuelva 1 - omega^2 = (1 + mu) omega^2 - 1",
       ["that takes the machine along; the damper has the inertia mu"] = "eso arrastra la máquina; el amortiguador tiene la inercia mu",
       ["half of it: look at the amplitude once more"] = "es la mitad: mire la amplitud otra vez",
+      ["the amplitude of the acceleration is omega^2 times that of the angle"] =
+        "la amplitud de la aceleración es omega^2 veces la del ángulo",
+      ["that is without C, which makes the amplitude smaller: take it from steady(100, omega)"] =
+        "eso es sin C, que achica la amplitud: tómela de steady(100, omega)",
       ["that glues them at the crossing; the best slip torque lets them slip"] =
         "eso los pega en el cruce; el mejor momento los deja deslizar",
       ["too tight: the peak near the resonance of both together is higher; was omega scanned down to there?"] =

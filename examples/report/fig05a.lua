@@ -42,8 +42,11 @@ local colours = { [0] = 1, [0.2] = 2, [0.4] = 3, [0.6] = 4, [0.7] = 7, [0.8] = 6
 for _, gamma in ipairs{ 0, 0.2, 0.4, 0.6, 0.7, 0.8 } do
   local exact = theory.den_hartog{ r = r, friction_ratio = gamma } -- nan where it stops
   local x, simulated = case.where_it_stops(r, exact, gamma)
-  picture[#picture + 1] = { r, exact, label = "γ = " .. gamma, dashes = "solid", colour = colours[gamma] }
-  if #x > 0 then picture[#picture + 1] = { x, simulated, dashes = "dotted", colour = colours[gamma] } end
+  local name, stops_last = "γ = " .. gamma, #x > 0 and x[#x] == r[#r] -- the name stands where the last part ends
+  picture[#picture + 1] = { r, exact, label = not stops_last and name or nil, dashes = "solid", colour = colours[gamma] }
+  if #x > 0 then
+    picture[#picture + 1] = { x, simulated, label = stops_last and name or nil, dashes = "dotted", colour = colours[gamma] }
+  end
 end
 
 local boundary = theory.stop_boundary{ r = r }

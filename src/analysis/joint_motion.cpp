@@ -65,7 +65,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     const model::System& system = *question.system;
     const std::size_t joint = question.joint.value_or(0);
     const model::Joint& seen = system.joints[joint];
-    const bool alone = question.is_plain();
+    const bool alone = system.is_alone();
     const auto of = [&](auto number) {
         double sum = 0;
         for (const auto& [body, by] : seen.of) sum += by * number(whole.bodies[body]);
@@ -98,7 +98,8 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     }
     // The angle of a rotating body never returns.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
-    if (!alone && facts.is_found() && std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
+    if (!question.is_plain() && facts.is_found() &&
+        std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
     }
     return facts;

@@ -139,7 +139,7 @@ animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const R
         return joint.stiffness == 0 && joint.spring.none() && !joint.walls;
     });
     animation::RigScene rig = animation::side_by_side(std::move(bodies), std::move(links));
-    rig.discs = rig.discs || (angles && is_free);
+    rig.discs = angles && (rig.discs || is_free);
     return rig;
 }
 

@@ -18,6 +18,7 @@
 #include "api/data.hpp"
 #include "api/picture.hpp"
 #include "files/csv.hpp"
+#include "files/table.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
@@ -491,8 +492,9 @@ const DataHandle& self(lua_State* L, const char* call) {
 
 const DataColumn& column_or_fail(lua_State* L, const Data& data, std::string_view call, std::string_view name) {
     if (const DataColumn* found = data.find(name)) return *found;
-    std::vector<std::string_view> names;
-    for (const DataColumn& column : data.columns) names.emplace_back(column.name);
+    std::vector<std::string> names;
+    for (const DataColumn& column : data.columns) names.push_back(column.name);
+    if (const auto place = files::place_without_unit(names, name)) return data.columns[*place];
     text::Error error{.sentence = fmt::format("there is no column '{}' among {}", name, fmt::join(names, ", ")),
                       .culprit = std::string(name),
                       .cure = text::did_you_mean(name, names)};
@@ -571,6 +573,9 @@ int save_rows(lua_State* L, const std::vector<std::string>& comments) {
     lua::refuse_in_worker(L, "d:save");
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
+    if (text::ending_of(file) != ".csv") {  // safe mode promises that no script writes other files
+        lua::fail(L, "d:save", {.sentence = fmt::format("the name '{}' must end in .csv", file), .culprit = file});
+    }
     std::vector<files::NamedColumn> columns;
     for (const DataColumn& column : data->columns) columns.push_back(column.named());
     lua::value_or_raise(L, "d:save", files::write_csv(file, columns, comments, files::Gaps::written));
@@ -841,7 +846,7 @@ std::vector<plots::Curve> parts_by(const std::vector<std::string>& words, const 
         plots::Curve& curve = curves.emplace_back(whole);
         curve.x = plots::Numbers::own(std::move(places.first));
         curve.y = plots::Numbers::own(std::move(places.second));
-        curve.label = word;
+        curve.label = word == "hopf" ? "Hopf" : word;
     }
     return curves;
 }

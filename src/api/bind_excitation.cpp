@@ -187,7 +187,7 @@ std::optional<model::Excitation> terms_alone(lua_State* L, const model::Excitati
 
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to) {
-    if (!system.is_plain()) return {};
+    if (!system.is_alone()) return {};
     model::Drive others = drive;
     others.loads = {model::Excitation()};
     if (motion::has_functions(system, others)) return {};

@@ -23,6 +23,7 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "plots/figure.hpp"
+#include "plots/neighbours.hpp"
 #include "plots/painter.hpp"
 #include "plots/run_figure.hpp"
 #include "plots/svg_words.hpp"
@@ -389,10 +390,24 @@ int plot_vectors(lua_State* L) {
 
 namespace {
 
+/// The bodies along their links, then the links.
+std::vector<RunHandle> parts_to_draw(const RunHandle& run) {
+    const std::vector<RunHandle> parts = parts_of(run);
+    const model::System& system = run->system();
+    std::vector<std::pair<std::size_t, std::size_t>> links;
+    for (std::size_t j = system.bodies.size(); j < system.joints.size(); ++j) {
+        links.emplace_back(system.joints[j].first(), system.joints[j].of.back().body);
+    }
+    std::vector<RunHandle> ordered;
+    for (const std::size_t body : plots::neighbours(system.bodies.size(), links)) ordered.push_back(parts[body]);
+    for (std::size_t j = system.bodies.size(); j < parts.size(); ++j) ordered.push_back(parts[j]);
+    return ordered;
+}
+
 /// Figures of all bodies' angles, one below the other, and of links with friction, with bars where they stick.
 std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& options, const RunHandle& run) {
     std::vector<plots::Figure> figures;
-    for (const RunHandle& part : parts_of(run)) {
+    for (const RunHandle& part : parts_to_draw(run)) {
         const model::Joint& joint = part->system().joints[part->place()];
         if (!part->of_body() && joint.friction.none()) continue;
         std::vector<plots::Figure> own = options.value_or_fail(
@@ -407,9 +422,12 @@ std::vector<plots::Figure> angles_of_all(lua_State* L, const lua::Options& optio
 }  // namespace
 
 int plot_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
+    RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
     const lua::Options options(L, 2, plot_run_call);
-    if (run->of_all() && !options.has("x") && !options.has("y")) {
+    const bool usual = run->of_all() && !options.has("x") && !options.has("y");
+    if (usual && run->system().joints.size() == 1) {
+        run = part_of(run, 0);
+    } else if (usual) {
         std::vector<plots::Figure> figures = angles_of_all(L, options, run);
         apply_options(L, options, figures);
         return deliver(L, options, std::move(figures));

@@ -54,7 +54,12 @@
 namespace dinal::api {
 
 std::string line_of(const LuaRun& run) {
-    return (run.of_all() ? text::counted(run.system().bodies.size(), "body") + ", " : "") + motion::summary(run.result);
+    if (!run.of_all()) return motion::summary(run.result);
+    const model::System& system = run.system();
+    if (system.joints.size() == 1) {
+        return motion::summary(motion::part_of(system, run.origin->drive, run.result, 0));
+    }
+    return text::counted(system.bodies.size(), "body") + ", " + motion::summary(run.result);
 }
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
@@ -478,7 +483,8 @@ RunHandle part_of(const RunHandle& run, std::size_t joint) {
     if (RunHandle known = run->parts[joint].lock()) return known;
     auto seen = std::make_shared<LuaRun>();
     seen->result = motion::part_of(run->system(), run->origin->drive, run->result, joint);
-    seen->origin = run->origin, seen->joint = joint, seen->readings = run->readings;
+    seen->origin = run->origin, seen->joint = joint, seen->whole = run;
+    seen->readings = run->readings, seen->terms = run->terms;
     run->parts[joint] = seen;
     return seen;
 }
@@ -491,7 +497,8 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
                         const std::vector<std::string>& known, const lua::Class& of) {
     std::vector<std::string_view> names(known.begin(), known.end());
     for (const lua::Member& member : of.members) {
-        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
+        const bool is_known = std::find(known.begin(), known.end(), member.name) != known.end();
+        if (member.kind != lua::Kind::metamethod && !is_known) names.push_back(member.name);
     }
     std::string cure = text::did_you_mean(wrong, names);
     const bool listed = std::all_of(known.begin(), known.end(), [&sentence](const std::string& name) {
@@ -567,10 +574,10 @@ lua::Pushed system_of_run(lua_State* L, const RunHandle& run) {
 }
 
 std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle& run) {
-    check_one(L, *run, ".excitation");
     if (run->origin == nullptr) return {};
+    if (run->system().joints.size() > 1) check_one(L, *run, ".excitation");
     const model::Excitation& load = run->origin->drive.loads[run->place()];
-    return run->of_body() || !load.components().empty() ? std::optional(load) : std::nullopt;
+    return !run->system().is_link(run->place()) || !load.components().empty() ? std::optional(load) : std::nullopt;
 }
 
 std::optional<motion::Integrator> integrator_of_run(const LuaRun& run) {
@@ -832,7 +839,9 @@ int at_one_time(lua_State* L) {
         lua::fail(L, "run:at(t)", state.error());
     }
     if (of_all) {
-        const std::vector<double> y = run->result.left->history->at(t);
+        const motion::Run& whole = run->result;
+        const std::vector<double> y =
+            whole.left != nullptr ? whole.left->history->at(t) : std::vector{state->theta, state->velocity};
         const std::size_t n = run->system().bodies.size();
         push_by_name(L, run->system().bodies, y, 0);
         push_by_name(L, run->system().bodies, y, n);
@@ -980,14 +989,12 @@ double asked_end(const lua::Options& options, const MoreTime& asked, double stop
 }
 
 int continue_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // a copy: M may drop the last reference
+    const RunHandle self = lua::self<RunHandle>(L, 1, continue_call.example);  // a copy: M may drop the last reference
+    const RunHandle run = self->whole != nullptr ? self->whole : self;
     const lua::Options options(L, 2, continue_call);
     MoreTime asked;
     options.fill(asked);
     const motion::Run& so_far = run->result;
-    if (run->joint) {
-        options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
-    }
     if (!run->origin) {
         options.fail(
             {"a run read from a file cannot be continued; start one from its end with sys:simulate{ theta0, "
@@ -1018,7 +1025,9 @@ int continue_run(lua_State* L) {
         return motion::resume(*task.system, task.drive, so_far, task.window.end, task.rows, task.integrator, monitor,
                               limits);
     };
-    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.is_dense(), compute);
+    run_task(L, options, std::move(origin), so_far.t_stop, so_far.is_dense(), compute);
+    if (self->joint) push_run(L, part_of(*lua::test<RunHandle>(L, -1), *self->joint));
+    return 1;
 }
 
 // run:save(file): file kind, columns, and the comment block from which the run can be repeated.

@@ -85,8 +85,8 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     // The latest, not the last time: decreasing times are a separate error.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
     task.integrator = integrator != nullptr ? *integrator
-                      : system->is_plain()
-                          ? motion::integrator_for(oscillator_of(*system).value(), played_drive(L, task))
+                      : system->is_alone()
+                          ? motion::integrator_for(model::oscillator_at(*system, 0).value(), played_drive(L, task))
                           : motion::Spectral{};
     if (!options.has("times") && task.window.end > task.window.start) {
         task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system->shortest_natural_period())));
@@ -245,7 +245,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
     const model::System& system = *asked.system;
-    if (system.is_plain() && std::holds_alternative<motion::Exact>(asked.integrator)) {
+    if (system.is_alone() && std::holds_alternative<motion::Exact>(asked.integrator)) {
         run->terms = terms_alone(L, system, asked.drive, asked.window.start, to);
     }
 

@@ -41,9 +41,8 @@ struct RunOptions {
     std::vector<double> times = {};
     bool dense = true;
 };
-inline constexpr text::FixedText<240> integrator_meaning{
-    "the method; by default ", motion::default_integrator.c_str(),
-    ". exact and dinal1989 take one body without a name and with constant friction"};
+inline constexpr text::FixedText<240> integrator_meaning{"the method; by default ", motion::default_integrator.c_str(),
+                                                         ". exact and dinal1989 take one body with constant friction"};
 inline constexpr text::Option window_options[] = {
     {.name = "t_start", .unit = "time units", .meaning = "initial time", .filled = text::fills<&RunOptions::t_start>},
     {"t_end", "time units", text::its_own, text::any_finite, "end of the run; by default the last of the times",
@@ -92,7 +91,7 @@ inline constexpr text::Call continue_call{
 
 inline constexpr text::FixedText<760> simulate_summary{
     "Runs the system. The default integrator is ", motion::default_integrator.c_str(),
-    " for one body without a name, and integrator.spectral{} for others, all of whose sticking contacts are decided "
+    " for one body, and integrator.spectral{} for others, all of whose sticking contacts are decided "
     "together. With states, M is called with (t, theta, velocity, z), and their columns are run.states.NAME. M must "
     "depend only on its arguments, because it is evaluated out of order and repeatedly; a run that detects a "
     "memory ends with a message. Put memory into states or excitation.sampled, relay or delayed, and random "

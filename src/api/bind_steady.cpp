@@ -195,17 +195,28 @@ std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const Stead
     return others_of(L, s);
 }
 
-std::string steady_story(lua_State* L, const SteadyHandle& s) {
-    const std::vector<SteadyHandle>& found = others_of(L, s);
-    const Steady& all = s->whole ? *s->whole : *s;
-    if (!all.question.is_plain()) return analysis::description_of(all.question, all.motion, found.size());
-    std::vector<analysis::OtherMotion> others;
-    others.reserve(found.size());
-    for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
-    return analysis::description_of(s->question, s->motion, steady_shape(L, s), others);
+/// The motion as seen from the only body of a system, if it has only one.
+SteadyHandle of_only(const SteadyHandle& s) {
+    return s->of_all() && s->question.system->joints.size() == 1 ? seen_from(s, 0) : s;
 }
 
-std::string steady_summary(const Steady& s) {
+std::string steady_story(lua_State* L, const SteadyHandle& s) {
+    const std::vector<SteadyHandle>& found = others_of(L, s);
+    if (s->question.system->joints.size() > 1) {
+        const Steady& all = s->whole ? *s->whole : *s;
+        return analysis::description_of(all.question, all.motion, found.size());
+    }
+    std::vector<analysis::OtherMotion> others;
+    for (const SteadyHandle& one : found) {
+        const SteadyHandle other = of_only(one);
+        others.push_back({other->question, other->motion});
+    }
+    const SteadyHandle own = of_only(s);
+    return analysis::description_of(own->question, own->motion, steady_shape(L, own), others);
+}
+
+std::string steady_summary(lua_State*, const SteadyHandle& handle) {
+    const Steady& s = *of_only(handle);
     const analysis::SteadyMotion& m = s.motion;
     const ColumnUnits in(s.question.system->units);
     const auto number = [](double x, const std::string& unit) {
@@ -335,7 +346,7 @@ constexpr lua::Member steady_members[] = {
 #undef DINAL_STEADY
 
 std::string steady_card(lua_State* L, int index, const terminal::Display& screen) {
-    return text::wrapped(terminal::spelled(steady_summary(**lua::test<SteadyHandle>(L, index)), screen),
+    return text::wrapped(terminal::spelled(steady_summary(L, *lua::test<SteadyHandle>(L, index)), screen),
                          screen.width - 1);
 }
 
@@ -510,7 +521,7 @@ int steady_of_run(lua_State* L) {
     auto question = options.value_or_fail(analysis::SteadyQuestion::of(run->origin->system, run->origin->drive));
     question.periods = asked.periods.value_or(0);
     const motion::Run& ended = run->result;
-    if (question.is_plain()) {
+    if (question.is_plain() || ended.left == nullptr) {
         question.drive.start_at(ended.state_at_stop);
         for (std::size_t i = 0; i < ended.states; ++i) question.drive.states[i].start = ended.left->carry->y[2 + i];
     } else {

@@ -29,6 +29,7 @@ struct LuaRun {
     model::Units units = {};                            ///< from a file; a simulated run has those of its system
     lua::MemoryCharge rows = {};                        ///< memory of rows read from a file
     std::optional<std::size_t> joint = {};              ///< the named body or link from which it is seen
+    std::shared_ptr<const LuaRun> whole = {};           ///< the run of all bodies of which it is a view
     // The run as seen from each joint, made on demand. Weak, as these keep the run of all bodies.
     mutable std::vector<std::weak_ptr<const LuaRun>> parts = {};
 

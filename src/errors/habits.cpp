@@ -20,7 +20,7 @@ namespace dinal::errors {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 52> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 54> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
     {"display", "; did you mean 'print'?"},
@@ -72,6 +72,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 52> foreign_
     {"tic", "; :time code prints the time that code takes"},
     {"toc", "; :time code prints the time that code takes"},
     {"dir", "; Tab after a name and a point lists its fields, help(name) explains them, :who lists variables"},
+    {"ayuda", "; help() starts a tour, ?name explains a name"},
+    {"salir", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"save", "; a run is saved by run:save(\"run.csv\")"},
 }};
 
@@ -99,6 +101,8 @@ constexpr std::string_view lambda_cure = "; a function is written: function(x) r
 constexpr std::string_view format_cure = "; values go into a text by string.format(\"x = %.3f\", x)";
 constexpr std::string_view append_cure = "; appending is list[#list + 1] = x; vectors are joined by v .. w";
 constexpr std::string_view last_cure = "; the last element of v is v[#v]";
+constexpr std::string_view folder_cure = "; :cd folder changes the current folder";
+constexpr std::string_view files_cure = "; :ls lists the files of the current folder";
 constexpr std::string_view elements_cure = "; * / and ^ act on each element of a vector";
 constexpr std::string_view conditions_cure =
     "; in Lua and, or and not are words; several conditions are v[v:find(function(x) return x > 0 and x < 1 end)]";
@@ -153,6 +157,12 @@ constexpr ForeignTokens foreign[] = {
     {"PRINT w", Seen::first, print_cure},
     {"^ PRINT", Seen::first, print_cure},
     {"^ WRITE", Seen::first, print_cure},
+    {"^ cd w", Seen::first, folder_cure},
+    {"^ cd /", Seen::running, folder_cure},
+    {"^ ls w", Seen::first, files_cure},
+    {"^ ls *", Seen::first, files_cure},
+    {"^ ls -", Seen::running, files_cure},
+    {"^ ls /", Seen::running, files_cure},
     {"clear w", Seen::first, "; :reset deletes your variables"},
     {"close w", Seen::first, "; nothing needs to be closed: each plot is a picture of its own"},
     {"hold w", Seen::first, "; several curves are one picture: plot{ { x, y }, { x, z } }"},

@@ -31,9 +31,20 @@ std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
     return columns;
 }
 
+std::optional<std::size_t> place_without_unit(std::span<const std::string> names, std::string_view name) {
+    const auto fits = [name](const std::string& whole) {
+        const std::string_view rest = std::string_view(whole).substr(std::min(name.size(), whole.size()));
+        return whole.starts_with(name) &&
+               ((rest.starts_with(" (") && rest.ends_with(')')) || (rest.starts_with(" [") && rest.ends_with(']')));
+    };
+    if (std::count_if(names.begin(), names.end(), fits) != 1) return std::nullopt;
+    return static_cast<std::size_t>(std::find_if(names.begin(), names.end(), fits) - names.begin());
+}
+
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
+        if (const auto place = place_without_unit(names, name)) return static_cast<Eigen::Index>(*place);
         return text::Error{.sentence = "there is no column '" + std::string(name) + "' among " + list_of(names),
                            .culprit = std::string(name),
                            .cure = text::did_you_mean(name, names)};

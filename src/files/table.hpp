@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,7 +33,10 @@ enum class Gaps { refused, written };
 std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
                                        const Eigen::Ref<const Eigen::MatrixXd>& values);
 
-/// The index (from 0) of the column with that name or number (from 1).
+/// The place of the only name that is this one with a unit in brackets after it: "t (s)" or "t [s]" for "t".
+std::optional<std::size_t> place_without_unit(std::span<const std::string> names, std::string_view name);
+
+/// The index (from 0) of the column with that name, with or without its unit, or number (from 1).
 /// Fails with the list of columns, and a suggestion if one has a similar name.
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);

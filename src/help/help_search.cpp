@@ -237,7 +237,10 @@ std::string found_about(std::string_view words, const terminal::Display& screen)
         text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
     }
     if (!text.empty()) {
-        const auto listed = [](const std::string& call, const OptionLine& /*line*/) { return ", " + call; };
+        std::string last;  // a function that is called in two ways has the option twice
+        const auto listed = [&last](const std::string& call, const OptionLine& /*line*/) {
+            return std::exchange(last, call) == call ? "" : ", " + call;
+        };
         const std::string calls = about_option(words, listed);
         const std::size_t width = std::min<std::size_t>(screen.width, 80) - 1;
         return calls.empty() ? text : text + text::wrapped("An option of: " + calls.substr(2), width) + "\n";
@@ -522,7 +525,7 @@ constexpr std::array<Topic, 52> topics = {{
 }};
 
 /// Words of other languages with their English translations.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign = {{
     {"reibung rozamiento friccion fricción frottement attrito", "friction"},
     {"feder muelle resorte ressort molla", "spring"},
     {"daempfung dämpfung amortiguamiento amortissement smorzamento", "damping"},
@@ -541,6 +544,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> foreign 
     {"figura gráfico grafico dibujar", "plot"},
     {"guardar", "save"},
     {"salir", "quit"},
+    {"embrague acoplamiento", "clutch"},
+    {"engranaje engranajes", "gear"},
+    {"archivo archivos", "file"},
+    {"amplitud", "amplitude"},
+    {"frecuencia", "frequency"},
+    {"evento eventos", "events"},
 }};
 
 bool has_word(std::string_view words, std::string_view wanted) {

@@ -112,7 +112,7 @@ end
 
 local function sheet_of(n)
   local sheet = course.sheets[n]
-  if not sheet then error("the sheets are " .. table.concat(course.numbers(), ", "), 0) end
+  if not sheet then error(string.format("there is no sheet %s; the sheets are %s", n, table.concat(course.numbers(), ", ")), 0) end
   return sheet
 end
 
@@ -433,6 +433,18 @@ local function test_words(sheet, question, where)
   end
 end
 
+--- The sentences of this file that the sheet has no words for in its own language, a line each.
+local function untranslated(sheet)
+  local language, missing = sheet.language or "en", {}
+  if language == "en" or course.words[language] then return "" end
+  local own = sheet.words and sheet.words[language] or {}
+  for sentence in pairs(course.words.es) do
+    if not own[sentence] then missing[#missing + 1] = string.format("\n    %q", sentence) end
+  end
+  table.sort(missing)
+  return #missing == 0 and "" or string.format("\nwords.%s has no translation of these sentences, which all sheets share:%s", language, table.concat(missing))
+end
+
 --- Works the sheet with student numbers 1 to 20 and returns what the first of them sees.
 function course.test(n)
   for number = 1, 20 do
@@ -459,7 +471,7 @@ function course.test(n)
     end
   end
   lines[#lines + 1] = "All answers are right for student numbers 1 to 20, and no known mistake is."
-  return table.concat(lines, "\n") .. "\n"
+  return table.concat(lines, "\n") .. untranslated(world.sheet) .. "\n"
 end
 
 function course.test_last() return course.test(course.last) end

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <optional>
 
@@ -511,6 +512,10 @@ double value_at_2(lua_State* L) {
     if (lua_type(L, 2) != LUA_TNUMBER) {
         lua::raise_got(L, 2, "check", "check: the answer is a number",
                        lua_isnumber(L, 2) != 0 ? "; write it without quotes" : "; for example check(\"1a\", 3.2)");
+    }
+    if (const double value = lua_tonumber(L, 2); std::isnan(value)) {
+        lua::raise_got(L, 2, "check", "check: the answer must be a finite number",
+                       "; is that a root or a logarithm of a negative number, or 0/0?");
     }
     return lua::finite_argument(L, 2, "check: the answer");
 }

@@ -126,7 +126,8 @@ int index_module(lua_State* L) {
           {.sentence = "there is no " + name + (lua_type(L, 2) == LUA_TSTRING ? "." + written(L, 2) : key_text(L, 2)),
            .call = name,
            .culprit = written(L, 2),
-           .cure = likely.empty() ? "; help(" + name + ") lists what there is" : likely});
+           .cure = likely,
+           .instead = names_in(module)});
 }
 
 int module_text(lua_State* L) {

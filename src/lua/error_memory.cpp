@@ -137,6 +137,13 @@ void keep_remarks(lua_State* L) {
     }
 }
 
+void forget_remarks(lua_State* L) {
+    if (ErrorMemory* memory = memory_of(L)) {
+        memory->is_witnessed = false;
+        memory->raised_again = false;
+    }
+}
+
 const Remarks* remembered_remarks(lua_State* L, int index) {
     const ErrorMemory* memory = memory_about(L, index);
     return memory == nullptr ? nullptr : &memory->remarks;

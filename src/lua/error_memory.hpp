@@ -45,6 +45,9 @@ void remember_argument(lua_State* L, const char* function, const char* argument,
 /// Keeps the remarks when their error value is about to be raised again, possibly through an outer M.
 void keep_remarks(lua_State* L);
 
+/// Forgets the remarks: two inputs of the prompt may fail with the same text, "input:1: ...", in different lines.
+void forget_remarks(lua_State* L);
+
 /// The stored remarks on the error value at the index, or nullptr.
 const Remarks* remembered_remarks(lua_State* L, int index);
 

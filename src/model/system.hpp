@@ -124,6 +124,10 @@ struct System {
 
     /// Returns whether it is one unnamed body that an Oscillator represents completely.
     [[nodiscard]] bool is_plain() const { return !named && joints.front().is_plain(); }
+    /// Returns whether it is one body, with a name or without, that an Oscillator represents completely.
+    [[nodiscard]] bool is_alone() const {
+        return joints.size() == 1 && joints.front().is_plain() && !bodies.front().moved;
+    }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     [[nodiscard]] bool has_moved() const {
         return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.moved.has_value(); });

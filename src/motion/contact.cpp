@@ -52,15 +52,15 @@ Verdict decide(const Before& before, const Pull& pull) {
 
 bool only_touched(std::vector<model::Event>& events, const Released& released, double unit) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
-    if (events.empty() || released.slid == Motion::stuck) return false;
+    if (events.empty()) return false;
     model::Event& last = events.back();
     const double part = (released.slip.t - last.t) / unit;
     if (last.kind != model::EventKind::stick || last.where != released.slip.where || part > briefly) return false;
     if (!(released.off * (2 * std::numbers::pi * part) <= withheld * released.torques)) return false;
-    if (released.way == released.slid) {
-        events.pop_back();
-    } else {
+    if (released.turns) {
         last.kind = model::EventKind::turn;
+    } else {
+        events.pop_back();
     }
     return true;
 }

@@ -56,9 +56,9 @@ Verdict decide(const Before& before, const Pull& pull);
 /// A slip that ends a stick.
 struct Released {
     model::Event slip;
-    Motion slid;          ///< the way in which it slid before it stuck; stuck: it did not
-    Motion way;           ///< from now on
-    double off, torques;  ///< the change of its pull since it stuck, and the size of the torques
+    bool turns;      ///< it slides the other way than before it stuck
+    double off;      ///< the change of its pull since then; infinite if it did not slide before
+    double torques;  ///< the size of all that act
 };
 /// Returns whether the stick was none: the contact came to slip 0 right at its limit, and friction withheld an impulse
 /// below rounding while the pull passed it. Rounding says which side of the limit it was on. Then it is no longer an

@@ -128,22 +128,23 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
 
 }  // namespace detail
 
-enum class LeftEnd {
-    anywhere,  ///< f(from) may be positive, or zero within rounding
-    leaving,   ///< f(from) is zero and should become positive; if it does not, the result is -1 or `from`
+/// Curves that only touch zero do not count.
+struct NoTouch {
+    bool operator()(double /*x*/) const { return false; }
 };
 
 /// The first x in [from, 1] at which f falls below zero. If f touches zero within rounding without clearly crossing it,
-/// confirm(x) decides whether that counts. A bound of f'' proves that no zero lies between two values; otherwise the
+/// confirm(x) decides whether that counts. If f(from) is known to be `zero`, f should become positive; if it does not,
+/// the result is -1 or `from`. A bound of f'' proves that no zero lies between two values; otherwise the
 /// interval is halved, so that pairs of close zeros are not missed.
-template <class F, class Confirm>
-std::optional<double> first_below(const F& f, double from, LeftEnd start, const Confirm& confirm) {
+template <class F, class Confirm = NoTouch>
+std::optional<double> first_below(const F& f, double from, bool zero = false, const Confirm& confirm = {}) {
     const Samples& at_node = f.at_nodes();
     std::size_t j = 1;
     while (j < degree && nodes[j] <= from) ++j;
     double left = from;
-    double f_left = start == LeftEnd::leaving ? 0 : from == -1 ? at_node[0] : f(from);
-    if (start == LeftEnd::leaving) {
+    double f_left = zero ? 0 : from == -1 ? at_node[0] : f(from);
+    if (zero) {
         const double right = nodes[j], far = from == -1 ? f.leaves_upward() : 0;
         if (far >= right - from) {
             while (j < degree && nodes[j + 1] - from <= far) ++j;

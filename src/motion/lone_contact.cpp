@@ -101,8 +101,8 @@ bool LoneContact::release(const Moment& now, model::Motion towards) {
     phase_ = Phase::leaving;
     if (told && events_ != nullptr) {
         const model::Event slip{now.t, *told, now.theta, now.M};
-        if (!contact::only_touched(*events_, {slip, came_, way, std::fabs(now.M - M_stuck_), torques(now)}, pace_))
-            events_->push_back(slip);
+        const double off = came_ == model::Motion::stuck ? model::never : std::fabs(now.M - M_stuck_);
+        if (!contact::only_touched(*events_, {slip, way != came_, off, torques(now)}, pace_)) events_->push_back(slip);
     }
     return goes_on_after(now.t);
 }

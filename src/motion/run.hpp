@@ -64,7 +64,7 @@ struct Left;
 }
 
 /// What a system did, or, as a view, what one of its bodies or links did. The members from `initial` on are of that
-/// body or link; of a system whose bodies have names they are of its first body, and without a course.
+/// body or link; of several bodies they are of the first one, and without a course.
 struct Run {
     std::vector<std::string> own_names = {};    ///< if they differ from the usual six: see names()
     Rows rows;                                  ///< never NaN; accelerations may follow the columns that have names

@@ -7,6 +7,7 @@
 #include "motion/engine/modes.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/engine/run.hpp"
+#include "motion/only_body.hpp"
 #include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 std::optional<text::Error> wrong_for_bodies(MethodView method, const model::System& system, const model::Drive& drive,
                                             const Window& window) {
     if (!method.cut()) {
-        return text::Error{.sentence = fmt::format("{} is for one body without a name and with constant friction: use "
+        return text::Error{.sentence = fmt::format("{} is for one body with constant friction: use "
                                                    "integrator.spectral or rk4",
                                                    method.about().call.name),
                            .option = "integrator"};
@@ -62,6 +63,22 @@ std::optional<model::Oscillator> oscillator_if_dense(const model::System& system
     return made ? std::optional(std::move(made).value()) : std::nullopt;
 }
 
+/// Returns whether the run is that of an oscillator: of a plain system, or by a method that knows nothing else.
+bool runs_alone(const model::System& system, MethodView method) {
+    return system.is_plain() || (system.is_alone() && !method.cut());
+}
+
+/// Makes a run of the only body of a system, as an oscillator without a name.
+template <class Make>
+text::Expected<Run> run_alone(const model::System& system, const model::Drive& drive, const Make& make) {
+    const auto alone = model::oscillator_at(system, 0);
+    if (!alone) return alone.error();
+    if (!system.named) return make(*alone, drive);
+    auto run = make(*alone, OnlyBody::drive(drive));
+    if (run) run.value().own_names = engine::column_names_of(system, drive);
+    return run;
+}
+
 }  // namespace
 
 std::size_t columns_of(const model::System& system, const model::Drive& drive) {
@@ -82,14 +99,21 @@ Run completed(const model::System& system, const model::Drive& drive, Run run) {
 }
 
 Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint) {
-    return system.named ? engine::part_of(system, drive, run, joint, oscillator_if_dense(system, run, joint)) : run;
+    if (!system.named) return run;
+    if (run.left != nullptr) {
+        return engine::part_of(system, drive, run, joint, oscillator_if_dense(system, run, joint));
+    }
+    Run part = run;
+    part.own_names.clear();
+    return part;
 }
 
 text::Expected<Run> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                              const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
-    if (system.is_plain()) {
-        const auto alone = model::oscillator_at(system, 0);
-        return alone ? simulate(*alone, drive, window, rows, method, monitor, limits) : alone.error();
+    if (runs_alone(system, method)) {
+        return run_alone(system, drive, [&](const model::Oscillator& body, const model::Drive& its) {
+            return simulate(body, its, window, rows, method, monitor, limits);
+        });
     }
     auto run = run_of(system, drive, window, rows, method, monitor, limits);
     if (!run) return run.error();
@@ -98,9 +122,10 @@ text::Expected<Run> simulate(const model::System& system, const model::Drive& dr
 
 text::Expected<Run> resume(const model::System& system, const model::Drive& drive, const Run& so_far, double t_end,
                            const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
-    if (system.is_plain()) {
-        const auto alone = model::oscillator_at(system, 0);
-        return alone ? resume(*alone, drive, so_far, t_end, rows, method, monitor, limits) : alone.error();
+    if (runs_alone(system, method)) {
+        return run_alone(system, drive, [&](const model::Oscillator& body, const model::Drive& its) {
+            return resume(body, its, so_far, t_end, rows, method, monitor, limits);
+        });
     }
     const std::size_t columns = columns_of(system, drive);
     const auto grid = grid_of_both(so_far, t_end, rows, columns, limits);

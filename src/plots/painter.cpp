@@ -420,6 +420,13 @@ private:
             cairo_move_to(to, point.x, point.y);
         }
         if (!dots.empty() && length >= line_width) dots.pop_back();
+        if (figure_.shades != nullptr && dense == nullptr) {  // a white edge, as in grey a map may hide any colour
+            cairo_set_dash(to, nullptr, 0, 0);
+            set_colour(to, 0xFFFFFF);
+            cairo_set_line_width(to, line_width + 1.6);
+            cairo_stroke_preserve(to);
+            set_dashes(to, i);
+        }
         stroke(to, line_width, colour_of(i));
         cairo_set_dash(to, nullptr, 0, 0);
         return dots;

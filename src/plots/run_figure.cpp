@@ -19,7 +19,7 @@ struct Symbol {
     Measure measure;
 };
 
-constexpr std::array<Symbol, 13> symbols{{{"t", "t", Measure::time},
+constexpr std::array<Symbol, 14> symbols{{{"t", "t", Measure::time},
                                           {"theta", "θ", Measure::angle},
                                           {"velocity", "θ'", Measure::speed},
                                           {"velocity/omega0", "θ'/ω₀", Measure::angle},
@@ -31,13 +31,24 @@ constexpr std::array<Symbol, 13> symbols{{{"t", "t", Measure::time},
                                           {"M", "M", Measure::torque},
                                           {"friction", "friction", Measure::torque},
                                           {"damping", "damping", Measure::torque},
+                                          {"torque", "torque", Measure::torque},
                                           {"omega", "ω", Measure::unknown}}};
 
+/// The symbol of a column, that of "load.velocity" without the body.
 Symbol symbol_of(std::string_view name) {
+    const std::string_view inner = name.substr(name.rfind('.') + 1);
     const auto* found =
-        std::find_if(symbols.begin(), symbols.end(), [name](const Symbol& symbol) { return symbol.name == name; });
+        std::find_if(symbols.begin(), symbols.end(), [inner](const Symbol& symbol) { return symbol.name == inner; });
     return found != symbols.end() ? *found
                                   : Symbol{name, name, name.ends_with("/k") ? Measure::angle : Measure::unknown};
+}
+
+/// The symbol with the body or link before it: "load θ'".
+std::string full_symbol(std::string_view name) {
+    const Symbol symbol = symbol_of(name);
+    const std::size_t point = name.rfind('.');
+    const bool named = point != std::string_view::npos && symbol.symbol != name;
+    return named ? fmt::format("{} {}", name.substr(0, point), symbol.symbol) : std::string(symbol.symbol);
 }
 
 std::string unit_of(const RunData& run, Measure measure) {
@@ -57,8 +68,7 @@ std::string unit_of(const RunData& run, Measure measure) {
 }
 
 std::string axis_label(const RunData& run, std::string_view name) {
-    const Symbol symbol = symbol_of(name);
-    return model::of_unit(std::string(symbol.symbol), unit_of(run, symbol.measure));
+    return model::of_unit(full_symbol(name), unit_of(run, symbol_of(name).measure));
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
@@ -125,7 +135,7 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
 }  // namespace
 
 std::string symbol_for(std::string_view column) {
-    return std::string(symbol_of(column).symbol);
+    return full_symbol(column);
 }
 
 std::vector<Interval> stuck_intervals(const motion::Run& run) {
@@ -186,15 +196,21 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
         const bool is_load = name == "M/k" || name == "M_over_k";
         figure.curves.push_back({.x = x,
                                  .y = *values,
-                                 .label = names.size() > 1 ? std::string(symbol_of(name).symbol) : "",
+                                 .label = names.size() > 1 ? full_symbol(name) : "",
                                  .behind = is_load && with_theta});
     }
+    const Symbol first = symbol_of(names.front());
+    const bool alike = std::all_of(names.begin(), names.end(), [&first](const std::string& name) {
+        return symbol_of(name).symbol == first.symbol;
+    });
     if (names.size() == 1) {
         figure.y.label = axis_label(run, names.front());
+    } else if (alike) {
+        figure.y.label = model::of_unit(std::string(first.symbol), unit_of(run, first.measure));
     } else {
-        const Measure measure = symbol_of(names.front()).measure;
-        figure.y.label = measure == Measure::torque ? model::of_unit("torque", run.units.M) : unit_of(run, measure);
-        figure.y.names_curves = measure != Measure::torque;
+        figure.y.label =
+            first.measure == Measure::torque ? model::of_unit("torque", run.units.M) : unit_of(run, first.measure);
+        figure.y.names_curves = first.measure != Measure::torque;
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.result);

@@ -7,6 +7,7 @@
 
 #include "errors/error_remarks.hpp"
 #include "files/confinement.hpp"
+#include "lua/error_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_message.hpp"
@@ -168,6 +169,7 @@ int call(lua_State* L, int arguments, int results) {
     const int function = lua_gettop(L) - arguments;
     lua_pushcfunction(L, message_handler);
     lua_insert(L, function);
+    lua::forget_remarks(L);
     int status = LUA_OK;
     {
         const lua::InterruptScope armed(L);

@@ -29,6 +29,7 @@
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"
 #include "text/characters.hpp"
+#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::prompt {
@@ -149,7 +150,8 @@ std::string first_error(const std::string& desk) {
                              : text.starts_with("dinal: ") ? text.substr(7)
                                                            : "ended with an error";
     constexpr std::size_t longest_line = 100;
-    return text::displayable(text::cut_to_columns(line.substr(0, line.find('\n')), longest_line));
+    const std::string shown = text::displayable(text::cut_to_columns(line.substr(0, line.find('\n')), longest_line));
+    return shown.ends_with("File too large") ? shown + " (a file may have 10 MB)" : shown;
 }
 
 std::optional<std::string> fault_of(const Ending& ending, const std::string& desk) {
@@ -243,27 +245,66 @@ std::set<std::string> sheets_of(const HandIn& hand_in) {
     return sheets;
 }
 
-/// The script without parts that differ between copies: comments, blanks, number and author.
-std::string bare_text(const HandIn& hand_in) {
+/// The parts of a script that tell a copy.
+struct Essence {
+    std::string code;                     ///< without comments, blanks, number, author and prose
+    std::vector<std::string> paragraphs;  ///< of prose: their words, without signs and capitals
+};
+
+/// Adds the paragraphs of a string that have enough words to tell who wrote them, and are not a question of the
+/// handout.
+void add_paragraphs(std::string_view text, std::vector<std::string>& paragraphs) {
+    constexpr std::ptrdiff_t fewest_words = 8;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find("\n\n"), text.size());
+        std::string words;
+        for (const char c : text.substr(0, end)) {
+            const bool letter = text::is_name_char(c) || static_cast<unsigned char>(c) > 127;
+            if (letter) words += text::lower(c);
+            if (!letter && !words.empty() && words.back() != ' ') words += ' ';
+        }
+        const bool asks = text::trimmed(text.substr(0, end)).ends_with('?');
+        if (!asks && std::count(words.begin(), words.end(), ' ') >= fewest_words) paragraphs.push_back(words);
+        text.remove_prefix(std::min(end + 2, text.size()));
+    }
+}
+
+Essence essence_of(const HandIn& hand_in) {
     const std::vector<lua::Token> all = lua::tokens(hand_in.text);
-    std::string text;
+    Essence essence;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const bool number = i > 1 && all[i - 2].is("number") && all[i - 1].is("(");
         const bool author = i > 1 && all[i - 2].is("author") && all[i - 1].is("=");
         if (all[i].kind == lua::TokenKind::comment || number || author) continue;
-        text += fmt::format("{}\n", all[i].text);
+        const bool prose = all[i].kind == lua::TokenKind::string && all[i].text.starts_with('[');
+        if (prose) add_paragraphs(all[i].text, essence.paragraphs);
+        if (!prose) essence.code += fmt::format("{}\n", all[i].text);
     }
-    return text;
+    return essence;
 }
 
-/// Reports repeated sheets of one student and equal scripts; several sheets of a student are fine.
-void compare(std::vector<HandIn>& all) {
-    std::map<std::string, const HandIn*> first, texts;  // by number and sheet; by bare text
+/// Reports code and paragraphs that an earlier hand-in has as well.
+void compare_texts(std::vector<HandIn>& all) {
+    std::map<std::string, const HandIn*> codes, paragraphs;
     for (HandIn& hand_in : all) {
-        if (const std::string text = bare_text(hand_in); !text.empty()) {
-            const auto [same, is_new] = texts.emplace(text, &hand_in);
-            if (!is_new) hand_in.remarks.push_back("the same text as " + same->second->name);
+        const Essence essence = essence_of(hand_in);
+        const auto [same, is_new] = codes.emplace(essence.code, &hand_in);
+        if (!is_new && !essence.code.empty()) {
+            hand_in.remarks.push_back("the same lines of Lua as " + same->second->name);
         }
+        std::set<std::string> others;
+        for (const std::string& paragraph : essence.paragraphs) {
+            const HandIn* const other = paragraphs.emplace(paragraph, &hand_in).first->second;
+            if (other != &hand_in) others.insert(other->name);
+        }
+        for (const std::string& other : others) hand_in.remarks.push_back("prose in the same words as " + other);
+    }
+}
+
+/// Reports repeated sheets of one student; several sheets of a student are fine.
+void compare_sheets(std::vector<HandIn>& all) {
+    std::map<std::string, const HandIn*> first;  // by number and sheet
+    for (HandIn& hand_in : all) {
         for (const std::string& sheet : sheets_of(hand_in)) {
             const auto [other, is_new] = first.emplace(fmt::format("{}/{}", hand_in.number, sheet), &hand_in);
             if (!is_new)
@@ -466,7 +507,8 @@ int mark(const Arguments& arguments) {
         run_hand_in(marking, all[i], i + 1);
         choose_number(all[i]);
     }
-    compare(all);
+    compare_texts(all);
+    compare_sheets(all);
     const auto questions = questions_of(all, *names);
     const Rows table = table_of(all, questions);
     say(aligned(table));
@@ -476,7 +518,8 @@ int mark(const Arguments& arguments) {
         if (hand_in.number > 0) students.insert(hand_in.number);
         remarks += hand_in.remarks.empty() ? 0 : 1;
     }
-    say(fmt::format("\n{} hand-ins of {} students, {} with a remark\n", all.size(), students.size(), remarks));
+    say(fmt::format("\n{} of {}, {} with a remark\n", text::counted(all.size(), "hand-in"),
+                    text::counted(students.size(), "student"), remarks));
     if (!questions.empty()) say("\n" + aligned(summary_of(all, questions)));
     if (const auto written = files::write_file((marking.marked / "marks.csv").string(), csv_of(table)); !written) {
         return fail(written.error().message());

@@ -171,6 +171,8 @@ std::string unfinished_notice(lua_State* L, const std::string& text) {
     if (text.find('\n') != std::string::npos) return "";
     const std::vector<lua::Token> all = lua::tokens(text);
     if (std::string notice = python_block(all); !notice.empty()) return notice;
+    if (all.size() > 1 && all.front().is("cd")) return ":cd folder changes the current folder";  // cd ..
+    if (all.size() > 1 && all.front().is("ls")) return ":ls folder lists the files of a folder";
     const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
                          all[all.size() - 2].end() == all.back().at;
     return percent ? fmt::format("% is the remainder of a division; {0} percent are {0}/100", all[all.size() - 2].text)

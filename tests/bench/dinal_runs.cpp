@@ -38,18 +38,18 @@ Oscillator oscillator(const Workload& work) {
                                   .kinetic_friction = work.friction_ratio}));
 }
 
-Run trajectory(const Workload& work, const Integrator& integrator, const Grid& rows) {
+Run run_of(const Workload& work, const Integrator& integrator, const Grid& rows) {
     return need(simulate(oscillator(work), {excitation(work), {work.u0, work.v0}}, {0, work.length}, rows, integrator));
 }
 
 namespace {
 
 double run(const Workload& work, const Integrator& integrator) {
-    return trajectory(work, integrator, Grid::none()).t_stop;
+    return run_of(work, integrator, Grid::none()).t_stop;
 }
 
 double error(const Workload& work, const Integrator& integrator) {
-    const Run run = trajectory(work, integrator, Grid::every(0.01));
+    const Run run = run_of(work, integrator, Grid::every(0.01));
     const auto t = run.column(Column::t), theta = run.column(Column::theta);
     Comparison watch(work);
     for (Eigen::Index i = 0; i < run.size(); ++i) {

@@ -19,9 +19,9 @@ const Workload& driven_motion = workloads[3];
 
 void keep_rows(benchmark::State& state, const dinal::motion::Grid& grid) {
     benchmark::DoNotOptimize(
-        trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());  // warms the memory
+        run_of(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());  // warms the memory
     for ([[maybe_unused]] auto iteration : state) {
-        benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());
+        benchmark::DoNotOptimize(run_of(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());
     }
 }
 
@@ -33,8 +33,7 @@ std::filesystem::path memory_folder() {
 enum class Timed { writing, reading };
 
 void csv(benchmark::State& state, const std::filesystem::path& folder, Timed timed) {
-    const dinal::motion::Run run =
-        trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
+    const dinal::motion::Run run = run_of(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
     const auto columns = dinal::files::named_columns(run.names(), run.rows.matrix());
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
     const auto good = [&](const auto& done) {

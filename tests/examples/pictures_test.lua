@@ -23,7 +23,7 @@ for _, path in ipairs(drawn) do
   assert(not difference, name .. " is not what docs/pictures.lua draws: " .. tostring(difference))
   assert(now:match "<desc>(.-)</desc>" == kept:match "<desc>(.-)</desc>", name .. " has another description")
 end
-for name, word in pairs{ ["stick-slip"] = "Stuck 5 times", hunting = "half swings", clutch = "motor.velocity: falls from 3 to 0.75" } do
+for name, word in pairs{ ["stick-slip"] = "Stuck 5 times", hunting = "half swings", clutch = "motor θ&#39;: falls from 3 to 0.75" } do
   assert(read(docs .. "pictures/" .. name .. ".svg"):match("<desc>(.-)</desc>"):find(word, 1, true), name .. ": " .. word)
 end
 os.execute("rm -r '" .. folder .. "'")

@@ -107,6 +107,10 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   hand_in("many", "local x = vector.linspace(0, 1, 2e5) for i = 1, 1e6 do data{ x = x }:save(i .. '.csv') end")
   hand_in("=1+1", "lab.number(3007)\ncheck('1a', 1)") -- a formula for a table program
   hand_in("copy", support.read(home .. "/hand-ins/1-1003.lua"))
+  local prose = "local words = [[\n1. How do you tell it, from a picture, within a few seconds at all?\n\n1. %s\n]]\nlab.number(%d)\ncheck('1a', %d)"
+  hand_in("thinker", prose:format("The ends of the swings lie on straight lines, and it stops.", 3008, 8))
+  hand_in("echo", prose:format("The ends of the swings\n  lie on straight lines -- and it STOPS!", 3009, 9))
+  hand_in("hasty", prose:format("Straight lines.", 3010, 10))
   hand_in("disguised", (support.read(home .. "/hand-ins/1-1004.lua"):gsub("1004", "3006"):gsub("\n", " -- mine\n\n")))
   output(("ln -s /etc/passwd '%s/hand-ins/link.lua'; mkfifo '%s/hand-ins/pipe.lua'; mkdir '%s/hand-ins/sub'"):format(home, home, home))
   hand_in("sub/\27[31m\n", "lab.number(3005)\ncheck('1a', 1)")
@@ -131,8 +135,10 @@ test("--mark: thirty hand-ins are marked at once, and none touches the others", 
   assert(rows['a",1,1a,right,1,"b']:find "^3004 +%- ", said)
   assert(rows["1-5555"]:find("^1002 .*uses number 1002, but its name says 5555; also uses number 1001, which is not counted; " ..
     "sheet 1 of this number is also in 1%-1002%.lua"), rows["1-5555"])
-  assert(rows.copy:find "the same text as 1%-1003%.lua; sheet 1 of this number is also in 1%-1003%.lua", rows.copy)
-  assert(rows.disguised:find "^3006 .*the same text as 1%-1004%.lua$", rows.disguised)
+  assert(rows.copy:find "the same lines of Lua as 1%-1003%.lua; sheet 1 of this number is also in 1%-1003%.lua", rows.copy)
+  assert(rows.disguised:find "^3006 .*the same lines of Lua as 1%-1004%.lua$", rows.disguised)
+  assert(rows.thinker:find "^3008 .*prose in the same words as echo%.lua$", said)
+  assert(rows.echo:find "0 of 8$" and rows.hasty:find "0 of 8$", said)
   assert(rows.link:find "not run: it is not a file", rows.link)
   assert(rows.pipe:find "not run: it is not a file", rows.pipe)
   assert(said:find("\nsub/?[31m", 1, true) and not said:find("\27", 1, true), said)

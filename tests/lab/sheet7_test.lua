@@ -31,6 +31,7 @@ walk.sheet("7-friction-damper", function(session)
   assert(energy.joint.dry > energy.machine.viscous)
   support.near(energy.joint.dry + energy.machine.viscous, energy.machine.input, 1e-9*energy.total.flow)
 
+  if 2*given.M0 > 1.011*limit then walk.mistakes{ { "7d", 2*given.M0, "without C" } } end
   walk.mistakes{
     { "7a", given.M0, "at rest" },
     { "7a", given.C/given.M0, "upside down" },
@@ -38,6 +39,7 @@ walk.sheet("7-friction-damper", function(session)
     { "7b", math.sqrt(1 + given.mu), "slower" },
     { "7c", omega^2, "that is omega^2" },
     { "7d", limit/given.mu, "the inertia mu" },
+    { "7d", limit/omega^2, "acceleration" },
     { "7e", limit, "glues them" },
     { "7e", 1.5*best.Rd, "too tight" },
     { "7e", 0.5*best.Rd, "too loose" },

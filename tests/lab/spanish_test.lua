@@ -34,6 +34,33 @@ for spanish, english in pairs(pages) do
   end)
 end
 
+--- The questions of a handout, each with the task that asks it: "a 1.2, b 1.3".
+local function tasks_of_page(name)
+  local list, task = {}, nil
+  for line in support.read(name):gmatch "[^\n]+" do
+    task = line:match "^### (%d%.%d)" or task
+    for _, pattern in ipairs { "%*%*%d(%l)%*%*", 'check%("%d(%l)", %.%.%.%)' } do
+      for question in line:gmatch(pattern) do list[#list + 1] = question .. " " .. task end
+    end
+  end
+  table.sort(list)
+  return table.concat(list, ", ")
+end
+
+for _, english in pairs(pages) do
+  local sheet = english:match "lab/(.*)%.md"
+  if sheet then
+    support.test("sheet " .. sheet .. " sends a student to the task that asks the question", function()
+      local list = {}
+      for question, task in support.read("sheets/" .. sheet .. ".lua"):gmatch 'name = "(%l)".-task = "(%d%.%d)"' do
+        list[#list + 1] = question .. " " .. task
+      end
+      table.sort(list)
+      support.equal(table.concat(list, ", "), tasks_of_page(english))
+    end)
+  end
+end
+
 support.test("what is said follows the language of the number, and that of the sheet", function()
   local pipe <close> = io.popen "cat src/lab/judge.lua sheets/[1-9]*.lua"
   local judge = setmetatable({}, { __index = _G })
@@ -45,7 +72,9 @@ support.test("what is said follows the language of the number, and that of the s
   support.equal(said(1, "8a", 3), "8a: richtig")
   support.equal(said(1, "8a", 1), "8a: zu klein")
   support.equal(said(1, "0", -42), "0: the size is right, the sign is not")
-  assert(course.test(8):find "All answers are right")
+  local shown = course.test(8)
+  assert(shown:find 'All answers are right.*words.de has no translation of these.*"not right"', shown)
+  assert(not shown:find '\n    "right"' and not course.test(1):find "no translation")
   course.speak "es"
   support.equal(said(1, "8a", 3), "8a: correcto")
   support.equal(said(1, "0", -42), "0: el tamaño es correcto, el signo no")

@@ -107,4 +107,18 @@ test("what cannot be shown is said", function()
     })
 end)
 
+test("bodies stand along their links in animations and plots, from the one that links name first", function()
+    local rig = system{ bodies = { brake = { I = 1, k = 9 }, load = { I = 3 }, motor = { I = 1 } },
+        links = { clutch = { "motor", "load", Rd = 2 }, rod = { "load", "brake", k = 3 } } }
+    local moving = rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }
+    local x = {}
+    for at, name in animated(moving, {}):gmatch '<text x="([%d.]+)"[^>]*>(%a+)</text>' do x[name] = tonumber(at) end
+    assert(x.motor < x.load and x.load < x.brake)
+    local file = temporary ".txt"
+    moving:plot{ file = file }
+    local order = {}
+    for name in read(file):gmatch "(%a+) θ" do order[#order + 1] = name end
+    equal(table.concat(order, " "), "motor load brake clutch")
+end)
+
 finish()

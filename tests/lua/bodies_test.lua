@@ -99,6 +99,14 @@ test("two bodies that stick to each other are one of both inertias", function()
     equal(#pair.events, #one.events)
 end)
 
+test("a body that goes on is that of the run of all bodies that goes on", function()
+    local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1, Rd = 0.2 }, b = { I = 1 } }, links = { link = { "a", "b", k = 4 } } }
+    local run = rig:simulate { M = { a = math.sin }, t_end = 3, dt = 0.1 }
+    local body, whole = run.b:continue { t_end = 5 }, run:continue { t_end = 5 }
+    equal(tostring(body.theta), tostring(whole.b.theta))
+    equal(tostring(body:continue { t_end = 6 }.velocity), tostring(whole:continue { t_end = 6 }.b.velocity))
+end)
+
 test("accelerations are those of the equation of motion, and 0 where a body is held", function()
     local rig = pair({ I = 2, k = 3, C = 0.1 }, { I = 1, Rd = 5 }, { k = 4 })
     local run = rig:simulate { M = { a = math.sin }, theta0 = { a = 0.5 }, velocity0 = { b = 0.2 }, t_end = 4, dt = 0.5 }
@@ -258,7 +266,7 @@ test("a run of several bodies has their columns and pictures by name, and gives 
     equal(all.amplitude, own.amplitude)
     has(tostring(all), "spectrum of a.theta: 1024 samples of the motion")
     has(run:markdown(), "| a.theta, deg |")
-    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a.theta") end
+    for _, y in ipairs { "a.theta", { "a.theta", "b.theta" } } do has(tostring(run:plot { y = y, show = false }), "a θ") end
     equal(tostring(run.a.system), tostring(rig.a))
     equal(tostring(run.a.excitation), "excitation.constant{ amplitude = 0 }")
     equal(run.gap.excitation, nil)
@@ -406,7 +414,7 @@ test("several bodies take spectral and rk4, and say of exact that it is for one 
     equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
     near(long.b.theta, rk4.b.theta, 1e-8)
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body without a name and with constant friction: use integrator.spectral or rk4")
+    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
     raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
     -- each body alone would be stable with this h, and their common mode is not
     local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }

@@ -223,8 +223,9 @@ local questions = {
     ["energy of the run"] = function(way, kind) return balance(simulated(way, kind)) end,
     ["energy of the body"] = function(way, kind) return balance(way.part(simulated(way, kind))) end,
     integrators = function(way, kind)
-        return each(integrator, "spectral exact rk4 dopri5", function(all, name)
-            local chosen = all[name] { h = name == "rk4" and 0.01 or nil, tolerance = name == "dopri5" and 1e-9 or nil }
+        return each(integrator, "spectral exact rk4 dopri5 dinal1989", function(all, name)
+            local steps = name == "rk4" or name == "dinal1989"
+            local chosen = all[name] { h = steps and 0.01 or nil, tolerance = name == "dopri5" and 1e-9 or nil }
             return rows(way.part(simulated(way, kind, { integrator = chosen })))
         end)
     end,
@@ -319,44 +320,16 @@ only.steady = merged(kinds)
 only.steady.Dahl = nil -- as slow as LuGre, and as smooth
 local function asked(question) return only[question] or kinds end
 
--- One body with one of these laws runs as a system of several today.
-local varying = { "Rd of t", "LuGre", "Dahl", "a function of the speed", "normal of t and theta", "elastic walls", "Jenkins", "freewheel" }
-local endless = "event that bounces endlessly"
-local groups = { ["laws of several"] = varying, springs = { "spring.polynomial", "a spring in Lua" },
-    walls = { "walls of restitution 0", "walls of restitution 0.7" },
-    ["exact by default"] = { "Coulomb with Re = Rd", "Coulomb with Re above Rd", "no dry friction", "normal constant", "uneven" },
-    ["smooth laws"] = { "M that is not read", "M that is read", "Stribeck", "a law in Lua", "friction.table", "feedback" },
-    ["constant laws"] = {}, ["not endless"] = {}, steady = {} }
-local rigs = {}
-for _, kind in ipairs(varying) do rigs[kind] = true end
-for kind in pairs(kinds) do
-    if kind ~= endless then
-        table.insert(groups["not endless"], kind)
-        if not rigs[kind] then table.insert(groups["constant laws"], kind) end
-        if kind ~= "event that stops" then table.insert(groups.steady, kind) end
-    end
-end
+local groups = { springs = { "spring.polynomial", "a spring in Lua" },
+    ["smooth laws"] = { "M that is not read", "M that is read", "Stribeck", "a law in Lua", "friction.table", "feedback" } }
 
-local exact_of_one = "exact is the default of one body"
 local written_by_body = "an act returns the angle and velocity of one body, and assigns to those of several"
-local writers = "one body and several have writers of their own"
 -- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
 local different = {
-    ["fields of the body: integrator, exact by default"] = exact_of_one,
-    ["fields of the run: integrator, exact by default"] = exact_of_one,
-    ["fields of the run: excitation names"] = "of several bodies these have the names of bodies in them",
-    ["continue of the body: refused"] = "only the run of all bodies can be continued",
-    ["integrators: exact, constant laws, event that bounces endlessly"] = "exact takes one body without a name",
     ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
-    ["pictures of the run: plot"] = "the run of several bodies draws the angles of all",
-    ["words of the run: line"] = writers,
-    ["save: acceleration"] = "only the file of several bodies has the column acceleration",
-    ["save: header, exact by default"] = exact_of_one,
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
-    ["save of the body: header, exact by default"] = exact_of_one,
     ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
-    ["steady: line explain, steady"] = writers,
     ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
 }
 

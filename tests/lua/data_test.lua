@@ -49,6 +49,8 @@ test("files of others: decimal commas, empty fields, words; csv_test.cpp has the
     equal(load("t,x\n0,1\n1,\n2,nan\n").t, vector{ 0, 1, 2 })
     local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
     equal(d["Time (s)"], vector{ 0.5, 1 })
+    equal(d.Time, vector{ 0.5, 1 }) -- without the unit
+    raises(function() return load("x [m],x [s]\n1,2\n").x end, "there is no column 'x' among x [m], x [s]")
     equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
     equal(#load("only,names\n"), 0)
     equal(load("t,x\n1,3d\n2,1-2\n").x[2], "1-2")
@@ -169,6 +171,9 @@ test("what is no data is told in a sentence", function()
     raises_here(function() return data{ a = { 1 } }[-1] end, "rows are counted from 1")
     raises_here(function() data{ a = { 1 } }:select() end, "needs the name")
     raises_here(function() data{ a = { 1 } }:save() end, "must be a string")
+    for _, name in ipairs{ "x.lua", ".bashrc", "x" } do
+        raises_here(function() data{ a = { 1 } }:save(name) end, "the name '" .. name .. "' must end in .csv")
+    end
     raises_here(function() data{ a = { 1 } }:save("/no/such/folder/x.csv") end, "/no/such/folder")
 end)
 

@@ -122,6 +122,24 @@ test("what rings about the place at which another sticks comes to rest", functio
     end
 end)
 
+test("an end that chatters makes no event of long before none", function()
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 }, c = { I = 1 }, d = { I = 1, k = 1, Rd = 0.1 } } }
+    local loads = {
+        a = function(t) return t < 1 and 0 or 2 end,
+        c = function(t, theta, velocity) return t < 2 and 0.1 or velocity.c > 0.05 and -1 or 1 end,
+    }
+    local run = rig:simulate { velocity0 = { b = 1 }, belt = { d = 0.1 }, M = loads, t_end = 3 }
+    equal(run.status, "failed")
+    -- at t = 1 the load of a passes what holds it, and b, braked by 1, stops
+    local told = {}
+    for _, event in ipairs(run.events) do
+        told[#told + 1] = event.kind .. " " .. event.where
+        near(event.t, 1, 1e-12)
+    end
+    table.sort(told)
+    equal(table.concat(told, ", "), "slip a, stick b")
+end)
+
 test("a function that fails for a motion that is only tried is no error", function()
     local sys = system { I = 0.02, k = 0, C = 0.1, Rd = 0.1, spring = function(q) return 900 * q + 1e4 * q ^ 3 end }
     local run = sys:simulate { M = function(t) return 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }

@@ -51,6 +51,13 @@ class Walked(AtHome):
         ("dir(run)", "Tab after a name and a point lists its fields"),
         ("cd", ":cd folder changes the current folder"),
         ("ls", ":ls lists the files"),
+        ("cd /tmp", ":cd folder changes the current folder"),
+        ("cd ..", ":cd folder changes the current folder"),
+        ("ls *.lua", ":ls lists the files"),
+        ("ls -l", ":ls lists the files"),
+        ("ayuda()", "help() starts a tour"),
+        ("excitation.ramps{}", "did you mean 'ramp'?"),
+        ("excitation.whatever{}", "it has constant, harmonic"),
         ("_", "ans holds the last value"),
         ("run.whatisit", "it also has at, columns"),
         ("2*run.events[1]", "as in run.events[1].theta"),
@@ -63,6 +70,14 @@ class Walked(AtHome):
             shown = " ".join(session.enter(line).split())
             self.assertIn(answer, shown, line)
             self.assertTrue(answer or not shown, f"{line}: {shown}")
+
+    def test_an_error_is_not_blamed_on_the_line_of_an_earlier_one(self):
+        session = self.session()
+        M = "function(t) return sin(t) end"
+        self.assertIn("in M at t = 0", session.enter(f"system{{ I = 1, k = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
+        shown = session.enter("sin(3)")
+        self.assertIn("1 | sin(3)", shown)
+        self.assertNotIn("in M", shown)
 
 
 class Folders(AtHome):

@@ -26,6 +26,10 @@ expect "the first of two concurrent starts runs" one "$(cat one)"
 expect "the second of two concurrent starts runs" two "$(cat two)"
 cat one.err two.err
 
+mkdir -p fresh/scripts && cp "$root/scripts/dinal" "$root/scripts/packages" fresh/scripts
+expect "--help of a new clone answers without a build" "usage: scripts/dinal [options] [script [arguments]]" "$(fresh/scripts/dinal --help | head -n 1)"
+expect "and makes no folder" scripts "$(ls fresh)"
+
 expect "it prints nothing of its own when up to date" "" "$("$start" -e '' 2>&1)"
 expect "-e runs" 1 "$("$start" -e 'print(1)')"
 expect "the exit code is the program's" 1 "$("$start" -e 'error "x"' 2>err || echo $?)"

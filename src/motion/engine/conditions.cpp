@@ -201,10 +201,11 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     }
 }
 
-Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, bool often) {
+Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& chatter) {
     constexpr double small = 1e-5, nothing = 1e-13;
-    constexpr int most_small = 30, most_to_and_fro = 200;
+    constexpr int most_small = 30;
     constexpr double soon = 1e-6;
+    const bool often = chatter.too_often(now.t.hi);
     Crossed crossed;
     bool all_small = true;
     const Moment here = now.here();
@@ -216,7 +217,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, bool often
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool soon_again = last_.function == function && here.t - last_.t <= soon * unit_;
         const bool back = soon_again && last_.step == step && last_.from == beyond;
-        to_and_fro_ = back ? to_and_fro_ + 1 : 0;
+        chatter.crossed(back);
         last_ = {function, step, function->decision(step), here.t, within_};
         const double before = function->value(here);
         function->cross(condition);
@@ -228,11 +229,11 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, bool often
         all_small = all_small && clear && jump < small * greatest_;
         if (!soon_again || !clear || ending.conditions.size() > 1) continue;
         if (const auto begun = slides_.begin(*function, jump, now)) {
-            crossed.slides.push_back(begun->joint), crossed.work = begun->work, to_and_fro_ = 0;
+            crossed.slides.push_back(begun->joint), crossed.work = begun->work, chatter.crossed(false);
         }
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
-    crossed.endless = often || to_and_fro_ >= most_to_and_fro;
+    crossed.endless = often || chatter.to_and_fro_endlessly();
     const bool noise = crossed.endless ? !crossed.jumps : small_in_a_row_ >= most_small;
     if (noise) let_go(here.t);
     return crossed;

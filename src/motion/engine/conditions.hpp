@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "motion/engine/chatter.hpp"
 #include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/slide.hpp"
@@ -47,7 +48,7 @@ public:
     /// user has cut off: then all are let go, and the functions are sampled from there on; so they are beside a kink
     /// that rounding reverses. Where a load is driven back from both sides, it slides along the condition, and the
     /// velocities are put on it.
-    Crossed cross(const Ending& ending, Now& now, bool often);
+    Crossed cross(const Ending& ending, Now& now, Chatter& chatter);
     /// Where contacts hold, loads no longer slide. Returns the joints whose load has ceased to, since the last call.
     std::vector<std::size_t> ceased(const Now& now) {
         if (slides_.any()) slides_.follow(now.mode);
@@ -73,7 +74,6 @@ private:
         double within = 0;                   ///< it was taken to be so near to zero
     } last_;
     double within_ = 0;       ///< the same of those that are about to be crossed
-    int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
     int small_in_a_row_ = 0;  ///< jumps
     double greatest_ = 0;     ///< value or jump so far
     Slides slides_;

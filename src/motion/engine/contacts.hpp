@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/event.hpp"
 #include "motion/engine/now.hpp"
 
 namespace dinal::motion::engine {
@@ -17,10 +18,11 @@ struct Contacts {
     struct Of {
         model::Motion arrived = model::Motion::stuck;  ///< the way in which it slid until now; stuck: it did not
         Arrival arrival = {};
-        int edge = 0;              ///< the corner that its speed is at, 1 the upper one of its range
-        bool crept = false;        ///< its slip has come down to rounding, and it may creep
-        bool leaves_wall = false;  ///< it begins at a wall, and leaves it
-        bool leaned = false;       ///< it came to stand at a wall, and that was reported
+        model::Event creeping = {};  ///< while it creeps: its stick, an event if nothing moves it before the end
+        int edge = 0;                ///< the corner that its speed is at, 1 the upper one of its range
+        bool crept = false;          ///< its slip has come down to rounding, and it may creep
+        bool leaves_wall = false;    ///< it begins at a wall, and leaves it
+        bool leaned = false;         ///< it came to stand at a wall, and that was reported
     };
     std::vector<Of> of;         ///< each joint
     double size_at_stop = 0;    ///< of the torques, where a joint came to slip 0 the last time

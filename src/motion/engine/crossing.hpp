@@ -6,8 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "model/terms/term.hpp"
-#include "motion/engine/nodes.hpp"
+#include "motion/engine/chatter.hpp"
 #include "motion/first_below.hpp"
 #include "motion/interpolation.hpp"
 
@@ -15,18 +14,6 @@ namespace dinal::motion::engine {
 
 /// The side of zero of a watched value: 1 above, -1 below, 0 unknown, because it started at zero.
 using Half = int;
-
-/// Zeno guard: intervals between firings of one event shrink towards zero.
-struct Fading {
-    double last = -model::never, gap = model::never, first = 0;
-    bool after(double t) {
-        constexpr double next_to_nothing = 1e-5;
-        const double now = t - last;
-        if (!(now < gap) || gap == model::never) first = now;
-        last = t, gap = now;
-        return now < first && now <= next_to_nothing * first;
-    }
-};
 
 /// The state of a user's event between its actions.
 struct Watch {
@@ -115,10 +102,9 @@ private:
         using namespace cheb;
         Bounded<points> curve(half, series_, derivative(series_));
         curve.raise_floor(rounded_);
-        const auto no = [](double) { return false; };
         double near = 1e-7;
         while (start < 1) {
-            const auto x = first_below(curve, start, LeftEnd::anywhere, no);
+            const auto x = first_below(curve, start);
             if (!x) break;
             double a = std::max(start, *x - near);
             while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));

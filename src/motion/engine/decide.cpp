@@ -286,12 +286,12 @@ void Decider::report(std::size_t j) {
     tell(*kind, j);
     Told& told = made_.told.back();
     if (*kind == EventKind::slip) {
-        told.unless = Told::Unless::touched, told.slid = arrival.slid, told.way = way;
-        told.off = std::fabs(asked.pull - arrival.pull), told.size = size(j);
+        told.turns = way != arrival.slid, told.size = size(j);
+        if (arrival.slid != Motion::stuck) told.off = std::fabs(asked.pull - arrival.pull);
     } else if (*kind == EventKind::stick && asked.before.slid != Motion::stuck) {
         arrival = {asked.before.slid, -found_.holding[j]};
     } else if (*kind == EventKind::stick) {
-        told.unless = Told::Unless::taken_back;
+        told.holds_again = true;
     }
 }
 
@@ -338,7 +338,7 @@ void Decider::creep(std::size_t joint, Motion way, double pull) {
     const auto within = contact::creeps_within(pull, way, sliding, holding, size(joint));
     if (!within) return;
     how.creeps = way, how.apart = *within;
-    made_.creeping.emplace_back(joint, event_at(mechanics_, now(), EventKind::stick, joint));
+    memory().of[joint].creeping = event_at(mechanics_, now(), EventKind::stick, joint);
 }
 
 /// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times

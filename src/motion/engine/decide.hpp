@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "model/event.hpp"
@@ -54,11 +53,10 @@ struct Cause {
 /// An event that a decision reports.
 struct Told {
     model::Event event;
-    /// An event of a joint that is let go, or held again, may take back the one before.
-    enum class Unless { never, touched, taken_back } unless = Unless::never;
-    model::Motion slid = model::Motion::stuck;  ///< of touched: the way in which it slid before it stuck; stuck: none
-    model::Motion way = model::Motion::stuck;   ///< of touched: the way in which it slides now
-    double off = 0, size = 0;                   ///< of touched: the change of its pull since then, and of its torques
+    bool holds_again = false;   ///< a stick of a joint that was let go: with its slip at this instant it is no event
+    bool turns = false;         ///< a slip the other way than the joint slid before it stuck
+    double off = model::never;  ///< of a slip, if the joint slid before it stuck: the change of its pull since then
+    double size = 0;            ///< of a slip: the size of the torques
 };
 
 struct Decision {
@@ -66,7 +64,6 @@ struct Decision {
     Now now;           ///< the modes and velocities from now on
     Contacts contacts;
     std::vector<Told> told = {};
-    std::vector<std::pair<std::size_t, model::Event>> creeping = {};  ///< joints that creep now: they stick only later
 };
 
 /// Decides for all joints at slip 0 at once: what can hold holds; of those that can not, the one that is farthest

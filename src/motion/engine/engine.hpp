@@ -8,6 +8,7 @@
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/breaks.hpp"
+#include "motion/engine/chatter.hpp"
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/decide.hpp"
@@ -145,8 +146,5 @@ private:
     std::vector<double> departing_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
-
-/// The part of a pull by which a joint may pass its limit after it was let go and did not leave, of the torques.
-inline constexpr double most_blunt = 1e-9;
 
 }  // namespace dinal::motion::engine

@@ -35,8 +35,7 @@ bool Engine::handle(const Ending& ending) {
             return goes_on();
         }
         case By::condition: {
-            const bool often = chatter_.too_often(now_.t.hi);
-            const Conditions::Crossed crossed = conditions_->cross(ending, now_, often);
+            const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
             result_.jumps += crossed.count;
             if (crossed.work != 0) recorder_->add_jump(now_.t.hi, crossed.slides.front(), {.input = crossed.work});
             for (const std::size_t joint : crossed.slides) recorder_->tell_slide(now_, joint);
@@ -80,7 +79,6 @@ bool Engine::come_to_a_stop(std::size_t j) {
 bool Engine::release(const Ending& ending) {
     const std::size_t j = ending.which;
     const Mode before = now_.mode;
-    const double blunt = now_.mode.friction[j].blunt;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
     bool same = now_.mode.leans == before.leans;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
@@ -89,12 +87,7 @@ bool Engine::release(const Ending& ending) {
                now_.mode.friction[i].creeps == before.friction[i].creeps;
     }
     // A joint that only touched its limit must pass it clearly the next time.
-    if (same) {
-        Slipping& how = now_.mode.friction[j];
-        const double size = torque_size(j);
-        how.blunt = std::max(2 * blunt, 64 * rounding * size);
-        if (how.blunt > most_blunt * size) return fail(Outcome::chattering);
-    }
+    if (same && Chatter::too_blunt(now_.mode.friction[j], torque_size(j))) return fail(Outcome::chattering);
     return goes_on();
 }
 
@@ -131,7 +124,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     const Cause cause{released, told && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);
-    recorder_->tell(made, pace_.unit);
+    for (const Told& each : made.told) recorder_->tell(each);
     return made.good || fail(Outcome::excitation_not_finite);
 }
 

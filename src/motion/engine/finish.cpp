@@ -20,11 +20,7 @@ void Engine::finish() {
     const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;
     SampledLoads sampled(mechanics_, segment_);
     if (stands_at_now) recorder_->rows_at_end({now_, segment_, frames_->of(now_.mode), *balances_, sampled});
-    if (outcome_ == Outcome::reached_end) {
-        recorder_->tell_crept(now_.mode);
-        outcome_ = at_rest().value_or(outcome_);
-        if (outcome_ == Outcome::at_rest) recorder_->tell_rest();
-    }
+    if (outcome_ == Outcome::reached_end) outcome_ = at_rest().value_or(outcome_);
     if (now_.mode.friction[0].way != Motion::stuck && !now_.mode.holds(0))
         result_.motion_at_stop = now_.mode.friction[0].way;
     if (!now_.rubs(0) && now_.mode.leans[0] == 0) result_.motion_at_stop = recorder_->heading()[0];
@@ -33,7 +29,6 @@ void Engine::finish() {
     result_.located = conditions_->any();
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
     result_.noise = lost ? 0 : solver_->noise().clear(problem_.tolerance);
-    if (outcome_ == Outcome::chattering) recorder_->forget_chatter(pace_.unit);
     Walls::keep_within(problem_.system, now_.y);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.t.hi;
@@ -43,7 +38,7 @@ void Engine::finish() {
     carry->floor = solver_->noise().floor();
     if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = recorder_->history();
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
-    recorder_->finish(now_, std::move(carry));
+    recorder_->finish(now_, contacts_, std::move(carry));
 }
 
 /// Returns how the run stands at its end, if nothing moves.

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "motion/first_below.hpp"
+#include "motion/contact.hpp"
 
 namespace dinal::motion::engine {
 
@@ -34,6 +34,23 @@ Ending Guards::first() {
     return ending_;
 }
 
+void Guards::see(std::optional<double> x, By by, std::size_t which, int side) {
+    if (x && *x < ending_.x) ending_ = {*x, by, which, side};
+}
+
+void Guards::watch(const Series& left, double floor, bool zero, By by, std::size_t which, int side) {
+    cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
+    curve.raise_floor(floor);
+    see(cheb::first_below(curve, -1, zero), by, which, side);
+}
+
+/// Returns the size of the velocities whose difference is the slip of a joint.
+double Guards::fastest(std::size_t joint) const {
+    double sum = greatest(segment_.belts[joint]);
+    for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * greatest(segment_.y[n() + body]);
+    return sum;
+}
+
 void Guards::watch_slip(std::size_t joint) {
     const Joint& own = joint_at(joint);
     const Slipping& how = now_.mode.friction[joint];
@@ -50,9 +67,9 @@ void Guards::watch_slip(std::size_t joint) {
         series = difference(series, cheb::fit(change));
     }
     series[0] += first;
-    double fastest = greatest(belt), inertia = model::never;
+    const double fastest = this->fastest(joint);
+    double inertia = model::never;
     for (const auto& [body, by] : own.of) {
-        fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
         inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
     }
     // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
@@ -81,12 +98,11 @@ void Guards::watch_slip(std::size_t joint) {
     if (own.of.size() > 1 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
     curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
     const auto always = [](double) { return true; };
-    const auto start = how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere;
-    auto zero = cheb::first_below(curve, -1, start, always);
+    auto zero = cheb::first_below(curve, -1, how.leaving, always);
     if (how.leaving && zero && *zero <= -1 &&
         !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
-        zero = cheb::first_below(curve, -1, start, always);
+        zero = cheb::first_below(curve, -1, true, always);
     }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
     // A slip that only touches zero does so at its lowest place.
@@ -149,11 +165,9 @@ void Guards::watch_release(std::size_t joint) {
             return touch.has_value();
         };
         // A jump that was passed over may have taken it far beyond.
-        auto x =
-            values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
+        auto x = values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, false, touches);
         if (x && touch) x = first_true(lets_go, *touch);
-        if (!x || !(*x < ending_.x) || !(segment_.time(*x) < segment_.end)) continue;
-        ending_ = {*x, By::release, joint, static_cast<int>(side)};
+        if (x && segment_.time(*x) < segment_.end) see(x, By::release, joint, static_cast<int>(side));
     }
 }
 
@@ -179,7 +193,6 @@ Nodes Guards::limit(std::size_t joint, Motion side) const {
 }
 
 void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
-    const auto no = [](double) { return false; };
     for (const int wall : {1, -1}) {
         const double place = walls.at(wall);
         if (!std::isfinite(place)) continue;
@@ -194,10 +207,7 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
         Series left = cheb::fit(change);
         if (!leaving) left[0] += begin;
-        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
-        curve.raise_floor(64 * rounding * far);
-        const auto x = cheb::first_below(curve, -1, leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
-        if (x && *x < ending_.x) ending_ = {*x, by, joint, wall};
+        watch(left, 64 * rounding * far, leaving, by, joint, wall);
     }
 }
 
@@ -205,60 +215,40 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
 /// it was left before the motion came back to its place, the torque will be.
 void Guards::watch_stop(std::size_t joint) {
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
-    const Nodes angle = mechanics_.between(joint, segment_.y),
-                velocity = mechanics_.between(joint, std::span(segment_.y).subspan(n()));
+    const double begin = mechanics_.angle(joint, segment_.moment(0, point_).y);
     const int pressed = now_.mode.presses[joint];
-    const int deep = pressed != 0 ? pressed : angle[0] > stops.upper ? 1 : angle[0] < stops.lower ? -1 : 0;
+    const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops, By::stop);
     if (pressed == 0) {  // it may come to the other wall before
         model::Walls other = stops;
         (deep > 0 ? other.upper : other.lower) = deep * model::never;
         watch_walls(joint, other, By::stop);
     }
-    std::vector<double> y;
-    const auto value = [&](double q, double v) {
-        const double torque = deep * stops.torque(deep, q, v);
+    const auto value = [&](const Moment& at) {
+        const double q = mechanics_.angle(joint, at.y);
+        const double torque = deep * stops.torque(deep, q, mechanics_.velocity(joint, at.y));
         return pressed != 0 ? torque : std::min(torque, stops.stiffness * deep * (q - stops.at(deep)));
     };
-    const auto exact = [&](double x) {
-        segment_.state(x, y);
-        return value(mechanics_.angle(joint, y), mechanics_.velocity(joint, y));
-    };
-    Nodes values{};
-    for (std::size_t j = 0; j < node_count; ++j) values[j] = value(angle[j], velocity[j]);
     Half half = pressed != 0 ? 1 : -1;
     const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
-    const auto x = Watched(values, exact, pressed != 0 ? 0 : rounded).leaves(half, -1);
-    if (x && *x < ending_.x) ending_ = {*x, By::stop, joint, pressed != 0 ? 0 : deep};
+    see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), By::stop, joint,
+        pressed != 0 ? 0 : deep);
 }
 
 /// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
 void Guards::watch_slider(std::size_t slider) {
-    const auto& [joint, bend, stiffness, limit] = mechanics_.sliders()[slider];
-    std::vector<double> y;
-    const auto look = [&](const Nodes& values, const auto& exact, Motion way) {
-        Half half = 1;
-        const auto x = Watched(values, exact).leaves(half, -1);
-        if (x && *x < ending_.x) ending_ = {*x, By::slider, slider, static_cast<int>(way)};
-    };
-    Nodes values{};
+    const Mechanics::Slider& own = mechanics_.sliders()[slider];
+    Half half = 1;
     if (now_.mode.sliders[slider] != Motion::stuck) {
-        const double sign = model::sign_of(now_.mode.sliders[slider]);
-        values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
-        for (double& value : values) value *= sign;
-        const auto slip_at = [&, joint = joint](double x) {
-            segment_.state(x, y);
-            return sign * (mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at));
-        };
-        return look(values, slip_at, Motion::stuck);
+        half = static_cast<int>(now_.mode.sliders[slider]);
+        see(slip_leaves(own.joint, half), By::slider, slider, static_cast<int>(Motion::stuck));
+        return;
     }
     for (const Motion way : {Motion::forward, Motion::backward}) {
-        const double sign = model::sign_of(way);
-        for (std::size_t j = 0; j < node_count; ++j) values[j] = limit - sign * stiffness * segment_.y[bend][j];
-        const auto left_at = [&, bend = bend, stiffness = stiffness, limit = limit](double x) {
-            return limit - sign * stiffness * segment_.at(bend, x);
+        const auto left = [&](const Moment& at) {
+            return own.limit - model::sign_of(way) * own.stiffness * at.y[own.bend];
         };
-        look(values, left_at, way);
+        see(leaves(segment_.at_nodes(left, point_), left, half), By::slider, slider, static_cast<int>(way));
     }
 }
 
@@ -270,89 +260,65 @@ void Guards::watch_corner(std::size_t joint) {
     if (law.ranges() < 2 || own.friction.function != nullptr || now_.mode.leans[joint] != 0) return;
     const model::SpeedRange range = law.range(how.range);
     const double sign = model::sign_of(how.way);
-    double fastest = greatest(segment_.belts[joint]);
-    for (const auto& [body, by] : own.of) fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
     Series series = cheb::fit(mechanics_.slips(joint, segment_.y, segment_.belts[joint]));
     for (double& c : series) c *= sign;
-    const auto no = [](double) { return false; };
     for (const int side : {1, -1}) {
         const double corner = side > 0 ? range.to : range.from;
         if (!(corner > 0 && corner < model::never)) continue;
         Series left = series;
         for (double& c : left) c *= -side;
         left[0] += side * corner;
-        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
-        curve.raise_floor(16 * rounding * fastest);
         const bool there = of_.contacts.of[joint].edge == side;
-        const auto x = cheb::first_below(curve, -1, there ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
-        if (x && *x < ending_.x) ending_ = {*x, By::corner, joint, side};
+        watch(left, 16 * rounding * fastest(joint), there, By::corner, joint, side);
     }
+}
+
+/// Returns the place at which the slip of a joint leaves its half.
+std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
+    const auto slip = [&](const Moment& at) {
+        return mechanics_.velocity(joint, at.y) - mechanics_.belt(joint, at.t, at.side);
+    };
+    return leaves(mechanics_.slips(joint, segment_.y, segment_.belts[joint]), slip, half);
 }
 
 /// The rate of bristles has a corner where the slip is 0: a stretch ends there.
 void Guards::watch_bristles(std::size_t joint) {
-    const Nodes values = mechanics_.slips(joint, segment_.y, segment_.belts[joint]);
-    std::vector<double> y;
-    const auto exact = [&](double x) {
-        segment_.state(x, y);
-        return mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at);
-    };
-    const Watched watched(values, exact);
-    Half half = of_.normal_halves[joint];
-    const auto x = watched.leaves(half, -1);
-    of_.normal_halves[joint] = half;
+    Half& half = of_.normal_halves[joint];
+    const auto x = slip_leaves(joint, half);
     if (!x || *x >= ending_.x) return;
-    if (*x > -1) ending_ = {*x, By::kink, joint};
-    of_.normal_halves[joint] = -half;
+    if (*x > -1) see(x, By::kink, joint);
+    half = -half;
 }
 
 /// A normal load that passes zero ends a stretch: what is negative counts as none.
 void Guards::watch_normal(std::size_t joint) {
-    Nodes values{};
-    for (std::size_t j = 0; j < node_count; ++j) {
-        values[j] = mechanics_.pressing(joint, segment_.moment(j, point_));
-    }
-    std::vector<double> y;
-    const auto exact = [&](double x) {
-        segment_.state(x, y);
-        return mechanics_.pressing(joint, {segment_.time(x), Side::at, y});
-    };
+    const auto pressing = [&](const Moment& at) { return mechanics_.pressing(joint, at); };
+    const Nodes values = segment_.at_nodes(pressing, point_);
     if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
         // Nothing presses at the start, where the load may be its rounding, or 0 for long.
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
-        const double x = first_true([&](double at) { return exact(at) > 0; },
-                                    cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
-        if (x < ending_.x) ending_ = {x, By::kink, joint};
+        const auto exact = segment_.anywhere(pressing, point_);
+        see(first_true([&](double x) { return exact(x) > 0; },
+                       cheb::nodes[static_cast<std::size_t>(presses - values.begin())]),
+            By::kink, joint);
         return;
     }
-    Half half = of_.normal_halves[joint];
-    const Watched watched(values, exact);
-    const auto x = watched.leaves(half, -1);
-    if (!x || *x >= ending_.x) {
-        of_.normal_halves[joint] = half;
-        return;
-    }
-    ending_ = {*x, By::kink, joint};
-    of_.normal_halves[joint] = -half;
+    Half& half = of_.normal_halves[joint];
+    const auto x = leaves(values, pressing, half);
+    if (!x || *x >= ending_.x) return;
+    see(x, By::kink, joint);
+    half = -half;
 }
 
 void Guards::watch_relays() {
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const Signal& load = mechanics_.loads()[i];
         for (std::size_t r = 0; r < load.relays(); ++r) {
-            Nodes values{};
-            for (std::size_t j = 0; j < node_count; ++j) {
-                values[j] = load.until_switch(r, segment_.moment(j, point_));
-            }
-            std::vector<double> y;
-            const auto exact = [&](double x) {
-                segment_.state(x, y);
-                return load.until_switch(r, {segment_.time(x), Side::at, y});
-            };
+            const auto left = [&](const Moment& at) { return load.until_switch(r, at); };
+            const Nodes values = segment_.at_nodes(left, point_);
             Half half = 1;
-            const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
-            if (x && *x < ending_.x) ending_ = {*x, By::relay, i, static_cast<int>(r)};
+            see(values[0] < 0 ? -1 : leaves(values, left, half), By::relay, i, static_cast<int>(r));
         }
     }
 }

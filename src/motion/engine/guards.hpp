@@ -39,6 +39,17 @@ public:
     [[nodiscard]] bool good() const { return good_; }
 
 private:
+    /// The stretch ends here, if nothing ends it before.
+    void see(std::optional<double> x, By by, std::size_t which, int side = 0);
+    /// Watches a curve that is positive, or begins at a known `zero`, until it ends the stretch. `floor`: its rounding.
+    void watch(const Series& left, double floor, bool zero, By by, std::size_t which, int side);
+    /// Returns the place at which a function of the moment with these values at the nodes leaves its half.
+    template <class Value>
+    std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
+        return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
+    }
+    std::optional<double> slip_leaves(std::size_t joint, Half& half);
+    [[nodiscard]] double fastest(std::size_t joint) const;
     void watch_slip(std::size_t joint);
     [[nodiscard]] bool may_creep(std::size_t joint) const;
     void watch_release(std::size_t joint);

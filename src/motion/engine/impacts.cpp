@@ -61,9 +61,8 @@ bool Engine::hit(std::size_t joint, int wall) {
     };
     if (stayed && before == 0) {
         now_.mode.leans[joint] = wall;
-        Slipping& how = now_.mode.friction[joint];
-        how.leaving = false;
-        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
+        now_.mode.friction[joint].leaving = false;
+        Chatter::too_blunt(now_.mode.friction[joint], torque_size(joint));  // it went, and did not get away
         if (!decide(true)) return false;
         stands();
         return goes_on();

@@ -1,4 +1,4 @@
-// The length of the stretches of a run, and the limits for events that follow each other without end.
+// The length of the stretches of a run.
 #pragma once
 
 #include "model/excitation.hpp"
@@ -6,7 +6,6 @@
 
 namespace dinal::motion::engine {
 
-constexpr int most_at_once = 200;
 constexpr double short_part = 1e-3;  // shorter than this part of the longest stretch is short
 
 /// Sets the length of the next stretch. It knows nothing of what ends one.
@@ -33,28 +32,6 @@ private:
     double searched_from_ = model::never, searched_half_ = 0;
     double short_enough_ = 0;  ///< half the length that replaced one with a slightly too large error
     int limited_for_ = 0;      ///< the number of the next stretches that are not longer than that
-};
-
-/// Counts what follows each other at once: a run that gets nowhere ends.
-class Chatter {
-public:
-    Chatter() = default;
-    Chatter(double start, double unit) : unit_(unit), attempts_since_(start) {}
-
-    /// An event at time t. Returns whether more than `most` followed each other at once.
-    bool too_often(double t, int most = most_at_once);
-    /// One more attempt failed at time t. Returns whether `most` of them came no farther than a little.
-    bool too_many_attempts(double t, int most);
-    /// One more stretch is too short to be seen. Returns whether there were too many in a row.
-    bool too_many_short() { return ++too_short_ > most_short; }
-    void stretch_of(double length) {
-        if (length > 1e-7 * unit_) too_short_ = 0;
-    }
-
-private:
-    static constexpr int most_short = 400;
-    double unit_ = 1, last_event_ = -model::never, attempts_since_ = 0;
-    int at_once_in_a_row_ = 0, attempts_ = 0, too_short_ = 0;
 };
 
 }  // namespace dinal::motion::engine

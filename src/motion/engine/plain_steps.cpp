@@ -216,7 +216,7 @@ bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
         (motion(std::min(*zero + e, h)).velocity - motion(std::max(*zero - e, 0.0)).velocity) / (2 * e);
     const double better = *zero - motion(*zero).velocity / slope;
     const double x = better > 0 && better <= h ? better : *zero, t = steps_.time(n + i) + x;
-    of.recorder.tell({.t = t, .kind = model::EventKind::turn, .theta = motion(x).theta, .M = M_.value(t)});
+    of.recorder.tell({.event = {.t = t, .kind = model::EventKind::turn, .theta = motion(x).theta, .M = M_.value(t)}});
     of.recorder.head(0, -direction);
     block_.theta[i + 1] = y1.theta, block_.velocity[i + 1] = y1.velocity;
     return true;

@@ -15,8 +15,12 @@ using model::EventKind;
 using model::Joint;
 using model::Motion;
 
-Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start)
-    : problem_(problem), mechanics_(mechanics), result_(result), heading_(mechanics.bodies(), Motion::stuck) {
+Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start, double unit)
+    : problem_(problem),
+      mechanics_(mechanics),
+      result_(result),
+      unit_(unit),
+      heading_(mechanics.bodies(), Motion::stuck) {
     std::vector<Joint> weights;
     for (const Joint& joint : problem.system.joints) {
         weights.push_back({.name = {}, .of = joint.of, .damping = joint.damping, .stops = joint.stops});
@@ -36,15 +40,18 @@ void Recorder::tell_user(const Now& now, std::size_t event) {
     }
 }
 
-void Recorder::tell(const Decision& decision, double unit) {
-    for (const auto& [joint, event] : decision.creeping) creeps(joint, event);
-    for (const Told& told : decision.told) {
-        const contact::Released released{told.event, told.slid, told.way, told.off, told.size};
-        if (told.unless == Told::Unless::touched && contact::only_touched(events_, released, unit)) continue;
-        const bool takes_back = told.unless == Told::Unless::taken_back;
-        if (takes_back && take_back_slip(static_cast<std::size_t>(told.event.where), told.event.t)) continue;
-        events_.push_back(told.event);
-    }
+void Recorder::tell(const Told& told) {
+    constexpr double clearly_later = 1e-3;
+    const Event& event = told.event;
+    if (told.holds_again && is_none(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
+    if (contact::only_touched(recent_, {event, told.turns, told.off, told.size}, unit_)) return;
+    if (!recent_.empty() && event.t - recent_.back().t > clearly_later * unit_) write_recent();
+    recent_.push_back(event);
+}
+
+void Recorder::write_recent() {
+    events_.insert(events_.end(), recent_.begin(), recent_.end());
+    recent_.clear();
 }
 
 void Recorder::tell_slide(const Now& now, std::size_t joint) {
@@ -52,47 +59,50 @@ void Recorder::tell_slide(const Now& now, std::size_t joint) {
     const bool again = last_slide_.t == now.t.hi && last_slide_.joint == joint;
     last_slide_ = {again ? -model::never : now.t.hi, joint};
     if (again) {
-        take_back(EventKind::switched, joint, now.t.hi);
+        is_none(EventKind::switched, joint, now.t.hi);
     } else {
         tell(now, EventKind::switched, joint);
     }
 }
 
-bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
-    auto told = std::find_if(events_.rbegin(), events_.rend(), [&](const Event& e) {
+/// Returns whether there was such an event at this time, which is none after all.
+bool Recorder::is_none(EventKind kind, std::size_t joint, double t) {
+    const auto told = std::find_if(recent_.rbegin(), recent_.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
     });
-    if (told == events_.rend()) return false;
-    events_.erase(std::next(told).base());
+    if (told == recent_.rend()) return false;
+    recent_.erase(std::next(told).base());
     return true;
 }
 
-void Recorder::forget_chatter(double unit) {
+/// Of stops and slips that followed each other at once, and led nowhere, only the first is an event. At an end as it
+/// should be what creeps sticks; at a rest the last stick is that.
+void Recorder::end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts) {
     constexpr double soon = 1e-6;
     const auto follows = [&](const Event& e, const Event& before) {
-        return e.kind <= EventKind::rest && e.t - before.t <= soon * unit;
+        return e.kind <= EventKind::rest && e.t - before.t <= soon * unit_;
     };
-    while (events_.size() > 1 && follows(events_.back(), *(events_.end() - 2))) events_.pop_back();
-}
-
-void Recorder::tell_crept(const Mode& mode) {
-    for (const auto& [joint, event] : crept_) {
-        if (mode.friction[joint].creeps == Motion::stuck) continue;
+    while (outcome == model::Outcome::chattering && recent_.size() > 1 &&
+           follows(recent_.back(), *(recent_.end() - 2))) {
+        recent_.pop_back();
+    }
+    write_recent();
+    for (std::size_t j = 0; j < mechanics_.joints() && model::is_whole(outcome); ++j) {
+        if (mode.friction[j].creeps == Motion::stuck) continue;
+        const Event& event = contacts.of[j].creeping;
         const auto later = std::upper_bound(events_.begin(), events_.end(), event,
                                             [](const Event& a, const Event& b) { return a.t < b.t; });
         events_.insert(later, event);
     }
-}
-
-void Recorder::tell_rest() {
-    auto last =
+    if (outcome != model::Outcome::at_rest) return;
+    const auto last =
         std::find_if(events_.rbegin(), events_.rend(), [](const Event& e) { return e.kind == EventKind::stick; });
     if (last != events_.rend()) last->kind = EventKind::rest;
 }
 
 void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise) {
     const auto& [now, segment, frame, balances, sampled] = of;
-    const auto told = static_cast<std::ptrdiff_t>(events_.size());
+    std::vector<Event> turns;
     for (std::size_t i = 0; i < n(); ++i) {
         bool rubs = false;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -100,14 +110,15 @@ void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& 
         }
         if (!rubs && !frame.bodies[i].empty()) {
             const double torques = std::max(100 * rounding * sizes.on(problem_.system.joints[i]), noise);
-            record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled);
+            record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled, turns);
         }
     }
-    std::stable_sort(events_.begin() + told, events_.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+    std::stable_sort(turns.begin(), turns.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+    for (const Event& turn : turns) tell({.event = turn});
 }
 
 void Recorder::record_turns(std::size_t body, const Segment& segment, double until, double nothing,
-                            SampledLoads& sampled) {
+                            SampledLoads& sampled, std::vector<Event>& turns) {
     const Nodes& v = segment.y[n() + body];
     const double moving = greatest(v);
     const auto exact = [&](double x) { return segment.at(n() + body, x); };
@@ -145,7 +156,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
         segment.state(x, y);
         const std::optional<double> known = sampled.at(body, x);
         const double M = known ? *known : mechanics_.load(body, {t, Side::at, y});
-        events_.push_back({.t = t, .theta = y[body], .M = M, .where = static_cast<int>(body)});
+        turns.push_back({.t = t, .theta = y[body], .M = M, .where = static_cast<int>(body)});
     }
     heading_[body] = static_cast<Motion>(way);
 }
@@ -250,8 +261,9 @@ void Recorder::keep(const Now& now, const Segment& segment, double length, doubl
     history_->add(std::move(kept), problem_.limits.dense, past);
 }
 
-void Recorder::finish(const Now& now, std::shared_ptr<const Carry> carry) {
+void Recorder::finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry) {
     if (next_row_ < problem_.rows.count()) result_.rows = Rows(result_.rows.table().first(next_row_));
+    end_events(result_.outcome, now.mode, contacts);
     result_.events = Growing<Event>(std::move(events_));
     history_->close(now.t, now.y);
     left_->history = history_;

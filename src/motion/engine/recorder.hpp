@@ -1,7 +1,6 @@
 // The record of a run: its events, rows and history.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -15,7 +14,7 @@ namespace dinal::motion::engine {
 /// Writes down what has happened, and decides nothing. Events are reported here only.
 class Recorder {
 public:
-    Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start);
+    Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start, double unit);
 
     struct Stretch {
         const Now& now;
@@ -25,33 +24,23 @@ public:
         SampledLoads& sampled;
     };
 
-    // Events.
+    // Events. The last ones wait, because what follows may show that they are none: a joint that is let go does not
+    // leave, a load ceases to slide at once, a stick lasts for no more than rounding, or the run gets nowhere. When
+    // one comes clearly later they are written, and stay.
+    void tell(const Told& told);
     void tell(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
-        events_.push_back(event_at(mechanics_, now, kind, where, user));
+        tell({.event = event_at(mechanics_, now, kind, where, user)});
     }
-    void tell(const model::Event& event) { events_.push_back(event); }
     /// An event of the user concerns every joint: each gets one, with its own angle and velocity.
     void tell_user(const Now& now, std::size_t event);
     [[nodiscard]] bool told_user_at(double t) const {
-        return !events_.empty() && events_.back().user >= 0 && events_.back().t == t;
+        return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
     }
     /// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin
     /// where a run goes on.
     void tell_slide(const Now& now, std::size_t joint);
-    /// The events of a decision. `unit`: of time.
-    void tell(const Decision& decision, double unit);
-    /// A joint creeps: it sticks at this event unless something moves it before the end of the run.
-    void creeps(std::size_t joint, const model::Event& event) { crept_[joint] = event; }
-    /// Takes back the slip that was reported at the present, of a joint that did not leave. Returns whether there was
-    /// one.
-    bool take_back_slip(std::size_t joint, double t) { return take_back(model::EventKind::slip, joint, t); }
-    bool take_back(model::EventKind kind, std::size_t joint, double t);
-    /// Keeps only the first of stops and slips that follow each other at once and lead nowhere.
-    void forget_chatter(double unit);
-    /// The run has ended as it should: what creeps still sticks.
-    void tell_crept(const Mode& mode);
-    /// The last stick is the rest.
-    void tell_rest();
+    /// A joint that was let go at this time did not leave.
+    void tell_no_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
     /// A turn of a body without dry friction changes nothing in its motion: it is recorded only. `sizes` and `noise`
     /// of the torques say which velocities are no motion.
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
@@ -82,16 +71,20 @@ public:
 
     // The beginning and the end.
     void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
-    void finish(const Now& now, std::shared_ptr<const Carry> carry);
+    void finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry);
 
 private:
+    void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
+    bool is_none(model::EventKind kind, std::size_t joint, double t);
+    void write_recent();
     /// The place x of the segment; -2 is the present.
     bool put_row(const Stretch& of, double t, double x);
     [[nodiscard]] double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
     std::vector<Kept::Acting> acting(const Now& now, const Segment& segment);
     void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const;
     void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting);
-    void record_turns(std::size_t body, const Segment& segment, double until, double nothing, SampledLoads& sampled);
+    void record_turns(std::size_t body, const Segment& segment, double until, double nothing, SampledLoads& sampled,
+                      std::vector<model::Event>& turns);
 
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
     /// The joints behind these move bodies.
@@ -101,11 +94,11 @@ private:
     const Request& problem_;
     const Mechanics& mechanics_;
     Run& result_;
-    std::vector<model::Event> events_;
+    std::shared_ptr<History> history_;
+    std::vector<model::Event> events_, recent_;
     double* cells_ = nullptr;  ///< the table of the rows
     std::shared_ptr<Left> left_ = std::make_shared<Left>();
-    std::shared_ptr<History> history_;
-    std::map<std::size_t, model::Event> crept_;
+    double unit_;  ///< of time
     std::vector<model::Motion> heading_;
     std::size_t next_row_ = 0;
     Balance balance_;

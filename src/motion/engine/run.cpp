@@ -65,10 +65,10 @@ Engine::Engine(const Request& problem, Run& result)
         if (!problem.before->watches.empty()) users_.go_on_with(problem.before->watches);
     }
     now_.keep_rigid_places(problem_.system);
-    recorder_.emplace(problem, mechanics_, result, now_);
+    set_pace();
+    recorder_.emplace(problem, mechanics_, result, now_, pace_.unit);
     if (problem.before != nullptr && !problem.before->heading.empty()) recorder_->go_on_with(problem.before->heading);
     asking_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
-    set_pace();
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
     conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
     if (problem.step > 0 || problem.pair != nullptr) {
@@ -119,7 +119,7 @@ void Engine::begin() {
         project(now_.side());
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
-            recorder_->creeps(j, event_at(mechanics_, now_, EventKind::stick, j));
+            contacts_.of[j].creeping = event_at(mechanics_, now_, EventKind::stick, j);
         }
         if (now_.after_break) ask_after_break();
     }
@@ -257,11 +257,10 @@ Ending Engine::watch(const Frame& frame) {
 
 /// A joint was let go and does not leave: its slip is no event, and it must be pulled clearly farther.
 void Engine::hold_again(std::size_t joint, double torques) {
-    recorder_->take_back_slip(joint, now_.t.hi);
+    recorder_->tell_no_slip(joint, now_.t.hi);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
-    how.blunt = std::max(2 * how.blunt, 64 * rounding * torques);
-    if (chatter_.too_often(now_.t.hi) || how.blunt > most_blunt * torques) fail(Outcome::chattering);
+    if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);
 }
 
 /// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is

@@ -45,6 +45,21 @@ struct Segment : NodeTimes {
         for (std::size_t k = 0; k < y.size(); ++k) out[k] = y[k][node];
         return {times[node], side(node), out};
     }
+    /// The values of a function of the moment at the nodes.
+    template <class Value>
+    Nodes at_nodes(const Value& value, std::vector<double>& room) const {
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = value(moment(j, room));
+        return values;
+    }
+    /// The same at any place.
+    template <class Value>
+    auto anywhere(const Value& value, std::vector<double>& room) const {
+        return [&](double x) {
+            state(x, room);
+            return value(Moment{time(x), Side::at, room});
+        };
+    }
 };
 
 }  // namespace dinal::motion::engine

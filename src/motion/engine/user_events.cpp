@@ -9,19 +9,14 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
     constexpr std::size_t most_passages = 200;
     const double before = ending.before();
     std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
-    std::vector<double> y;
     for (std::size_t e = 0; e < watches_.size(); ++e) {
         const model::Crossing direction = wanted_[e].direction;
         Watch& watch = watches_[e];
-        Nodes values{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = value(e, segment.moment(j, point_));
-            if (!std::isfinite(values[j])) return {.good = false};
-        }
-        const auto exact = [&](double x) {
-            segment.state(x, y);
-            return value(e, {segment.time(x), Side::at, y});
-        };
+        const auto when = [&](const Moment& at) { return value(e, at); };
+        const Nodes values = segment.at_nodes(when, point_);
+        if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
+            return {.good = false};
+        const auto exact = segment.anywhere(when, point_);
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
         Half half = watch.half;

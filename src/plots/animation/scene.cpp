@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "plots/neighbours.hpp"
 #include "plots/ticks.hpp"
 #include "text/characters.hpp"
 #include "text/html.hpp"
@@ -86,33 +87,12 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
 
 RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> links) {
     RigScene rig;
-    std::vector<std::size_t> place(bodies.size(), bodies.size());  // the new position of each body
-    const auto is_end = [&](std::size_t i) {
-        return std::count_if(links.begin(), links.end(),
-                             [i](const RigScene::Link& link) { return link.first == i || link.second == i; }) < 2;
-    };
-    const auto put = [&](std::size_t i) {
-        place[i] = rig.bodies.size();
-        rig.bodies.push_back(std::move(bodies[i]));
-    };
-    while (rig.bodies.size() < bodies.size()) {
-        std::size_t next = bodies.size();
-        for (std::size_t i = bodies.size(); i-- > 0;) {
-            if (place[i] == bodies.size() && (next == bodies.size() || is_end(i) || !is_end(next))) next = i;
-        }
-        put(next);
-        for (bool found = true; found;) {
-            found = false;
-            for (const RigScene::Link& link : links) {
-                const std::size_t last = rig.bodies.size() - 1;
-                const bool from_first = place[link.first] == last, from_second = place[link.second] == last;
-                const std::size_t other = from_first ? link.second : link.first;
-                if ((!from_first && !from_second) || place[other] != bodies.size()) continue;
-                put(other);
-                found = true;
-                break;
-            }
-        }
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (const RigScene::Link& link : links) pairs.emplace_back(link.first, link.second);
+    std::vector<std::size_t> place(bodies.size());  // the new position of each body
+    for (const std::size_t body : neighbours(bodies.size(), pairs)) {
+        place[body] = rig.bodies.size();
+        rig.bodies.push_back(std::move(bodies[body]));
     }
     for (RigScene::Link& link : links) link.first = place[link.first], link.second = place[link.second];
     rig.links = std::move(links);

@@ -1,0 +1,46 @@
+#include "plots/neighbours.hpp"
+
+#include <algorithm>
+
+namespace dinal::plots {
+namespace {
+
+using Pair = std::pair<std::size_t, std::size_t>;
+
+/// How well a row of bodies begins with this one: 2 if it is an end that drives, 1 if it is an end.
+int merit(std::size_t body, std::span<const Pair> links) {
+    const auto named = std::count_if(links.begin(), links.end(),
+                                     [body](const Pair& link) { return link.first == body || link.second == body; });
+    const bool driven =
+        std::any_of(links.begin(), links.end(), [body](const Pair& link) { return link.second == body; });
+    return named > 1 ? 0 : driven ? 1 : 2;
+}
+
+}  // namespace
+
+std::vector<std::size_t> neighbours(std::size_t count, std::span<const Pair> links) {
+    std::vector<std::size_t> row;
+    std::vector<bool> placed(count, false);
+    const auto put = [&](std::size_t body) {
+        placed[body] = true;
+        row.push_back(body);
+    };
+    while (row.size() < count) {
+        std::size_t next = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!placed[i] && (next == count || merit(i, links) > merit(next, links))) next = i;
+        }
+        put(next);
+        for (bool found = true; found;) {
+            const auto link = std::find_if(links.begin(), links.end(), [&](const Pair& pair) {
+                return (pair.first == row.back() && !placed[pair.second]) ||
+                       (pair.second == row.back() && !placed[pair.first]);
+            });
+            found = link != links.end();
+            if (found) put(link->first == row.back() ? link->second : link->first);
+        }
+    }
+    return row;
+}
+
+}  // namespace dinal::plots
