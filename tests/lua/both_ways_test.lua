@@ -357,7 +357,6 @@ local different = {
     ["save of the body: header, exact by default"] = exact_of_one,
     ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["steady: line explain, steady"] = writers,
-    ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
 }
 
 -- What has no answer either way, as the sentence of both is the same.

@@ -122,7 +122,7 @@ test("a response is drawn up to its folds, and its rows stay those of the values
         c:plot(merged({ file = file }, options))
         return io.open(file):read("a"):match "<desc>(.-)</desc>"
     end
-    has(description {}, "unstable: a path from (2.5, 2.662) to (1.438,")
+    has(description {}, "unstable: a path from (2.5, 2.662) to (1.44")
     has(description { style = "points" }, #c .. " points")
 end)
 
