@@ -57,8 +57,12 @@ double ForcedSearch::growth_of(const std::vector<Map::Return>& seen) const {
 
 void ForcedSearch::look_beside(const Map::Return& last, int periods) {
     const int returns = std::max(1, periods);
-    const auto found = ClosedSearch(map(), facts_.maps, returns).at_once(last, returns, true);
-    if (found) complete(*found, periods > 0);
+    const auto found_from = [&](const Map::Return& from) {
+        const auto found = ClosedSearch(map(), facts_.maps, returns).at_once(from, returns, true);
+        return found && complete(*found, periods > 0);
+    };
+    if (found_from(last) || periods == 0) return;
+    if (const auto first = begin()) found_from(*first);
 }
 
 double ForcedSearch::largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const {

@@ -22,8 +22,8 @@ protected:
     /// Sets facts_. `at_once`: whether to try Newton's method from the start. If no approach to a motion was seen,
     /// returns where the run has got to.
     std::optional<Map::Return> search(const SteadyQuestion& question, bool at_once);
-    /// Tries Newton's method from there, as the approach may be slow. Of a given number of `periods`, if not 0, a
-    /// motion on which no run stays is better than none.
+    /// Tries Newton's method from there, as the approach may be slow. If a number of `periods` is given, not 0, a
+    /// motion on which no run stays is better than none, also one near the start.
     void look_beside(const Map::Return& last, int periods);
 
     [[nodiscard]] virtual Map& map() = 0;

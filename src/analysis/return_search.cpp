@@ -53,7 +53,7 @@ public:
     ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
         : runs_(question, monitor), chart_(chart_of(runs_)) {}
 
-    SteadyMotion found(bool near);
+    SteadyMotion found();
 
 private:
     Map& map() override { return *returns_; }
@@ -488,12 +488,12 @@ void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) 
     facts_.symmetric = size(before + middle.head(2 * n())) <= alike * size(before);
 }
 
-SteadyMotion ReturnSearch::found(bool near) {
+SteadyMotion ReturnSearch::found() {
     facts_.period = question().repeats.period;
     if (question().settles >= 0) {
         Settling(*this).search();
     } else if (question().repeats.period > 0) {
-        const auto last = search(question(), near || contracts(question()));
+        const auto last = search(question(), contracts(question()));
         if (last) look_beside(*last, question().periods);
     } else {
         cycle();
@@ -582,9 +582,9 @@ std::optional<double> settles_after(const SteadyQuestion& question) {
     return waits ? common : -1;
 }
 
-SteadyMotion motion_by_returns(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
+SteadyMotion motion_by_returns(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const SteadyQuestion asked = for_returns(question);
-    const SteadyMotion motion = ReturnSearch(asked, monitor).found(near);
+    const SteadyMotion motion = ReturnSearch(asked, monitor).found();
     return question.is_plain() || question.joint ? seen_from(question, motion) : motion;
 }
 

@@ -115,6 +115,7 @@ bool operator==(const HeldMode& a, const HeldMode& b) {
         if (x.way != y.way || x.riding != y.riding) return false;
     }
     if (a.mode.leans != b.mode.leans || a.mode.rubs != b.mode.rubs) return false;
+    if (a.mode.sliders != b.mode.sliders || a.mode.presses != b.mode.presses) return false;
     for (std::size_t i = 0; i < a.controllers.size(); ++i) {
         for (std::size_t c = 0; c < a.controllers[i].size(); ++c) {
             if (a.controllers[i][c].on != b.controllers[i][c].on) return false;

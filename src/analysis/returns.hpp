@@ -170,7 +170,7 @@ std::optional<double> settles_after(const SteadyQuestion& question);
 SteadyQuestion for_returns(const SteadyQuestion& question);
 
 /// The motion that a run from the start of the question leads to: of all bodies, or as seen from the joint of the
-/// question. `near`: the start is near the answer, and the motion there is wanted if it is stable.
-SteadyMotion motion_by_returns(const SteadyQuestion& question, bool near, const motion::Monitor& monitor);
+/// question.
+SteadyMotion motion_by_returns(const SteadyQuestion& question, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

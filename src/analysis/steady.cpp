@@ -47,7 +47,7 @@ namespace {
 
 SteadyMotion motion_of(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
     return PeriodMap::applies_to(question) ? motion_by_periods(question, near, monitor)
-                                           : motion_by_returns(question, near, monitor);
+                                           : motion_by_returns(question, monitor);
 }
 
 }  // namespace

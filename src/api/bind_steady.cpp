@@ -198,11 +198,18 @@ std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const Stead
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
     const std::vector<SteadyHandle>& found = others_of(L, s);
     const Steady& all = s->whole ? *s->whole : *s;
-    if (!all.question.is_plain()) return analysis::description_of(all.question, all.motion, found.size());
+    if (all.question.system->bodies.size() > 1) {
+        return analysis::description_of(all.question, all.motion, found.size());
+    }
+    const auto body_of = [](const SteadyHandle& of) { return of->of_all() ? seen_from(of, 0) : of; };
     std::vector<analysis::OtherMotion> others;
     others.reserve(found.size());
-    for (const SteadyHandle& other : found) others.push_back({other->question, other->motion});
-    return analysis::description_of(s->question, s->motion, steady_shape(L, s), others);
+    for (const SteadyHandle& other : found) {
+        const SteadyHandle body = body_of(other);
+        others.push_back({body->question, body->motion});
+    }
+    const SteadyHandle body = body_of(s);
+    return analysis::description_of(body->question, body->motion, steady_shape(L, body), others);
 }
 
 std::string steady_summary(const Steady& s) {
@@ -211,6 +218,9 @@ std::string steady_summary(const Steady& s) {
     const auto number = [](double x, const std::string& unit) {
         return model::with_unit(fmt::format("{:.6g}", x), unit);
     };
+    if (s.of_all() && is_found(s) && s.question.system->bodies.size() == 1) {
+        return steady_summary(*seen_from(std::make_shared<Steady>(s), 0));
+    }
     if (s.of_all() && is_found(s)) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";

@@ -356,7 +356,6 @@ local different = {
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["save of the body: header, exact by default"] = exact_of_one,
     ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
-    ["steady: line explain, steady"] = writers,
 }
 
 -- What has no answer either way, as the sentence of both is the same.
