@@ -150,12 +150,12 @@ double Energy::closure() const {
     return flow > 0 ? std::fabs(total.error()) / flow : 0;
 }
 
-text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose whose) {
-    if (!trajectory.computed && whose != Whose::link) {
+text::Expected<Energy> energy_of(const motion::Run& run, Whose whose) {
+    if (!run.computed && whose != Whose::link) {
         return text::Error{
             "a run that was read from a file has no motion to integrate over: simulate the system again"};
     }
-    const double whole_until = trajectory.course ? trajectory.course->whole_until() : -model::never;
+    const double whole_until = run.course ? run.course->whole_until() : -model::never;
     if (whole_until == -model::never) {
         return text::Error{
             "the energy is integrated over the motion that integrator.exact and integrator.spectral keep: simulate "
@@ -167,19 +167,19 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose who
             "the motion was kept only up to t = {:.6g}, for lack of memory: simulate in parts of at most that length",
             whole_until)};
     }
-    if (!(trajectory.t_stop > trajectory.t_start)) {
+    if (!(run.t_stop > run.t_start)) {
         return text::Error{"there is no motion to integrate over: the run ended where it started"};
     }
-    const Store store(trajectory.course->system(), whose);
-    const std::vector<Stretch> cut = half_cycles(trajectory);
+    const Store store(run.course->system(), whose);
+    const std::vector<Stretch> cut = half_cycles(run);
     Bookkeeper books(store, cut);
-    trajectory.course->legs([&books](const motion::Leg& leg) { books.add(leg); });
-    Energy energy = books.finish(trajectory.initial);
-    energy.t_start = trajectory.t_start;
-    energy.t_end = trajectory.t_stop;
+    run.course->legs([&books](const motion::Leg& leg) { books.add(leg); });
+    Energy energy = books.finish(run.initial);
+    energy.t_start = run.t_start;
+    energy.t_end = run.t_stop;
     energy.finish = store.at(cut.back().end);
     energy.finish.spring += energy.total.work.kept;
-    energy.total = {energy.total.work, store.change(trajectory.initial, cut.back().end)};
+    energy.total = {energy.total.work, store.change(run.initial, cut.back().end)};
     energy.whose = whose;
     if (!std::isfinite(energy.flow) || !std::isfinite(energy.total.error())) {
         return text::Error{
@@ -201,29 +201,29 @@ Energy sum_of(std::vector<Energy> joints) {
     return sum;
 }
 
-Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose) {
-    const Store store(trajectory.course->system(), whose);
-    const auto t = trajectory.column(motion::Column::t), theta = trajectory.column(motion::Column::theta),
-               velocity = trajectory.column(motion::Column::velocity);
-    Eigen::MatrixXd columns(trajectory.size(), energy_column_count);
+Eigen::MatrixXd energy_columns(const motion::Run& run, Whose whose) {
+    const Store store(run.course->system(), whose);
+    const auto t = run.column(motion::Column::t), theta = run.column(motion::Column::theta),
+               velocity = run.column(motion::Column::velocity);
+    Eigen::MatrixXd columns(run.size(), energy_column_count);
     Eigen::Index row = 0;
     const auto put = [&](WorkSum sum, const Work& last) {
         sum.add(last);
         const model::State y{theta[row], velocity[row]};
         const Stored s = store.at(y);
-        const Balance balance{sum.value(), store.change(trajectory.initial, y)};
+        const Balance balance{sum.value(), store.change(run.initial, y)};
         columns.row(row++) << balance.work.input, s.kinetic, s.spring + balance.work.kept, balance.work.viscous,
             balance.work.dry, balance.error(), balance.work.belt, balance.work.base, balance.work.acts,
             balance.work.impacts;
     };
     WorkSum before;
-    trajectory.course->legs([&](const motion::Leg& leg) {
-        while (row < trajectory.size() && leg.since_start(t[row]) < leg.length()) {
+    run.course->legs([&](const motion::Leg& leg) {
+        while (row < run.size() && leg.since_start(t[row]) < leg.length()) {
             put(before, leg.work(leg.since_start(t[row])));
         }
         before.add(leg.work(leg.length()));
     });
-    while (row < trajectory.size()) put(before, {});
+    while (row < run.size()) put(before, {});
     return columns;
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "model/units.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::analysis {
@@ -64,7 +64,7 @@ struct Energy {
 };
 
 /// Fails if the run has not kept its motion.
-text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose whose = Whose::all);
+text::Expected<Energy> energy_of(const motion::Run& run, Whose whose = Whose::all);
 
 /// The balance of a whole run from those of its joints; the work between joints cancels. Has half cycles only for a
 /// single joint.
@@ -73,7 +73,7 @@ Energy sum_of(std::vector<Energy> joints);
 /// The balance at each row: work since t_start and stored energy. Requires that energy_of() succeeded.
 enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error, belt, base, acts, impacts };
 inline constexpr int energy_column_count = 10;
-Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose = Whose::all);
+Eigen::MatrixXd energy_columns(const motion::Run& run, Whose whose = Whose::all);
 
 /// The balance as a small table, for people.
 std::string text(const Energy& energy, const model::Units& units = {});

@@ -43,7 +43,7 @@ const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
 double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool undisturbed) {
     if (undisturbed) return seen.has_spring() ? seen.natural_period() : 1;
     const double shortest = whole.system.shortest_natural_period();
-    const motion::Trajectory& run = *whole.parts.front();
+    const motion::Run& run = *whole.parts.front();
     return std::isfinite(shortest) ? shortest : run.t_stop - run.t_start;
 }
 
@@ -650,7 +650,7 @@ private:
     const model::Joint& joint_;
     bool is_link_;
     bool undisturbed_;  // whether no link disturbs it
-    const motion::Trajectory& run_;
+    const motion::Run& run_;
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
     const model::Excitation& belt_;
@@ -775,7 +775,7 @@ private:
 
     const RunToTell& whole_;
     const model::System& system_;
-    const motion::Trajectory& run_;
+    const motion::Run& run_;
 };
 
 }  // namespace
@@ -784,27 +784,25 @@ std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
     return WholeStory(run).build_text(energies);
 }
 
-std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
+std::string explain(const motion::Run& run, const model::Oscillator& system, const model::Drive& drive,
                     motion::MethodView method) {
     const auto whole = model::as_system(system);
-    return explain({.system = whole, .drive = drive, .parts = {&trajectory}, .method = method});
+    return explain({.system = whole, .drive = drive, .parts = {&run}, .method = method});
 }
 
-std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units) {
-    const auto t = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
-    std::string text = fmt::format("This run was read from a file: {}", motion::summary(trajectory)) + ".";
+std::string explain_rows(const motion::Run& run, const model::Units& units) {
+    const auto t = run.find("t"), theta = run.find("theta"), velocity = run.find("velocity");
+    std::string text = fmt::format("This run was read from a file: {}", motion::summary(run)) + ".";
     if (!units.usual()) text += fmt::format(" It has {}.", units.in_words());
-    if (theta && trajectory.size() > 0) {
+    if (theta && run.size() > 0) {
         Eigen::Index low = 0, high = 0;
-        const auto column = trajectory.rows.col(*theta);
+        const auto column = run.rows.col(*theta);
         const double least = column.minCoeff(&low), most = column.maxCoeff(&high);
-        const auto when = [&](Eigen::Index row) {
-            return t ? fmt::format(" (t = {:.6g})", trajectory.rows(row, *t)) : "";
-        };
+        const auto when = [&](Eigen::Index row) { return t ? fmt::format(" (t = {:.6g})", run.rows(row, *t)) : ""; };
         text += fmt::format(" theta goes from {:.5g}{} to {:.5g}{}.", least, when(low), most, when(high));
     }
-    if (velocity && trajectory.size() > 0) {
-        const auto v = trajectory.rows.col(*velocity);
+    if (velocity && run.size() > 0) {
+        const auto v = run.rows.col(*velocity);
         std::size_t changes = 0, still = 0;
         double before = 0;
         for (const double now : v) {

@@ -11,14 +11,14 @@
 #include "model/oscillator.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/method.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 
 namespace dinal::analysis {
 
 struct RunToTell {
     const model::System& system;
     const model::Drive& drive;
-    std::vector<const motion::Trajectory*> parts;  ///< the run seen from each body and link
+    std::vector<const motion::Run*> parts;  ///< the run seen from each body and link
     motion::MethodView method;
     std::optional<std::size_t> joint = {};  ///< limits the text to this joint
 };
@@ -28,10 +28,10 @@ std::string explain(const RunToTell& run, const std::vector<Energy>& energies = 
 
 /// Describes one body, in paragraphs that fit 80 columns. In a long run only the first and last stops are listed. Calls
 /// no user function except those of spring, belt and base.
-std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive,
+std::string explain(const motion::Run& run, const model::Oscillator& system, const model::Drive& drive,
                     motion::MethodView method);
 
-/// Describes the rows of a trajectory read from a file.
-std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units = {});
+/// Describes the rows of a run read from a file.
+std::string explain_rows(const motion::Run& run, const model::Units& units = {});
 
 }  // namespace dinal::analysis

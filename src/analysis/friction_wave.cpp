@@ -15,7 +15,7 @@ bool is_linear_but_for_friction(const SteadyQuestion& question) {
 }
 
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
-                                       const motion::Trajectory& run, std::complex<double> M_wave) {
+                                       const motion::Run& run, std::complex<double> M_wave) {
     const model::Lowered system(question.body);
     const Repetition& repeats = question.repeats;
     const double omega = 2 * std::numbers::pi / repeats.period, length = run.t_stop - run.t_start;

@@ -18,7 +18,7 @@ struct Fundamental {
 /// Mean and fundamental of theta from a run of one period, or of half a period if symmetric. `M_wave` is the
 /// fundamental of M. Requires is_linear_but_for_friction(); none if friction nearly cancels M.
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
-                                       const motion::Trajectory& run, std::complex<double> M_wave);
+                                       const motion::Run& run, std::complex<double> M_wave);
 
 /// Returns whether the system is linear except for Coulomb friction, so that by_friction() applies.
 bool is_linear_but_for_friction(const SteadyQuestion& question);

@@ -248,8 +248,8 @@ private:
     }
 
     /// A run with a row for each of the first samples; none if it ends before them.
-    [[nodiscard]] std::optional<motion::Trajectory> driven(const model::Oscillator& system, const model::Excitation& M,
-                                                           const model::State& initial, std::size_t rows) {
+    [[nodiscard]] std::optional<motion::Run> driven(const model::Oscillator& system, const model::Excitation& M,
+                                                    const model::State& initial, std::size_t rows) {
         const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
         motion::Limits limits;
         limits.dense = false;

@@ -5,14 +5,11 @@
 
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
-#include "motion/engine/part.hpp"
+#include "motion/simulate.hpp"
 #include "motion/spectral/spectral.hpp"
 #include "motion/stillness.hpp"
 
 namespace dinal::analysis {
-
-namespace engine = motion::engine;
-using motion::Trajectory;
 
 SteadyQuestion for_returns(const SteadyQuestion& question) {
     SteadyQuestion asked = question;
@@ -31,7 +28,7 @@ std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, c
     return asked;
 }
 
-void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {
+void tell_of_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion) {
     motion.start = run.initial;
     motion.low = motion.high = run.initial.theta;
     motion.t_high = run.t_start;
@@ -64,7 +61,7 @@ void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMo
 }
 
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
-                       std::shared_ptr<const motion::Trajectory> run) {
+                       std::shared_ptr<const motion::Run> run) {
     const model::System& system = *question.system;
     const std::size_t joint = question.joint.value_or(0);
     const model::Joint& seen = system.joints[joint];
@@ -108,10 +105,10 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
 }
 
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion) {
-    std::shared_ptr<const Trajectory> run;
+    std::shared_ptr<const motion::Run> run;
     if (const auto& period = motion.by_returns.of_bodies) {
-        run = std::make_shared<const Trajectory>(engine::part_with_rows(*question.system, period->drive, period->run,
-                                                                        question.joint.value_or(0), question.body));
+        run = std::make_shared<const motion::Run>(
+            motion::part_of(*question.system, period->drive, period->run, question.joint.value_or(0)));
     }
     return seen_from(question, motion, std::move(run));
 }

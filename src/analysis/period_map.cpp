@@ -115,7 +115,7 @@ MapStep PeriodMap::computed(const Place& from) const {
     return step;
 }
 
-MapStep PeriodMap::step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
+MapStep PeriodMap::step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const {
     MapStep step;
     step.outcome = run.outcome;
     const double begins = run.t_start, ends = run.t_stop, first = run.initial.theta;

@@ -84,7 +84,7 @@ public:
 private:
     PeriodMap(const SteadyQuestion& question, double length, double sign, const motion::Monitor& monitor);
     [[nodiscard]] MapStep computed(const Place& from) const;
-    [[nodiscard]] MapStep step_of_run(const motion::Trajectory& run, const std::vector<Stretch>& parts) const;
+    [[nodiscard]] MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
     void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
     [[nodiscard]] Eigen::Matrix2d free_motion(double length) const;
     [[nodiscard]] double slope_before(double t) const;

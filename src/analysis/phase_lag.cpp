@@ -15,8 +15,8 @@ constexpr int least_rows = 100;       // rows in a period, if only rows are avai
 constexpr double least_share = 1e-6;  // a smaller part of a fundamental in the whole is rounding
 
 /// M between rows, by linear interpolation.
-double M_between_rows(const motion::Trajectory& trajectory, double t) {
-    const auto times = trajectory.column(motion::Column::t), M = trajectory.column(motion::Column::M);
+double M_between_rows(const motion::Run& run, double t) {
+    const auto times = run.column(motion::Column::t), M = run.column(motion::Column::M);
     const double* begin = times.data();
     const Eigen::Index n = times.size();
     const Eigen::Index i = std::clamp<Eigen::Index>(std::upper_bound(begin, begin + n, t) - begin, 1, n - 1);
@@ -24,8 +24,8 @@ double M_between_rows(const motion::Trajectory& trajectory, double t) {
     return M[i - 1] + s * (M[i] - M[i - 1]);
 }
 
-bool rows_cover(const motion::Trajectory& trajectory, double from, double until) {
-    const auto t = trajectory.column(motion::Column::t);
+bool rows_cover(const motion::Run& run, double from, double until) {
+    const auto t = run.column(motion::Column::t);
     const Eigen::Index n = t.size();
     if (n < 2 || t[0] > from || t[n - 1] < until) return false;
     const double* begin = t.data();
@@ -34,19 +34,19 @@ bool rows_cover(const motion::Trajectory& trajectory, double from, double until)
 
 }  // namespace
 
-std::optional<double> phase_lag(const motion::Trajectory& trajectory, const model::Excitation& excitation,
-                                double period, double until) {
+std::optional<double> phase_lag(const motion::Run& run, const model::Excitation& excitation, double period,
+                                double until) {
     if (excitation.has_feedback()) return {};
-    const double from = std::max(until - period, trajectory.t_start);
-    const bool kept = trajectory.course && trajectory.course->whole_until() == model::never;
-    if ((!kept || excitation.has_script()) && !rows_cover(trajectory, from, until)) return {};
+    const double from = std::max(until - period, run.t_start);
+    const bool kept = run.course && run.course->whole_until() == model::never;
+    if ((!kept || excitation.has_script()) && !rows_cover(run, from, until)) return {};
     std::complex<double> theta_sum, M_sum;
     double theta_size = 0, M_size = 0;
     for (int i = 0; i < samples; ++i) {
         const double phase = (i + 0.5) / samples;
         const double t = std::min(from + phase * period, until);
-        const double theta = (kept ? trajectory.course->at(t) : motion::between_rows(trajectory, t))->theta;
-        const double M = excitation.has_script() ? M_between_rows(trajectory, t) : excitation.value(t);
+        const double theta = (kept ? run.course->at(t) : motion::between_rows(run, t))->theta;
+        const double M = excitation.has_script() ? M_between_rows(run, t) : excitation.value(t);
         const auto wave = std::polar(1.0, -2 * pi * phase);
         theta_sum += theta * wave, M_sum += M * wave;
         theta_size += std::fabs(theta), M_size += std::fabs(M);

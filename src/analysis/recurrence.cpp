@@ -83,8 +83,7 @@ private:
 
 }  // namespace
 
-std::vector<model::Event> events_of_motion(const motion::Trajectory& run,
-                                           const std::vector<model::WantedEvent>& wanted) {
+std::vector<model::Event> events_of_motion(const motion::Run& run, const std::vector<model::WantedEvent>& wanted) {
     std::vector<model::Event> events(run.events.begin(), run.events.end());
     std::erase_if(events, [&wanted](const model::Event& e) {
         return e.user >= 0 && wanted[static_cast<std::size_t>(e.user)].act == nullptr;

@@ -24,8 +24,7 @@ struct Recurrence {
 };
 
 /// The events of a run except user events without an action, which do not affect the motion.
-std::vector<model::Event> events_of_motion(const motion::Trajectory& run,
-                                           const std::vector<model::WantedEvent>& wanted);
+std::vector<model::Event> events_of_motion(const motion::Run& run, const std::vector<model::WantedEvent>& wanted);
 
 std::optional<Recurrence> recurrence(std::span<const model::Event> events);
 

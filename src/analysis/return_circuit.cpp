@@ -9,7 +9,8 @@
 #include "analysis/branch.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
-#include "motion/engine/part.hpp"
+#include "motion/engine/left.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -35,7 +36,7 @@ public:
         period_ = motion.period;
         Moment begin = Runs(asked, monitor).first();
         if (const auto& period = motion.by_returns.of_bodies) {
-            begin.y = vector_of(period->run.history->at(period->run.t_start));
+            begin.y = vector_of(period->run.left->history->at(period->run.t_start));
         }
         begin.y = there_ = chart_->measured(begin.y);  // rotating bodies begin at 0, where angles are exact
         if (!cycles_) {
@@ -100,15 +101,16 @@ public:
         note_family(motion);
         constexpr int rows = 64;  // the range is read from them, and turns are searched between them
         auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.by_returns.drive, {}});
-        period->run = here.runs.run(begin, start(here), start(here) + motion.period,
-                                    motion::Grid::every(motion.period / rows), true);
-        const Runs::Run& run = period->run;
+        period->run = motion::completed(system, period->drive,
+                                        here.runs.run(begin, start(here), start(here) + motion.period,
+                                                      motion::Grid::every(motion.period / rows), true));
+        const motion::Run& run = period->run;
         if (run.contradiction) motion.contradiction = run.contradiction;
         if (!model::is_whole(run.outcome)) return motion;
         motion.outcome = run.outcome;
         motion.bodies = bodies_of(run, *chart_, reach_of_rows(run, *chart_));
-        const auto seen = std::make_shared<const motion::Trajectory>(motion::engine::part_with_rows(
-            system, period->drive, run, here.question.joint.value_or(0), here.question.body));
+        const auto seen = std::make_shared<const motion::Run>(
+            motion::part_of(system, period->drive, run, here.question.joint.value_or(0)));
         motion.by_returns.of_bodies = std::move(period);
         return seen_from(here.question, motion, seen);
     }

@@ -75,17 +75,17 @@ private:
     /// period later; none if it cannot be run, and the search continues.
     std::optional<VectorXd> complete(const Moment& moment, double start);
     /// The same for a run that has settled up to its end and repeats after facts_.period.
-    std::optional<VectorXd> complete_settled(const Runs::Run& so_far);
-    std::optional<VectorXd> complete_period(const Moment& from, Runs::Run run, double period);
+    std::optional<VectorXd> complete_settled(const motion::Run& so_far);
+    std::optional<VectorXd> complete_period(const Moment& from, motion::Run run, double period);
     /// Completes the answer for bodies that rest or rotate steadily; `stands`: friction holds all.
-    void complete_rest(const Runs::Run& run, bool stands);
+    void complete_rest(const motion::Run& run, bool stands);
 
     [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
     [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
     /// The period of M, or the slowest natural period.
     [[nodiscard]] double pace() const;
 
-    std::optional<Runs::Run> stretch(const Moment& from, double start, double length, Reach& reach);
+    std::optional<motion::Run> stretch(const Moment& from, double start, double length, Reach& reach);
     [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
     class Settling;
     void cycle();
@@ -93,8 +93,8 @@ private:
         return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
     }
     bool closes_from(const Moment& now, const Reach& reach, double length, int i);
-    bool rests(const Runs::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
-    void note_rest(const Runs::Run& run, bool stands);
+    bool rests(const motion::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
+    void note_rest(const motion::Run& run, bool stands);
     bool complete_closed(Returns& map, const Closed& found, bool any);
     void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
 
@@ -113,8 +113,8 @@ double ReturnSearch::pace() const {
 }
 
 /// Runs a stretch; none if it failed, with the reason in the answer.
-std::optional<Runs::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
-    Runs::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
+std::optional<motion::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
+    motion::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
     facts_.outcome = run.outcome;
     reach = reach_of(run, chart_);
     constexpr double beyond = 1e100, no_number = 1e50;  // above no_number the motion is blamed for a NaN in M
@@ -232,7 +232,7 @@ private:
         const double start = t_;
         t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
                          : start + stretch_;
-        run_ = s_.runs_.go_on(run_.carry, start, t_, motion::Grid::none(), passage_);
+        run_ = s_.runs_.go_on(run_, start, t_, motion::Grid::none(), passage_);
         SteadyMotion& facts = s_.facts_;
         facts.outcome = run_.outcome;
         const Reach reach = reach_of(run_, s_.chart_, timeless_ && length_ > 0 ? 4 : 64);
@@ -293,9 +293,9 @@ private:
     /// The observed numbers: measured angles and velocities, states, outputs of controllers, and the duration of the
     /// return. Other memory of controllers is not observed, so more than one return must agree.
     [[nodiscard]] VectorXd seen(double time) const {
-        const VectorXd y = s_.chart_.measured(vector_of(run_.carry->y));
+        const VectorXd y = s_.chart_.measured(vector_of(run_.left->carry->y));
         std::vector<double> all(y.begin(), y.end());
-        for (const auto& controllers : run_.carry->controllers) {
+        for (const auto& controllers : run_.left->carry->controllers) {
             for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
         }
         all.push_back(length_ > 0 ? 1 : time);
@@ -343,7 +343,7 @@ private:
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
         facts.stable = true;
-        if (beside_ > 0) run_ = s_.runs_.go_on(run_.carry, t_, t_ - beside_ + length_, motion::Grid::none());
+        if (beside_ > 0) run_ = s_.runs_.go_on(run_, t_, t_ - beside_ + length_, motion::Grid::none());
         if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
@@ -367,7 +367,7 @@ private:
     double t_;
     std::optional<model::WantedEvent> passage_;
     int looks_ = 0;               // number of sections tried
-    Runs::Run run_;               // the last run
+    motion::Run run_;             // the last run
     std::vector<double> sizes_;   // sizes of all runs
     std::size_t small_ = 0;       // number of last runs with hardly any motion
     std::vector<VectorXd> seen_;  // at each return,
@@ -424,12 +424,12 @@ bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double len
 }
 
 /// Detects a rest of an autonomous system: standing, or steady rotation with all other numbers constant.
-bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const VectorXd& most_changed) {
+bool ReturnSearch::rests(const motion::Run& run, const VectorXd& range, const VectorXd& most_changed) {
     const bool stands = run.outcome == model::Outcome::at_rest ||
                         (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
     bool still = true, still_states = true;
     for (Index k = 0; k < range.size(); ++k) {
-        const double size = std::max(most_changed[k], std::fabs(run.carry->y[static_cast<std::size_t>(k)]));
+        const double size = std::max(most_changed[k], std::fabs(run.left->carry->y[static_cast<std::size_t>(k)]));
         const bool own = !chart_.measures(k) || range[k] <= 1e-11 * size;
         still = still && own;
         if (k >= 2 * n()) still_states = still_states && own;
@@ -441,7 +441,7 @@ bool ReturnSearch::rests(const Runs::Run& run, const VectorXd& range, const Vect
     return stands || still || rides;
 }
 
-void ReturnSearch::note_rest(const Runs::Run& run, bool stands) {
+void ReturnSearch::note_rest(const motion::Run& run, bool stands) {
     facts_.period = 0;
     facts_.stable = true;
     facts_.status = SteadyStatus::rest;
@@ -511,21 +511,21 @@ SteadyMotion ReturnSearch::found() {
 std::optional<VectorXd> ReturnSearch::complete(const Moment& moment, double start) {
     const double period = facts_.period;
     constexpr double rows = 400;
-    Runs::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
+    motion::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
     if (!model::is_whole(run.outcome)) return {};
     facts_.by_returns.drive = std::make_shared<const model::Drive>(runs_.from(moment, start));
     return complete_period(moment, std::move(run), period);
 }
 
-std::optional<VectorXd> ReturnSearch::complete_settled(const Runs::Run& so_far) {
+std::optional<VectorXd> ReturnSearch::complete_settled(const motion::Run& so_far) {
     const double period = facts_.period, t = so_far.t_stop;
     constexpr double rows = 400;
-    Runs::Run run = runs_.go_on(so_far.carry, t, t + period, motion::Grid::every(period / rows));
+    motion::Run run = runs_.go_on(so_far, t, t + period, motion::Grid::every(period / rows));
     if (!model::is_whole(run.outcome)) return {};
     return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }
 
-void ReturnSearch::complete_rest(const Runs::Run& run, bool stands) {
+void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
     const Moment now = Runs::at_stop(run);
     const auto velocity = now.y.segment(n(), n());
     const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
@@ -540,7 +540,7 @@ void ReturnSearch::complete_rest(const Runs::Run& run, bool stands) {
 }
 
 /// Completes the answer with a run that is one period from this moment.
-std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, Runs::Run run, double period) {
+std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, motion::Run run, double period) {
     const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
@@ -550,9 +550,10 @@ std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, Runs::
     facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
     facts_.period = moves || forced ? period : 0;
     facts_.bodies = bodies_of(run, chart_, reach);
-    const std::vector<double> middle = run.history->at(run.t_start + period / 2);
+    const std::vector<double> middle = run.left->history->at(run.t_start + period / 2);
     auto whole = std::make_shared<PeriodOfBodies>();
-    whole->drive = runs_.from(from, run.t_start), whole->run = std::move(run);
+    whole->drive = runs_.from(from, run.t_start);
+    whole->run = motion::completed(runs_.system(), whole->drive, std::move(run));
     facts_.by_returns.of_bodies = std::move(whole);
     return vector_of(middle);
 }

@@ -185,8 +185,8 @@ model::Drive Runs::from(const Moment& moment, double start) const {
     return drive;
 }
 
-Runs::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
-                    const std::optional<model::WantedEvent>& section) {
+motion::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+                      const std::optional<model::WantedEvent>& section) {
     model::Drive drive = this->from(from, start);
     if (section) drive.events.push_back(*section);
     std::shared_ptr<engine::Carry> before;
@@ -198,9 +198,11 @@ Runs::Run Runs::run(const Moment& from, double start, double end, const motion::
     return run(drive, start, end, rows, dense, before);
 }
 
-Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start, double end, const motion::Grid& rows,
-                      const std::optional<model::WantedEvent>& section) {
-    if (!section) return run(question_.drive, start, end, rows, true, std::move(before));
+motion::Run Runs::go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
+                        const std::optional<model::WantedEvent>& section) {
+    if (!section) {
+        return run(question_.drive, start, end, rows, true, before.left == nullptr ? nullptr : before.left->carry);
+    }
     model::Drive drive = question_.drive;
     drive.events.push_back(*section);
     const auto unwatched = [](const engine::Carry& carry) {  // without the user's events, which other runs do not have
@@ -208,38 +210,40 @@ Runs::Run Runs::go_on(std::shared_ptr<const engine::Carry> before, double start,
         copy->watches.clear();
         return copy;
     };
-    Run result = run(drive, start, end, rows, true, unwatched(*before));
-    result.carry = unwatched(*result.carry);
+    motion::Run result = run(drive, start, end, rows, true, unwatched(*before.left->carry));
+    auto left = std::make_shared<engine::Left>(*result.left);
+    left->carry = unwatched(*left->carry);
+    result.left = std::move(left);
     return result;
 }
 
-Runs::Run Runs::run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
-                    std::shared_ptr<const engine::Carry> before) {
+motion::Run Runs::run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
+                      std::shared_ptr<const engine::Carry> before) {
     motion::Limits limits;
     limits.dense = dense;
     const motion::Window window{start, end};
     const motion::Grid grid = rows.within(window).value();
-    Run result = engine::run({.system = system(),
-                              .drive = drive,
-                              .window = window,
-                              .rows = grid,
-                              .monitor = monitor_,
-                              .limits = limits,
-                              .before = std::move(before),
-                              .longest = question_.longest,
-                              .keeps_torques = grid.count() > 0});  // only users see those with rows
+    motion::Run result = engine::run({.system = system(),
+                                      .drive = drive,
+                                      .window = window,
+                                      .rows = grid,
+                                      .monitor = monitor_,
+                                      .limits = limits,
+                                      .before = std::move(before),
+                                      .longest = question_.longest,
+                                      .keeps_torques = grid.count() > 0});  // only users see those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
     // A spring may overflow in a diverging motion; a function that fails has been reported.
     const bool flew_away = result.outcome == model::Outcome::excitation_not_finite && question_.is_plain() &&
                            !question_.body.spring().none() && !question_.drive.M().has_feedback() &&
                            question_.drive.states.empty();
     if (flew_away) result.outcome = model::Outcome::state_not_finite;
-    floor_ = result.carry->floor;
+    floor_ = result.left->carry->floor;
     return result;
 }
 
-Moment Runs::at_stop(const Run& run) {
-    return {vector_of(run.carry->y), HeldMode{run.carry->mode, run.carry->controllers}};
+Moment Runs::at_stop(const motion::Run& run) {
+    return {vector_of(run.left->carry->y), HeldMode{run.left->carry->mode, run.left->carry->controllers}};
 }
 
 double Runs::natural_period() const {
@@ -383,7 +387,7 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
 }
 
 void Returns::once(const Moment& from, Return& sum) {
-    const Runs::Run run = runs_.run(from, start_, start_ + length_, motion::Grid::none(), false, passage_);
+    const motion::Run run = runs_.run(from, start_, start_ + length_, motion::Grid::none(), false, passage_);
     sum.outcome = run.outcome;
     sum.finished = section_ ? run.outcome == model::Outcome::stopped : model::is_whole(run.outcome);
     sum.time += run.t_stop - start_;
@@ -397,26 +401,27 @@ void Returns::once(const Moment& from, Return& sum) {
     sum.finished = sum.to.allFinite();
 }
 
-Reach reach_of(const Runs::Run& run, const Chart& chart, int looks) {
+Reach reach_of(const motion::Run& run, const Chart& chart, int looks) {
     Reach reach;
     for (int i = 0; i <= looks; ++i) {
         const double part = static_cast<double>(i) / looks;
-        const VectorXd x = chart.measured(vector_of(run.history->at(run.t_start + part * (run.t_stop - run.t_start))));
+        const VectorXd x =
+            chart.measured(vector_of(run.left->history->at(run.t_start + part * (run.t_stop - run.t_start))));
         reach.low = i == 0 ? x : VectorXd(reach.low.cwiseMin(x));
         reach.high = i == 0 ? x : VectorXd(reach.high.cwiseMax(x));
     }
     return reach;
 }
 
-Reach reach_of_rows(const Runs::Run& run, const Chart& chart) {
+Reach reach_of_rows(const motion::Run& run, const Chart& chart) {
     const auto n = static_cast<Index>(chart.bodies());
     Reach reach;
     VectorXd y(2 * n);
-    for (std::size_t row = 0; row < run.table.size(); ++row) {
+    for (std::size_t row = 0; row < run.rows.table().size(); ++row) {
         for (Index i = 0; i < n; ++i) {
             const std::size_t theta = 1 + engine::columns_of_body * static_cast<std::size_t>(i);
-            y[i] = run.table(row, theta);
-            y[n + i] = run.table(row, theta + 1);
+            y[i] = run.rows.table()(row, theta);
+            y[n + i] = run.rows.table()(row, theta + 1);
         }
         const VectorXd x = chart.measured(y);
         if (row == 0) reach = {x, x};
@@ -440,14 +445,14 @@ Index widest_of(const Reach& reach, const Chart& chart, Index bodies) {
     return widest;
 }
 
-std::vector<BodyMotion> bodies_of(const Runs::Run& run, const Chart& chart, const Reach& reach) {
-    const std::vector<double> before = run.history->at(run.t_start);
+std::vector<BodyMotion> bodies_of(const motion::Run& run, const Chart& chart, const Reach& reach) {
+    const std::vector<double> before = run.left->history->at(run.t_start);
     const auto n = static_cast<Index>(chart.bodies());
     std::vector<BodyMotion> bodies;
     for (Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double fastest = std::max(std::fabs(reach.low[n + i]), std::fabs(reach.high[n + i]));
-        const double turned = chart.goes_round(i) ? run.carry->y[k] - before[k] : 0;
+        const double turned = chart.goes_round(i) ? run.left->carry->y[k] - before[k] : 0;
         const bool turns = std::fabs(turned) > 1e-6 * (run.t_stop - run.t_start) * fastest;
         bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, before[k]});
     }

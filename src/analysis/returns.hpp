@@ -11,7 +11,7 @@
 
 #include "analysis/map.hpp"
 #include "analysis/steady.hpp"
-#include "motion/engine/run.hpp"
+#include "motion/engine/left.hpp"
 
 namespace dinal::analysis {
 
@@ -24,7 +24,6 @@ struct Moment {
 /// Runs of the question from any moment.
 class Runs {
 public:
-    using Run = motion::engine::Run;
     Runs(const SteadyQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
 
     [[nodiscard]] const SteadyQuestion& question() const { return question_; }
@@ -34,20 +33,20 @@ public:
     [[nodiscard]] Moment first() const;
     /// The drive of a run that begins at this moment and time.
     [[nodiscard]] model::Drive from(const Moment& moment, double start) const;
-    [[nodiscard]] Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
-                          const std::optional<model::WantedEvent>& section = {});
-    /// Continues another run with the memory of its controllers and delays; null: from the start.
-    [[nodiscard]] Run go_on(std::shared_ptr<const motion::engine::Carry> before, double start, double end,
-                            const motion::Grid& rows, const std::optional<model::WantedEvent>& section = {});
-    [[nodiscard]] static Moment at_stop(const Run& run);
+    [[nodiscard]] motion::Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+                                  const std::optional<model::WantedEvent>& section = {});
+    /// Continues another run with the memory of its controllers and delays; an empty one: from the start.
+    [[nodiscard]] motion::Run go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
+                                    const std::optional<model::WantedEvent>& section = {});
+    [[nodiscard]] static Moment at_stop(const motion::Run& run);
     /// The longest natural period of a body on the stiffness around it; 0 without stiffness.
     [[nodiscard]] double natural_period() const;
     /// The directions in which a moment may be disturbed without leaving its mode: orthonormal columns.
     [[nodiscard]] Eigen::MatrixXd allowed(const HeldMode& mode, Eigen::Index size) const;
 
 private:
-    [[nodiscard]] Run run(const model::Drive& drive, double start, double end, const motion::Grid& rows, bool dense,
-                          std::shared_ptr<const motion::engine::Carry> before);
+    [[nodiscard]] motion::Run run(const model::Drive& drive, double start, double end, const motion::Grid& rows,
+                                  bool dense, std::shared_ptr<const motion::engine::Carry> before);
 
     const SteadyQuestion& question_;
     const motion::Monitor& monitor_;
@@ -134,13 +133,13 @@ struct Reach {
     Eigen::VectorXd low, high;
     [[nodiscard]] Eigen::VectorXd range() const { return high - low; }
 };
-Reach reach_of(const Runs::Run& run, const Chart& chart, int looks = 512);
+Reach reach_of(const motion::Run& run, const Chart& chart, int looks = 512);
 /// The same from the rows of a run, for angles and velocities only.
-Reach reach_of_rows(const Runs::Run& run, const Chart& chart);
+Reach reach_of_rows(const motion::Run& run, const Chart& chart);
 /// The angle with the greatest relative change, or a velocity if no angle is measured; -1: nothing changes.
 Eigen::Index widest_of(const Reach& reach, const Chart& chart, Eigen::Index bodies);
 /// The motion of each body in a run of one period, or its rest or steady rotation.
-std::vector<BodyMotion> bodies_of(const Runs::Run& run, const Chart& chart, const Reach& reach);
+std::vector<BodyMotion> bodies_of(const motion::Run& run, const Chart& chart, const Reach& reach);
 std::vector<BodyMotion> bodies_at(const Eigen::VectorXd& y, const Chart& chart, Eigen::Index n);
 
 inline constexpr double largest_stable = 1 + 1e-5;  ///< greatest stable multiplier

@@ -14,7 +14,8 @@
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
-#include "motion/engine/run.hpp"
+#include "motion/run.hpp"
+#include "motion/simulate.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::analysis {
@@ -63,12 +64,12 @@ struct BodyMotion {
 /// One period of several bodies.
 struct PeriodOfBodies {
     model::Drive drive;
-    motion::engine::Run run;
+    motion::Run run;
 };
 
 /// The runs of a motion found by returns; empty for any other.
 struct FoundByReturns {
-    std::shared_ptr<const motion::Trajectory> run = {};    ///< one period of the body or link of interest
+    std::shared_ptr<const motion::Run> run = {};           ///< one period of the body or link of interest
     std::shared_ptr<const SteadyQuestion> question = {};   ///< begins with the motion; null: `run` ends a longer one
     std::shared_ptr<const model::Drive> drive = {};        ///< of a run that is periodic from its start
     std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest

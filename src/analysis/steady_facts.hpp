@@ -61,14 +61,14 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
                       int periods);
 
 /// Fills in what a run of one period shows: extremes, stops, any movement.
-void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
+void tell_of_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion);
 
 /// The question with this start.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
 /// The motion as seen from the joint of the question; `run` is its period seen from there, null at rest.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
-                       std::shared_ptr<const motion::Trajectory> run);
+                       std::shared_ptr<const motion::Run> run);
 /// The same for a motion with a stored period.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion);
 

@@ -49,8 +49,8 @@ double in_one_turn(double angle) {
 namespace {
 
 /// A run from the beginning of M's period.
-motion::Trajectory run_from(const SteadyQuestion& question, const model::State& start, double length, bool dense,
-                            const motion::Monitor& monitor) {
+motion::Run run_from(const SteadyQuestion& question, const model::State& start, double length, bool dense,
+                     const motion::Monitor& monitor) {
     motion::Limits limits;
     limits.dense = dense;  // a stored series is faster to evaluate than a closed form
     const model::Drive drive{question.drive.M(), start};
@@ -59,14 +59,14 @@ motion::Trajectory run_from(const SteadyQuestion& question, const model::State& 
         question.body, drive, {begin, begin + length}, motion::Grid::none(),
         dense ? motion::Integrator(motion::Spectral{}) : motion::integrator_for(question.body, drive), monitor, limits);
     if (run) return std::move(run).value();
-    motion::Trajectory none;
+    motion::Run none;
     none.outcome = model::Outcome::state_not_finite;
     return none;
 }
 
 /// Computes mean and fundamental from the motion itself.
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
-                                     const SteadyMotion& motion, const motion::Trajectory& run) {
+                                     const SteadyMotion& motion, const motion::Run& run) {
     if (!model::is_whole(run.outcome)) return {};
     const double length = run.t_stop - run.t_start;
     const double omega = 2 * std::numbers::pi / repeats.period;
@@ -113,7 +113,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     if (const auto slides = drives && !motion.by_returns.run ? ShortSlides::closed(question) : std::nullopt) {
         found = Fundamental{0, slides->fundamental()};
     } else if (drives && !motion.by_returns.run && is_linear_but_for_friction(question)) {
-        const motion::Trajectory run = run_from(question, motion.start, length, false, monitor);
+        const motion::Run run = run_from(question, motion.start, length, false, monitor);
         if (!model::is_whole(run.outcome)) return shape;
         found = by_friction(question, motion, run, M_wave);
     }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 
 namespace dinal::analysis {
 
@@ -19,12 +19,12 @@ struct Stretch {
 };
 
 /// In order and without gaps from t_start to t_stop; a stretch may have zero length. Requires a computed run.
-std::vector<Stretch> stretches(const motion::Trajectory& trajectory);
+std::vector<Stretch> stretches(const motion::Run& run);
 
 /// The total time during which the contact was open.
-double time_open(const motion::Trajectory& trajectory);
+double time_open(const motion::Run& run);
 
 /// The half cycles of theta, and its rests; on a belt from one extreme of theta to the next.
-std::vector<Stretch> half_cycles(const motion::Trajectory& trajectory);
+std::vector<Stretch> half_cycles(const motion::Run& run);
 
 }  // namespace dinal::analysis

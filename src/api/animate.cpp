@@ -29,7 +29,7 @@ constexpr double frames_per_second = 25;
 constexpr double most_frames_in_file = 3000, most_frames = 100'000;
 
 /// The requested part and speed, within the limits of a file or of memory.
-animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Trajectory& run,
+animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Run& run,
                            double most) {
     animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
     if (!(take.from < take.to) || take.from < run.t_start || take.to > run.t_stop) {
@@ -52,7 +52,7 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
 AnimationViewer animation_viewer = nullptr;
 
 /// The velocity of the surface that the run slides on, or nullptr.
-const model::Excitation* belt_of(const Run& run) {
+const model::Excitation* belt_of(const LuaRun& run) {
     const model::Excitation* belt = run.origin ? &run.origin->drive.belts[run.place()] : nullptr;
     return belt != nullptr && !belt->components().empty() ? belt : nullptr;
 }
@@ -60,7 +60,7 @@ const model::Excitation* belt_of(const Run& run) {
 animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
-    const plots::RunData data{run, &run->trajectory, alone(*run), units};
+    const plots::RunData data{run, &run->result, alone(*run), units};
     lua::CallState call(L);  // between rows the integrator evaluates the excitation
     auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
@@ -189,7 +189,7 @@ Animation drawn(const animation::RigScene& rig) {
 
 /// Writes a file, calls the viewer, or plays in the terminal; `make` makes the scene of a part of the run.
 template <class Make>
-int animate(lua_State* L, const lua::Options& options, const motion::Trajectory& run, const Make& make) {
+int animate(lua_State* L, const lua::Options& options, const motion::Run& run, const Make& make) {
     AnimateOptions asked;
     options.fill(asked);
     const bool writes = asked.file || animation_viewer != nullptr;
@@ -217,7 +217,7 @@ Animation animation_at(lua_State* L, int index) {
     const lua::Options options(L, index + 1, report_animate_call);
     AnimateOptions asked;
     options.fill(asked);
-    const auto take = asked_take(options, asked, run->trajectory, most_frames_in_file);
+    const auto take = asked_take(options, asked, run->result, most_frames_in_file);
     return drawn(asked_scene(L, options, run, take, asked_units(L, options).value_or(units_of(*run))));
 }
 
@@ -226,7 +226,7 @@ int animate_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:animate()");
     const lua::Options options(L, 2, animate_call);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
-    const motion::Trajectory& whole = run->trajectory;
+    const motion::Run& whole = run->result;
     if (run->of_all()) {
         return animate(L, options, whole,
                        [&](const animation::Take& take) { return asked_rig(L, options, run, take, units); });

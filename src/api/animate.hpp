@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "api/lua_run.hpp"
 #include "api/picture.hpp"
-#include "api/run.hpp"
 #include "lua/bind.hpp"
 #include "text/option.hpp"
 

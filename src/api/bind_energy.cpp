@@ -10,7 +10,7 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
@@ -36,7 +36,7 @@ bool is_part(const RunEnergy& energy) {
 
 constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
 
-analysis::Whose whose_of(const Run& run) {
+analysis::Whose whose_of(const LuaRun& run) {
     return !run.joint || run.system().joints.size() == 1 ? analysis::Whose::all
            : run.of_body()                               ? analysis::Whose::body
                                                          : analysis::Whose::link;
@@ -47,7 +47,7 @@ void make_columns(lua_State* L, RunEnergy& energy) {
     if (energy.columns.size() > 0) return;
     lua::CallState call(L);  // a friction law may be a user's function
     for (const RunHandle& part : parts_of(energy.run)) {
-        const Eigen::MatrixXd own = analysis::energy_columns(part->trajectory, whose_of(*part));
+        const Eigen::MatrixXd own = analysis::energy_columns(part->result, whose_of(*part));
         call.check();
         energy.columns = energy.columns.size() == 0 ? own : energy.columns + own;
     }
@@ -73,7 +73,7 @@ std::optional<lua::Vector> rest_of_energy(lua_State* L, const EnergyHandle& hand
 }
 
 lua::Vector times(const RunEnergy& energy) {
-    return view_of(energy.run, energy.run->trajectory.column(motion::Column::t));
+    return view_of(energy.run, energy.run->result.column(motion::Column::t));
 }
 
 using lua::NamedNumbers;
@@ -139,7 +139,7 @@ int part_of_energy(lua_State* L) {
 /// Raises the error for a name that is neither a column nor a body or link.
 int no_part_of_energy(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
-    const Run& run = *lua::self<EnergyHandle>(L, 1, "energy.load")->run;
+    const LuaRun& run = *lua::self<EnergyHandle>(L, 1, "energy.load")->run;
     if (run.of_all()) joint_named(L, lua_tostring(L, 2), run.system(), "this energy", energy_class);
     return 0;
 }
@@ -297,7 +297,7 @@ text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const st
     lua::CallState call(L);  // a friction law may be a user's function
     std::vector<analysis::Energy> energies;
     for (const RunHandle& part : parts) {
-        auto energy = analysis::energy_of(part->trajectory, whose_of(*part));
+        auto energy = analysis::energy_of(part->result, whose_of(*part));
         call.check();
         if (!energy) return energy.error();
         energies.push_back(std::move(energy).value());
@@ -318,10 +318,9 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
 
 std::string story_of_simulated(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
-    std::vector<const motion::Trajectory*> seen(run->system().joints.size(), &run->trajectory);
+    std::vector<const motion::Run*> seen(run->system().joints.size(), &run->result);
     if (run->of_all())
-        std::transform(parts.begin(), parts.end(), seen.begin(),
-                       [](const RunHandle& part) { return &part->trajectory; });
+        std::transform(parts.begin(), parts.end(), seen.begin(), [](const RunHandle& part) { return &part->result; });
     model::Drive drive = run->origin->drive;
     if (run->terms) drive.loads = {*run->terms};
     std::vector<analysis::Energy> energies;

@@ -11,7 +11,7 @@
 #include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "files/csv.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"

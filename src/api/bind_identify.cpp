@@ -21,8 +21,8 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/drive_options.hpp"
+#include "api/lua_run.hpp"
 #include "api/picture.hpp"
-#include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
@@ -790,7 +790,7 @@ private:
         if (!good && lua::interrupt_requested()) lua_error(L_);
         if (!good) failure_ = lua::text_at(L_, -1);
         const auto* run = good ? lua::test<RunHandle>(L_, -1) : nullptr;
-        return run != nullptr && static_cast<std::size_t>((*run)->trajectory.size()) == rows;
+        return run != nullptr && static_cast<std::size_t>((*run)->result.size()) == rows;
     }
 
     // ---- what the model may lack

@@ -9,7 +9,7 @@
 
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
@@ -108,19 +108,19 @@ void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadC
 
 /// Pushes a run from the rows written by run:save.
 int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
-    Run run;
+    LuaRun run;
     run.comments = std::move(content.comments);
     run.units = std::move(units);
-    motion::Trajectory& trajectory = run.trajectory;
-    trajectory.computed = false;
-    trajectory.own_names = std::move(content.names);
+    motion::Run& result = run.result;
+    result.computed = false;
+    result.own_names = std::move(content.names);
     run.rows = lua::MemoryCharge(static_cast<std::size_t>(content.values.size()) * sizeof(double));
-    trajectory.rows = motion::Rows(std::move(content.values));
-    if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {
-        trajectory.t_start = trajectory.rows(0, *time);
-        trajectory.t_stop = trajectory.rows(trajectory.size() - 1, *time);
+    result.rows = motion::Rows(std::move(content.values));
+    if (const auto time = result.find("t"); time && result.size() > 0) {
+        result.t_start = result.rows(0, *time);
+        result.t_stop = result.rows(result.size() - 1, *time);
     }
-    push_run(L, std::make_shared<const Run>(std::move(run)));
+    push_run(L, std::make_shared<const LuaRun>(std::move(run)));
     return 1;
 }
 

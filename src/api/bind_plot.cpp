@@ -10,8 +10,8 @@
 
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
+#include "api/lua_run.hpp"
 #include "api/picture.hpp"
-#include "api/run.hpp"
 #include "files/file.hpp"
 #include "files/table.hpp"
 #include "lua/interrupt.hpp"
@@ -59,7 +59,7 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
     return plots::Numbers::own(std::move(values));
 }
 
-plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::Trajectory>& run, const char* name,
+plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::Run>& run, const char* name,
                               const std::string& call) {
     if (run->size() == 0) {
         lua::raise(L, {.sentence = call + ": the run has no rows to draw; simulate it with dt = ... or times = { ... }",
@@ -107,7 +107,7 @@ plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string&
     plots::Curve curve;
     if (lua_istable(L, -1)) curve = curve_with_options(L, lua_gettop(L), 1, call);
     check_one(L, *run, ".theta");
-    const auto drawn = drawn_trajectory(L, run);
+    const auto drawn = drawn_run(L, run);
     curve.x = numbers_of_run(L, drawn, "t", call);
     curve.y = numbers_of_run(L, drawn, "theta", call);
     return curve;
@@ -187,7 +187,7 @@ std::optional<double> constant_value(const model::Excitation& excitation, double
 }
 
 /// The constant load on the mass; none if it varies, or if the mass would rest on a moving belt.
-std::optional<double> constant_load(const Run& run) {
+std::optional<double> constant_load(const LuaRun& run) {
     if (!run.origin || run.system().joints.size() > 1) return {};
     const source::Task& task = *run.origin;
     const double t = task.window.start;
@@ -198,15 +198,15 @@ std::optional<double> constant_load(const Run& run) {
 }
 
 /// A copy without events, which belong to all bodies.
-std::shared_ptr<const motion::Trajectory> without_events(const motion::Trajectory& trajectory) {
-    auto rows = std::make_shared<motion::Trajectory>(trajectory);
+std::shared_ptr<const motion::Run> without_events(const motion::Run& result) {
+    auto rows = std::make_shared<motion::Run>(result);
     rows->events = {};
     return rows;
 }
 
 plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run,
                        const std::vector<double>& window = {}) {
-    const auto drawn = run->of_all() ? without_events(run->trajectory) : drawn_trajectory(L, run, window);
+    const auto drawn = run->of_all() ? without_events(run->result) : drawn_run(L, run, window);
     if (drawn->size() == 0) {
         options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
     }
@@ -218,8 +218,8 @@ std::string column_on_top(lua_State* L, const lua::Options& options, std::string
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
     }
-    const Eigen::Index column = options.value_or_fail(column_at(L, -1, run->trajectory.names(), what));
-    return run->trajectory.names()[static_cast<std::size_t>(column)];
+    const Eigen::Index column = options.value_or_fail(column_at(L, -1, run->result.names(), what));
+    return run->result.names()[static_cast<std::size_t>(column)];
 }
 
 std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options, std::string_view option,
@@ -312,20 +312,19 @@ void join_columns(lua_State* L) {
 
 }  // namespace
 
-motion::BetweenRows between_rows(const Run& run) {
+motion::BetweenRows between_rows(const LuaRun& run) {
     const model::Excitation* M = nullptr;
     if (run.of_body()) M = run.terms ? &*run.terms : &run.origin->drive.loads[run.place()];
     const bool of_state =
         run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // theta and velocity determine M
-    const bool known = M != nullptr && model::is_whole(run.trajectory.outcome) && !model::has_memory(*M) &&
+    const bool known = M != nullptr && model::is_whole(run.result.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
-    return {run.trajectory, known ? M : nullptr};
+    return {run.result, known ? M : nullptr};
 }
 
-std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const RunHandle& run,
-                                                           const std::vector<double>& window) {
+std::shared_ptr<const motion::Run> drawn_run(lua_State* L, const RunHandle& run, const std::vector<double>& window) {
     lua::CallState call(L);  // M may be a function
-    const motion::Trajectory& whole = run->trajectory;
+    const motion::Run& whole = run->result;
     const motion::BetweenRows between = between_rows(*run);
     if (!between.any()) return {run, &whole};
     double from = whole.t_start, to = whole.t_stop;
@@ -334,7 +333,7 @@ std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const R
         to = std::min(to, window[1]);
     }
     const motion::Monitor monitor = [](double) { return !lua::interrupt_requested(); };
-    auto drawn = std::make_shared<const motion::Trajectory>(between.drawn(from, to, monitor));
+    auto drawn = std::make_shared<const motion::Run>(between.drawn(from, to, monitor));
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     call.check();
     return drawn;

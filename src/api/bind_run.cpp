@@ -24,8 +24,8 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
+#include "api/lua_run.hpp"
 #include "api/picture.hpp"
-#include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
@@ -41,7 +41,8 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
-#include "motion/engine/part.hpp"
+#include "motion/engine/left.hpp"
+#include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/fixed_text.hpp"
@@ -52,16 +53,14 @@
 
 namespace dinal::api {
 
-std::string line_of(const Run& run) {
-    return (run.of_all() ? text::counted(run.system().bodies.size(), "body") + ", " : "") +
-           motion::summary(run.trajectory);
+std::string line_of(const LuaRun& run) {
+    return (run.of_all() ? text::counted(run.system().bodies.size(), "body") + ", " : "") + motion::summary(run.result);
 }
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
-    const Run& run = *handle;
+    const LuaRun& run = *handle;
     lua::CallState call(L);  // spring, belt and base may be user functions
-    const std::string text =
-        run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.trajectory, run.units);
+    const std::string text = run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.result, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }
@@ -152,8 +151,8 @@ constexpr lua::Doc poincare_doc{
     "print(#d, d.theta:max() - d.theta:min() < 1e-9)  --> 11\ttrue",
     {&poincare_call}};
 
-std::span<const double> column_values(const motion::Trajectory& trajectory, Eigen::Index column) {
-    const auto values = trajectory.rows.col(column);
+std::span<const double> column_values(const motion::Run& result, Eigen::Index column) {
+    const auto values = result.rows.col(column);
     return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
@@ -165,7 +164,7 @@ bool closes(std::span<const double> values) {
 }
 
 /// The period of M if it is known, otherwise 0.
-double period_of_run(const Run& run) {
+double period_of_run(const LuaRun& run) {
     const auto drive = run.of_body()
                            ? analysis::repetition_of(run.terms ? *run.terms : run.origin->drive.loads[run.place()], 0)
                            : std::nullopt;
@@ -181,11 +180,11 @@ struct Samples {
 constexpr std::size_t fewest_samples = 8;
 
 /// Samples of the motion from this time on, close enough for its fastest part.
-Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, std::size_t place, double from) {
+Samples samples_of_motion(const LuaRun& run, const motion::BetweenRows& between, std::size_t place, double from) {
     constexpr double a_period = 40, an_event = 20, least = 1024, most = 1 << 21;
-    const motion::Trajectory& trajectory = run.trajectory;
-    const double length = trajectory.t_stop - from, part = length / (trajectory.t_stop - trajectory.t_start);
-    double period = trajectory.course->system().natural_period();
+    const motion::Run& result = run.result;
+    const double length = result.t_stop - from, part = length / (result.t_stop - result.t_start);
+    double period = result.course->system().natural_period();
     if (const double own = period_of_run(run); own > 0) period = std::min(period, own);
     const std::span<const model::Component> M =
         run.of_body() ? (run.terms ? *run.terms : run.origin->drive.loads[run.place()]).components()
@@ -195,8 +194,8 @@ Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, st
             period = std::min(period, 2 * std::numbers::pi / std::fabs(sine->omega));
         }
     }
-    const double wanted = std::max({least, a_period * length / period, part * static_cast<double>(trajectory.size()),
-                                    an_event * part * static_cast<double>(trajectory.events.size())});
+    const double wanted = std::max({least, a_period * length / period, part * static_cast<double>(result.size()),
+                                    an_event * part * static_cast<double>(result.events.size())});
     const std::size_t count = std::bit_ceil(static_cast<std::size_t>(std::min(wanted, most)));
     Samples samples{.values = {}, .dt = length / static_cast<double>(count), .kind = "samples of the motion"};
     samples.values.reserve(count);
@@ -210,16 +209,16 @@ Samples samples_of_motion(const Run& run, const motion::BetweenRows& between, st
     return samples;
 }
 
-Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Eigen::Index column,
+Samples samples_of(lua_State* L, const lua::Options& options, const LuaRun& run, Eigen::Index column,
                    const std::optional<double>& from) {
-    const motion::Trajectory& trajectory = run.trajectory;
-    const motion::BetweenRows between(trajectory, nullptr);
+    const motion::Run& result = run.result;
+    const motion::BetweenRows between(result, nullptr);
     const auto place = std::find(between.columns().begin(), between.columns().end(), column);
     if (place != between.columns().end()) {
-        const double begin = std::max(from.value_or(trajectory.t_start), trajectory.t_start);
-        if (!(begin < trajectory.t_stop)) {
+        const double begin = std::max(from.value_or(result.t_start), result.t_start);
+        if (!(begin < result.t_stop)) {
             options.fail("from", fmt::format("from = {:.6g} must be before the end of the run, t = {:.6g}", begin,
-                                             trajectory.t_stop));
+                                             result.t_stop));
         }
         lua::CallState call(L);
         Samples samples =
@@ -228,9 +227,9 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
         call.check();
         return samples;
     }
-    const auto time = trajectory.find("t");
+    const auto time = result.find("t");
     if (!time) options.fail({"the run has no column t, so its rows have no times"});
-    std::span<const double> t = column_values(trajectory, *time), values = column_values(trajectory, column);
+    std::span<const double> t = column_values(result, *time), values = column_values(result, column);
     const auto first = static_cast<std::size_t>(
         std::lower_bound(t.begin(), t.end(), from.value_or(t.empty() ? 0 : t.front())) - t.begin());
     t = t.subspan(first);
@@ -248,7 +247,7 @@ Samples samples_of(lua_State* L, const lua::Options& options, const Run& run, Ei
 }
 
 /// The joint of a column such as "load.theta"; a state belongs to every joint. None for other columns of the whole run.
-std::optional<std::size_t> joint_of_column(const Run& run, std::string_view column) {
+std::optional<std::size_t> joint_of_column(const LuaRun& run, std::string_view column) {
     if (!run.of_all()) return {};
     const auto& states = run.origin->drive.states;
     if (std::any_of(states.begin(), states.end(), [&](const model::OwnState& s) { return s.name == column; })) return 0;
@@ -279,8 +278,8 @@ int spectrum_of_run(lua_State* L) {
         run = part_of(run, *joint);
         own_name.remove_prefix(name.find('.') + 1);
     }
-    const auto column = files::find_column(run->trajectory.names(), own_name);
-    if (!column && run->of_all() && part_of(run, 0)->trajectory.find(name)) check_one(L, *run, "." + name);
+    const auto column = files::find_column(run->result.names(), own_name);
+    if (!column && run->of_all() && part_of(run, 0)->result.find(name)) check_one(L, *run, "." + name);
     if (!column) options.fail(column.error());
     const auto [values, dt, kind] = samples_of(L, options, *run, *column, asked.from);
     const std::size_t rows = values.size();
@@ -314,24 +313,24 @@ int poincare_of_run(lua_State* L) {
     check_one(L, *run, ":poincare");
     PoincareOptions asked;
     options.fill(asked);
-    const motion::Trajectory& trajectory = run->trajectory;
+    const motion::Run& result = run->result;
     const double period = asked_period(options).value_or(period_of_run(*run));
     if (!(period > 0)) {
         options.fail("period", "give a period: the M of this run has no known one");
     }
-    const double from = asked.from.value_or(trajectory.t_start);
-    if (from < trajectory.t_start || from > trajectory.t_stop) {
-        options.fail("from", fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from,
-                                         trajectory.t_start, trajectory.t_stop));
+    const double from = asked.from.value_or(result.t_start);
+    if (from < result.t_start || from > result.t_stop) {
+        options.fail("from", fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from, result.t_start,
+                                         result.t_stop));
     }
-    const double looks = std::floor((trajectory.t_stop - from) / period * (1 + 1e-12)) + 1;
+    const double looks = std::floor((result.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
     if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
     std::vector<std::pair<double, model::State>> samples;
     lua::CallState call(L);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
-        const double at = std::min(from + static_cast<double>(i) * period, trajectory.t_stop);
-        const auto state = trajectory.at(at);
+        const double at = std::min(from + static_cast<double>(i) * period, result.t_stop);
+        const auto state = result.at(at);
         call.check();
         samples.emplace_back(at, options.value_or_fail(state));
     }
@@ -349,18 +348,18 @@ const RunHandle& run_self(lua_State* L, const char* call) {
 }
 
 void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
-    lua::push(L, view_of(run, run->trajectory.rows.col(column)));
+    lua::push(L, view_of(run, run->result.rows.col(column)));
 }
 
 int column_by_name(lua_State* L, const char* name) {
     const RunHandle& run = run_self(L, "run.theta");
-    const motion::Trajectory& trajectory = run->trajectory;
-    const auto column = trajectory.find(name);
+    const motion::Run& result = run->result;
+    const auto column = result.find(name);
     if (!column && run->of_all()) joint_named(L, name, run->system(), "this run", run_class);  // raises an error
     if (!column) {
         raise_unknown_name(
-            L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(trajectory.names(), ", ")),
-            name, trajectory.names(), run_class);
+            L, fmt::format("this run has no field '{}'; its columns are {}", name, fmt::join(result.names(), ", ")),
+            name, result.names(), run_class);
     }
     push_column(L, run, *column);
     return 1;
@@ -385,7 +384,7 @@ int other_column(lua_State* L) {
     if (lua_isinteger(L, 2) != 0) {
         const RunHandle& run = run_self(L, "run[1]");
         const lua_Integer i = lua_tointeger(L, 2);
-        if (i < 1 || i > run->trajectory.size()) {
+        if (i < 1 || i > run->result.size()) {
             lua_pushnil(L);
             return 1;
         }
@@ -413,7 +412,7 @@ int body_or_link(lua_State* L) {
 
 int columns(lua_State* L) {
     const RunHandle run = run_self(L, "run:columns(\"t\", \"theta\")");
-    const auto& names = run->trajectory.names();
+    const auto& names = run->result.names();
     const int asked = lua_gettop(L) - 1;
     if (asked == 0) {
         luaL_checkstack(L, static_cast<int>(names.size()) + 5, "too many columns");
@@ -435,7 +434,7 @@ int data_of_run(lua_State* L) {
 }
 
 lua::Pushed events(lua_State* L, const RunHandle& run) {
-    push_events(L, run->trajectory.events, run->trajectory.event_names, units_of(*run),
+    push_events(L, run->result.told_events(), run->result.event_names, units_of(*run),
                 run->of_all() ? &run->system() : nullptr);
     return {};
 }
@@ -445,14 +444,14 @@ lua::Pushed events(lua_State* L, const RunHandle& run) {
 Data rows_of(const RunHandle& run) {
     const ColumnUnits in(units_of(*run));
     Data data;
-    for (const std::string& name : run->trajectory.names()) {
-        const auto numbers = run->trajectory.rows.col(static_cast<Eigen::Index>(data.columns.size()));
+    for (const std::string& name : run->result.names()) {
+        const auto numbers = run->result.rows.col(static_cast<Eigen::Index>(data.columns.size()));
         data.columns.push_back({name, view_of(run, numbers), in.of(name)});
     }
     return data;
 }
 
-void check_one(lua_State* L, const Run& run, std::string_view member) {
+void check_one(lua_State* L, const LuaRun& run, std::string_view member) {
     if (!run.of_all()) return;
     const std::string name(member.substr(1));
     lua::raise(L, {.sentence = fmt::format("{} is of one body or link: run.{}{}", name,
@@ -467,7 +466,7 @@ std::vector<RunHandle> parts_of(const RunHandle& run) {
     return parts;
 }
 
-std::optional<model::Oscillator> alone(const Run& run) {
+std::optional<model::Oscillator> alone(const LuaRun& run) {
     if (run.origin == nullptr || run.of_all()) return {};
     const auto made = model::oscillator_at(run.system(), run.place());
     return made ? std::optional(made.value()) : std::nullopt;
@@ -477,15 +476,14 @@ RunHandle part_of(const RunHandle& run, std::size_t joint) {
     if (!run->of_all()) return run;
     run->parts.resize(run->system().joints.size());
     if (RunHandle known = run->parts[joint].lock()) return known;
-    auto seen = std::make_shared<Run>();
-    seen->trajectory = motion::seen_from(run->system(), run->origin->drive, run->trajectory.bodies, joint);
-    seen->trajectory.gap = run->trajectory.gap, seen->trajectory.outcome = run->trajectory.outcome;
+    auto seen = std::make_shared<LuaRun>();
+    seen->result = motion::part_of(run->system(), run->origin->drive, run->result, joint);
     seen->origin = run->origin, seen->joint = joint, seen->readings = run->readings;
     run->parts[joint] = seen;
     return seen;
 }
 
-std::vector<std::string> repeat_lines(const Run& run) {
+std::vector<std::string> repeat_lines(const LuaRun& run) {
     return run.origin ? source::repeat_lines(*run.origin) : run.comments;
 }
 
@@ -527,13 +525,13 @@ namespace {
 
 lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ":cycle");
-    const motion::Trajectory& trajectory = run->trajectory;
+    const motion::Run& result = run->result;
     lua::CallState call(L);
     std::vector<model::WantedEvent> wanted;
     if (run->origin) wanted = run->origin->drive.events;
-    std::vector<model::Event> events = analysis::events_of_motion(trajectory, wanted);
-    if (trajectory.on_belt) {  // extremes of theta on a belt are no events
-        const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
+    std::vector<model::Event> events = analysis::events_of_motion(result, wanted);
+    if (result.on_belt) {  // extremes of theta on a belt are no events
+        const std::vector<model::Event> turns = motion::turns_on_belt(result);
         events.insert(events.end(), turns.begin(), turns.end());
         std::stable_sort(events.begin(), events.end(),
                          [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
@@ -575,7 +573,7 @@ std::optional<model::Excitation> excitation_of_run(lua_State* L, const RunHandle
     return run->of_body() || !load.components().empty() ? std::optional(load) : std::nullopt;
 }
 
-std::optional<motion::Integrator> integrator_of_run(const Run& run) {
+std::optional<motion::Integrator> integrator_of_run(const LuaRun& run) {
     return run.origin ? std::optional(run.origin->integrator) : std::nullopt;
 }
 
@@ -700,31 +698,29 @@ constexpr lua::Member run_members[] = {
       "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:simulate{ belt = 0.1, t_end = 60 }\n"
       "c = run:cycle()\n"
       "print(string.format(\"%.6f %d\", c.period, c.stops), c.steady)  --> 3.658799 1\ttrue"}},
-    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_start; }>,
+    {lua::a_value<RunHandle, [](const LuaRun& run) { return run.result.t_start; }>,
      {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
-    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_stop; }>,
+    {lua::a_value<RunHandle, [](const LuaRun& run) { return run.result.t_stop; }>,
      {"run.t_end -> number", "The time at which the run ended: the given t_end, or earlier if it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_value<RunHandle,
-                  [](const Run& run) {
-                      return run.origin ? std::optional(status_word(run.trajectory.outcome)) : std::nullopt;
+                  [](const LuaRun& run) {
+                      return run.origin ? std::optional(status_word(run.result.outcome)) : std::nullopt;
                   }>,
      {"run.status -> string or nil",
       "How the run ended, in one word: \"end\" (moving), \"rest\", \"stuck\", \"event\" (with stop = true), "
       "\"interrupted\" or \"failed\"; run.outcome is the sentence. nil for a run read from a file.",
       DINAL_RUN "print(run.status)  --> end"}},
     {lua::a_value<RunHandle,
-                  [](const Run& run) {
-                      return run.origin ? motion::outcome_text(run.trajectory) : "read from a file";
-                  }>,
+                  [](const LuaRun& run) { return run.origin ? motion::outcome_text(run.result) : "read from a file"; }>,
      {"run.outcome -> string",
       "How the run ended: \"reached the end\" (moving), \"at rest\" (nothing can move it any more), \"stuck at the "
       "end\" (M may still move it), \"interrupted\", or the error. A pulse of a function M that is shorter than "
       "run.gap may have been missed.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_value<RunHandle,
-                  [](const Run& run) {
-                      return (run.trajectory.gap > 0) ? std::optional(run.trajectory.gap) : std::nullopt;
+                  [](const LuaRun& run) {
+                      return (run.result.gap > 0) ? std::optional(run.result.gap) : std::nullopt;
                   }>,
      {"run.gap -> number or nil",
       "In how long a time a pulse of a Lua function may have been missed. If all functions are read, it is the longest "
@@ -733,13 +729,13 @@ constexpr lua::Member run_members[] = {
       "integrator.spectral).",
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
-    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.names(); }>,
+    {lua::a_value<RunHandle, [](const LuaRun& run) { return run.result.names(); }>,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
     {lua::a_value<RunHandle, system_of_run>,
      {"run.system -> system or nil", "The system; nil for a run read from a file. That of run.load is run.system.load.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
-    {lua::a_value<RunHandle, [](const Run& run) { return units_by_name(units_of(run)); }>,
+    {lua::a_value<RunHandle, [](const LuaRun& run) { return units_by_name(units_of(run)); }>,
      {"run.units -> table", "The names of the units of theta, t and M; nil for those without one.",
       DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
     {lua::a_value<RunHandle, excitation_of_run>,
@@ -748,7 +744,7 @@ constexpr lua::Member run_members[] = {
     {lua::a_value<RunHandle, integrator_of_run>,
      {"run.integrator -> integrator or nil", "The integrator; nil for a run read from a file.",
       integrator_example.c_str()}},
-    {lua::a_length<RunHandle, [](const Run& run) { return run.trajectory.size(); }>,
+    {lua::a_length<RunHandle, [](const LuaRun& run) { return run.result.size(); }>,
      {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},
     {lua::a_text<RunHandle, line_of>,
      {"tostring(run) -> string", "A summary in one line.",
@@ -789,7 +785,7 @@ text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const 
 }
 
 void push_run(lua_State* L, RunHandle run) {
-    const std::size_t bytes = run->trajectory.rows.table().own_bytes();
+    const std::size_t bytes = run->result.rows.table().own_bytes();
     lua::push<RunHandle>(L, std::move(run));
     lua::note_external_memory(L, bytes);
 }
@@ -830,13 +826,13 @@ int at_one_time(lua_State* L) {
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
     lua::CallState call(L);  // between rows the integrator evaluates the excitation
     const bool of_all = run->of_all();
-    const auto state = part_of(run, 0)->trajectory.at(t);
+    const auto state = part_of(run, 0)->result.at(t);
     call.check();
     if (!state) {
         lua::fail(L, "run:at(t)", state.error());
     }
     if (of_all) {
-        const std::vector<double> y = run->trajectory.bodies->history->at(t);
+        const std::vector<double> y = run->result.left->history->at(t);
         const std::size_t n = run->system().bodies.size();
         push_by_name(L, run->system().bodies, y, 0);
         push_by_name(L, run->system().bodies, y, n);
@@ -846,14 +842,14 @@ int at_one_time(lua_State* L) {
     }
     lua_pushnumber(L, state->theta);
     lua_pushnumber(L, state->velocity);
-    const motion::Trajectory& trajectory = run->trajectory;
-    if (trajectory.state_count() == 0 || trajectory.course == nullptr) {
+    const motion::Run& result = run->result;
+    if (result.states == 0 || result.course == nullptr) {
         return 2;
     }
-    const std::vector<double> states = trajectory.course->states_at(t);
+    const std::vector<double> states = result.course->states_at(t);
     lua_createtable(L, 0, static_cast<int>(states.size()));
     for (std::size_t i = 0; i < states.size(); ++i) {
-        lua::set_value(L, trajectory.names()[trajectory.first_state() + i].c_str(), states[i]);
+        lua::set_value(L, result.names()[result.first_state() + i].c_str(), states[i]);
     }
     return 3;
 }
@@ -897,15 +893,15 @@ int run_at(lua_State* L) {
 /// The acceleration at the rows, from the equation of motion.
 lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ".acceleration");
-    const motion::Trajectory& trajectory = run->trajectory;
-    if (trajectory.bodies != nullptr && run->of_body()) {
-        constexpr std::size_t last = motion::engine::columns_of_body;
-        lua::push(L, view_of(run, trajectory.bodies->table.column(last * (run->place() + 1))));
+    const motion::Run& result = run->result;
+    const auto named = static_cast<Eigen::Index>(result.names().size());
+    if (run->of_body() && result.rows.cols() > named) {
+        lua::push(L, view_of(run, result.rows.col(named)));
         return {};
     }
     if (!run->of_body()) {
-        const auto own = trajectory.find("acceleration");
-        own ? static_cast<void>(lua::push(L, view_of(run, trajectory.rows.col(*own)))) : lua_pushnil(L);
+        const auto own = result.find("acceleration");
+        own ? static_cast<void>(lua::push(L, view_of(run, result.rows.col(*own)))) : lua_pushnil(L);
         return {};
     }
     const source::Task& task = *run->origin;
@@ -913,12 +909,12 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
     const model::Lowered system(body);
     const auto& walls = body.walls();
     using motion::Column;
-    const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
-               velocity = trajectory.column(Column::velocity), M = trajectory.column(Column::M),
-               friction = trajectory.column(Column::friction), damping = trajectory.column(Column::damping);
-    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(trajectory.size()));
+    const auto t = result.column(Column::t), theta = result.column(Column::theta),
+               velocity = result.column(Column::velocity), M = result.column(Column::M),
+               friction = result.column(Column::friction), damping = result.column(Column::damping);
+    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(result.size()));
     lua::CallState call(L);  // spring and base may be functions
-    for (Eigen::Index i = 0; i < trajectory.size(); ++i) {
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
         const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
         const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
         const double base = task.drive.base.components().empty() ? 0 : task.drive.base.value(t[i]);
@@ -931,13 +927,13 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
 
 lua::Pushed run_states(lua_State* L, const RunHandle& run) {
     // In a file, columns after the standard ones count as states.
-    const std::vector<std::string>& names = run->trajectory.names();
+    const std::vector<std::string>& names = run->result.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
-    const std::size_t first = run->origin ? run->trajectory.first_state() : has_all ? always.size() : names.size();
+    const std::size_t first = run->origin ? run->result.first_state() : has_all ? always.size() : names.size();
     lua_createtable(L, 0, static_cast<int>(names.size() - first));
     for (std::size_t i = first; i < names.size(); ++i) {
-        lua::set_value(L, names[i].c_str(), view_of(run, run->trajectory.rows.col(static_cast<Eigen::Index>(i))));
+        lua::set_value(L, names[i].c_str(), view_of(run, run->result.rows.col(static_cast<Eigen::Index>(i))));
     }
     lua_createtable(L, 0, 1);
     lua_pushcfunction(L, lua::guarded<no_such_state>);
@@ -951,7 +947,7 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run) {
 namespace {
 
 /// The rows of the continued run: those so far and the new times; without new ones, the remaining times up to t_end.
-motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
+motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Run& so_far,
                         const source::Task& task, double t_end) {
     const std::span<const double> times = task.rows.times();
     std::vector<double> more = asked.times.value_or(std::vector<double>());
@@ -988,7 +984,7 @@ int continue_run(lua_State* L) {
     const lua::Options options(L, 2, continue_call);
     MoreTime asked;
     options.fill(asked);
-    const motion::Trajectory& so_far = run->trajectory;
+    const motion::Run& so_far = run->result;
     if (run->joint) {
         options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
     }
@@ -1022,7 +1018,7 @@ int continue_run(lua_State* L) {
         return motion::resume(*task.system, task.drive, so_far, task.window.end, task.rows, task.integrator, monitor,
                               limits);
     };
-    return run_task(L, options, std::move(origin), so_far.t_stop, motion::is_dense(so_far), compute);
+    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.is_dense(), compute);
 }
 
 // run:save(file): file kind, columns, and the comment block from which the run can be repeated.
@@ -1030,9 +1026,8 @@ int continue_run(lua_State* L) {
 namespace {
 
 /// The columns in `columns = { name or number, ... }`, by default all.
-std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
-                                              const motion::Trajectory& trajectory) {
-    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names(), trajectory.rows.matrix());
+std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options, const motion::Run& result) {
+    std::vector<files::NamedColumn> all = files::named_columns(result.names(), result.rows.matrix());
     if (!options.has("columns")) {
         return all;
     }
@@ -1043,7 +1038,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     std::vector<files::NamedColumn> asked;
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
         lua_rawgeti(L, -1, i);
-        const auto column = column_at(L, -1, trajectory.names(), fmt::format("columns[{}]", i));
+        const auto column = column_at(L, -1, result.names(), fmt::format("columns[{}]", i));
         asked.push_back(all[static_cast<std::size_t>(options.value_or_fail(column))]);
         lua_pop(L, 1);
     }
@@ -1051,12 +1046,12 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     return asked;
 }
 
-text::Expected<files::Written> write_record(const std::string& file, const Run& run) {
+text::Expected<files::Written> write_record(const std::string& file, const LuaRun& run) {
     if (run.origin && run.system().is_plain()) {
-        return files::write_record1989(file, run.trajectory, *alone(run));
+        return files::write_record1989(file, run.result, *alone(run));
     }
-    if (run.trajectory.names() == files::record1989_names()) {
-        return files::write_record1989(file, run.trajectory.rows.matrix());
+    if (run.result.names() == files::record1989_names()) {
+        return files::write_record1989(file, run.result.rows.matrix());
     }
     if (run.origin) return text::Error{"a .dat file is of one body with constant Rd and Re; save it as .csv"};
     return text::Error{
@@ -1064,10 +1059,10 @@ text::Expected<files::Written> write_record(const std::string& file, const Run& 
 }
 
 text::Expected<files::Written> write(lua_State* L, const lua::Options& options, const std::string& file,
-                                     const Run& run) {
+                                     const LuaRun& run) {
     const std::string ending = text::ending_of(file);
     if (ending == ".csv") {
-        return files::write_csv(file, asked_columns(L, options, run.trajectory), repeat_lines(run));
+        return files::write_csv(file, asked_columns(L, options, run.result), repeat_lines(run));
     }
     if (ending != ".dat") {
         return text::Error{.sentence = fmt::format(

@@ -12,7 +12,7 @@
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/drive_options.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
@@ -240,7 +240,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
              const Compute& compute) {
     if (lua::memory_limit() > 0) lua::make_room(L, bytes_of_rows(origin));
     const double to = origin.window.end;
-    const auto run = std::make_shared<Run>();
+    const auto run = std::make_shared<LuaRun>();
     run->origin = std::make_shared<const source::Origin>(std::move(origin));
     const motion::Limits limits = limits_of_run(dense);
     const source::Task& asked = *run->origin;
@@ -261,13 +261,13 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     };
     source::Task played = asked;
     if (run->terms) played.drive.loads = {*run->terms};
-    run->trajectory = options.value_or_fail(compute(played, monitor, limits));
+    run->result = options.value_or_fail(compute(played, monitor, limits));
     if (call.failed() && lua::interrupt_requested()) {
-        run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
+        run->result.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
-    run->readings = readings_of(system, asked.drive, run->trajectory.located, run->terms.has_value());
-    if (sees_all(system, asked.drive, run->trajectory.located)) run->trajectory.gap = run->trajectory.unproven;
-    const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
+    run->readings = readings_of(system, asked.drive, run->result.located, run->terms.has_value());
+    if (sees_all(system, asked.drive, run->result.located)) run->result.gap = run->result.unproven;
+    const bool interrupted = run->result.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());
     if (call.failed() || interrupted) {

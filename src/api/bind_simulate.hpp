@@ -19,8 +19,8 @@ namespace dinal::api {
 int simulate_system(lua_State* L);
 
 /// The core function to be called: simulate() or resume().
-using Compute = std::function<text::Expected<motion::Trajectory>(
-    const source::Task& task, const motion::Monitor& monitor, const motion::Limits& limits)>;
+using Compute = std::function<text::Expected<motion::Run>(const source::Task& task, const motion::Monitor& monitor,
+                                                          const motion::Limits& limits)>;
 
 /// Pushes the run that `compute` makes from the task of `origin` from the time `from`: within the script's limits, with
 /// a progress line. Raises an error if the core refuses the task, M fails or Ctrl-C is pressed; dinal.partial then has

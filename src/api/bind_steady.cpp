@@ -12,7 +12,7 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "api/steady_answer.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
@@ -30,8 +30,8 @@ namespace {
 SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
     analysis::SteadyQuestion question = whole->question.seen_at(joint);
     const RunHandle run = whole->run != nullptr ? part_of(whole->run, joint) : nullptr;
-    std::shared_ptr<const motion::Trajectory> seen;
-    if (run) seen = {run, &run->trajectory};
+    std::shared_ptr<const motion::Run> seen;
+    if (run) seen = {run, &run->result};
     analysis::SteadyMotion facts = analysis::seen_from(question, whole->motion, std::move(seen));
     return std::make_shared<Steady>(
         Steady{.question = std::move(question), .motion = std::move(facts), .run = run, .whole = whole});
@@ -48,8 +48,8 @@ SteadyHandle made(lua_State* L, analysis::SteadyQuestion question, analysis::Ste
                           .window = {period->run.t_start, period->run.t_stop},
                           .rows = motion::Grid::every(whole->motion.period / rows),
                           .integrator = motion::Spectral{}};
-        auto run = std::make_shared<Run>();
-        run->trajectory = motion::trajectory_of(*task.system, period->drive, {period, &period->run});
+        auto run = std::make_shared<LuaRun>();
+        run->result = period->run;
         run->origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)));
         whole->run = std::move(run);
     }
@@ -383,13 +383,13 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
 }
 
 /// The state at the beginning of the last period of M in the run.
-model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Repetition& repeats) {
-    const double n = std::floor((trajectory.t_stop - repeats.start) / repeats.period);
+model::State state_at_period(const motion::Run& result, const analysis::Repetition& repeats) {
+    const double n = std::floor((result.t_stop - repeats.start) / repeats.period);
     const double t = repeats.start + n * repeats.period;
-    if (t >= trajectory.t_start) {
-        if (const auto state = trajectory.at(t)) return *state;
+    if (t >= result.t_start) {
+        if (const auto state = result.at(t)) return *state;
     }
-    return trajectory.state_at_stop;
+    return result.state_at_stop;
 }
 
 }  // namespace
@@ -406,7 +406,7 @@ void check_motion(const lua::Options& options, const analysis::SteadyMotion& mot
 namespace {
 
 /// One period as a run with 400 rows; none at rest.
-std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
+std::optional<LuaRun> period_as_run(lua_State* L, const Steady& s) {
     constexpr double rows = 400;
     const analysis::SteadyQuestion& asked =
         s.motion.by_returns.question && s.motion.by_returns.run ? *s.motion.by_returns.question : s.question;
@@ -417,7 +417,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
                       .integrator = {}};
     if (s.motion.by_returns.run) {
         // Its origin repeats the approach to the motion, too; the rows are those of the last period.
-        const motion::Trajectory& last = *s.motion.by_returns.run;
+        const motion::Run& last = *s.motion.by_returns.run;
         task.window = {.start = s.motion.by_returns.question ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.by_returns.question) {
             task.integrator = motion::integrator_for(asked.body, asked.drive);
@@ -425,16 +425,16 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
             const auto times = last.column(motion::Column::t);
             task.rows = motion::Grid::at({times.begin(), times.end()});
         }
-        return Run{.trajectory = last,
-                   .origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)))};
+        return LuaRun{.result = last,
+                      .origin = std::make_shared<const source::Origin>(source::origin_of(L, std::move(task)))};
     }
     if (asked.is_timeless()) return {};
     task.window = {.start = asked.repeats.start, .end = asked.repeats.start + s.motion.period};
     task.drive = {asked.drive.M(), s.motion.start};
-    Run made{.trajectory = {}, .origin = std::make_shared<const source::Origin>(source::origin_of(L, task))};
+    LuaRun made{.result = {}, .origin = std::make_shared<const source::Origin>(source::origin_of(L, task))};
     asking(L, [&](const motion::Monitor& monitor) {
         auto result = motion::simulate(*task.system, task.drive, task.window, task.rows, task.integrator, monitor);
-        if (result) made.trajectory = std::move(result).value();
+        if (result) made.result = std::move(result).value();
     });
     return made;
 }
@@ -444,7 +444,7 @@ std::optional<Run> period_as_run(lua_State* L, const Steady& s) {
 lua::Pushed run_of_steady(lua_State* L, const SteadyHandle& s) {
     RunHandle run = s->run;
     if (is_found(*s) && s->question.is_plain()) {
-        if (auto period = period_as_run(L, *s)) run = std::make_shared<const Run>(std::move(*period));
+        if (auto period = period_as_run(L, *s)) run = std::make_shared<const LuaRun>(std::move(*period));
     }
     run ? push_run(L, run) : lua_pushnil(L);
     return {};
@@ -519,13 +519,13 @@ int steady_of_run(lua_State* L) {
     if (!run->origin) options.fail({"a run read from a file has no system and no M"});
     auto question = options.value_or_fail(analysis::SteadyQuestion::of(run->origin->system, run->origin->drive));
     question.periods = asked.periods.value_or(0);
-    const motion::Trajectory& ended = run->trajectory;
+    const motion::Run& ended = run->result;
     if (question.is_plain()) {
         question.drive.start_at(ended.state_at_stop);
-        for (std::size_t i = 0; i < ended.state_count(); ++i) question.drive.states[i].start = ended.carried->states[i];
+        for (std::size_t i = 0; i < ended.states; ++i) question.drive.states[i].start = ended.left->carry->y[2 + i];
     } else {
         const motion::Monitor none;
-        question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(*ended.bodies), ended.t_stop);
+        question.drive = analysis::Runs(question, none).from(analysis::Runs::at_stop(ended), ended.t_stop);
     }
     find_period(L, question);
     question.repeats = repetition_or_fail(L, options, question, period);

@@ -11,8 +11,8 @@
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/lua_run.hpp"
 #include "api/response.hpp"
-#include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
 #include "lua/options.hpp"
@@ -20,7 +20,6 @@
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/jenkins.hpp"
-#include "motion/engine/part.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -403,7 +402,7 @@ std::optional<model::Units> asked_units(lua_State* L, const lua::Options& option
     return units;
 }
 
-const model::Units& units_of(const Run& run) {
+const model::Units& units_of(const LuaRun& run) {
     return run.origin ? run.system().units : run.units;
 }
 

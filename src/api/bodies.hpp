@@ -7,11 +7,10 @@
 
 #include "api/bind_simulate.hpp"
 #include "api/drive_options.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "model/system.hpp"
-#include "motion/engine/run.hpp"
 
 namespace dinal::api {
 

@@ -6,7 +6,7 @@
 
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "lua/bind.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -105,7 +105,7 @@ std::string vector_card(lua_State* L, int index, const terminal::Display& screen
 }
 
 std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
-    const Run& run = **lua::test<RunHandle>(L, index);
+    const LuaRun& run = **lua::test<RunHandle>(L, index);
     std::string text = line_of(run);
     if (run.origin) {
         const std::string_view name = motion::MethodView(run.origin->integrator).about().call.name;

@@ -148,7 +148,7 @@ const std::vector<std::string>& record1989_names() {
     return names;
 }
 
-text::Expected<Written> write_record1989(const std::string& path, const motion::Trajectory& trajectory,
+text::Expected<Written> write_record1989(const std::string& path, const motion::Run& run,
                                          const model::Oscillator& system) {
     if (!system.has_spring()) {
         return text::Error{"cannot write '" + path +
@@ -158,15 +158,15 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
     const double k = system.stiffness();
     const std::array<std::pair<std::string_view, double>, width> sources = {
         {{"t", 1.0}, {"theta", 1.0}, {"velocity", w0}, {"M", k}, {"friction", k}, {"damping", k}}};
-    Eigen::MatrixXd values(trajectory.rows.rows(), static_cast<Eigen::Index>(width));
+    Eigen::MatrixXd values(run.rows.rows(), static_cast<Eigen::Index>(width));
     for (std::size_t i = 0; i < width; ++i) {
         const auto& [name, unit] = sources[i];
-        const text::Expected<Eigen::Index> column = find_column(trajectory.names(), name);
+        const text::Expected<Eigen::Index> column = find_column(run.names(), name);
         if (!column) {
             return text::Error{"cannot write '" + path + "': the record of 1989 needs six columns and " +
                                column.error().message()};
         }
-        values.col(static_cast<Eigen::Index>(i)) = trajectory.rows.col(*column) / unit;
+        values.col(static_cast<Eigen::Index>(i)) = run.rows.col(*column) / unit;
     }
     return write_columns(path, named_columns(record1989_names(), values));
 }

@@ -8,7 +8,7 @@
 #include "files/file.hpp"
 #include "files/table.hpp"
 #include "model/oscillator.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::files {
@@ -17,8 +17,8 @@ namespace dinal::files {
 const std::vector<std::string>& record1989_names();
 
 /// Writes a computed run: time unchanged, the other five as angles (velocity / omega0, torques / k).
-/// Fails if the trajectory lacks one of the columns t, theta, velocity, M, friction, damping.
-text::Expected<Written> write_record1989(const std::string& path, const motion::Trajectory& trajectory,
+/// Fails if the run lacks one of the columns t, theta, velocity, M, friction, damping.
+text::Expected<Written> write_record1989(const std::string& path, const motion::Run& run,
                                          const model::Oscillator& system);
 
 /// Writes six columns unchanged, as from read_record1989.

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "api/classes.hpp"
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
 #include "lua/interrupt.hpp"

@@ -21,7 +21,7 @@ public:
         values_ = *own;
         owner_ = own;
     }
-    /// A view of numbers owned by `owner` (a trajectory), which it keeps alive.
+    /// A view of numbers owned by `owner` (a run), which it keeps alive.
     Vector(std::shared_ptr<const void> owner, const double* data, std::size_t size)
         : owner_(std::move(owner)), values_(data, size) {}
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The ends, times between them, events, and the times just before events, where velocity and M may jump.
-std::vector<double> first_times(const Trajectory& run, double from, double to) {
+std::vector<double> first_times(const Run& run, double from, double to) {
     constexpr int intervals = 1000;
     std::vector<double> times;
     for (int i = 0; i <= intervals; ++i) times.push_back(std::lerp(from, to, static_cast<double>(i) / intervals));
@@ -43,7 +43,7 @@ std::vector<double> invisible(const std::vector<double>& values, std::size_t wid
 
 }  // namespace
 
-BetweenRows::BetweenRows(const Trajectory& run, const model::Excitation* M) : run_(run), M_(M) {
+BetweenRows::BetweenRows(const Run& run, const model::Excitation* M) : run_(run), M_(M) {
     if (!run.course || !(run.course->whole_until() >= run.t_stop) || !(run.t_stop > run.t_start)) return;
     const std::vector<std::string>& names = run.names();
     for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(names.size()); ++c) {
@@ -72,7 +72,7 @@ bool BetweenRows::agrees_with_rows(Eigen::Index column) const {
 void BetweenRows::append_values(double t, std::vector<double>& values) const {
     const auto state = run_.course->at(t);
     const model::State y = state ? *state : model::State{unknown, unknown};
-    const std::vector<double> states = run_.state_count() > 0 ? run_.course->states_at(t) : std::vector<double>();
+    const std::vector<double> states = run_.states > 0 ? run_.course->states_at(t) : std::vector<double>();
     const auto first_state = static_cast<Eigen::Index>(run_.first_state());
     for (const Eigen::Index c : columns_) {
         if (c >= first_state) {
@@ -104,7 +104,7 @@ double BetweenRows::interpolated(Eigen::Index column, double t) const {
     return std::lerp(run_.rows(after - 1, column), run_.rows(after, column), part);
 }
 
-Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
+Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
     constexpr std::size_t enough = 100'000;  // times; one more pass may double their number
     constexpr double part = 0.381966;        // the golden section never falls into step with the motion
     const double shortest = 1e-5 * (to - from);
@@ -150,7 +150,7 @@ Trajectory BetweenRows::drawn(double from, double to, const Monitor& monitor) co
                                           : interpolated(column, times[i]);
         }
     }
-    Trajectory drawn = run_;
+    Run drawn = run_;
     drawn.rows = Rows(std::move(table));
     return drawn;
 }

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "model/excitation.hpp"
+#include "motion/run.hpp"
 #include "motion/simulate.hpp"
-#include "motion/trajectory.hpp"
 
 namespace dinal::motion {
 
 class BetweenRows {
 public:
     /// Keeps references to both. M is the excitation if t, theta and velocity determine it, otherwise null.
-    BetweenRows(const Trajectory& run, const model::Excitation* M);
+    BetweenRows(const Run& run, const model::Excitation* M);
 
     /// Returns whether the run kept its motion; otherwise only its rows are known.
     [[nodiscard]] bool any() const { return !columns_.empty(); }
@@ -25,13 +25,13 @@ public:
 
     /// The run between two times with rows at its events, and so close that straight lines between them look like the
     /// motion. Other columns are interpolated. Returns the run unchanged if the monitor stops it.
-    [[nodiscard]] Trajectory drawn(double from, double to, const Monitor& monitor) const;
+    [[nodiscard]] Run drawn(double from, double to, const Monitor& monitor) const;
 
 private:
     [[nodiscard]] bool agrees_with_rows(Eigen::Index column) const;
     [[nodiscard]] double interpolated(Eigen::Index column, double t) const;
 
-    const Trajectory& run_;
+    const Run& run_;
     const model::Excitation* M_;
     std::vector<Eigen::Index> columns_;
 };

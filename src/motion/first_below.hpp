@@ -59,11 +59,12 @@ public:
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
         const double by_slope = at_left > 0 ? 2 * at_left / second_ : 0;
-        if (at_left < -slope_floor_) return 0;
         for (std::size_t k = 2; k < n; ++k) {
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
+        // A dip below zero that is not deeper than the rounding is none.
+        if (at_left < -slope_floor_ && !(at_left * at_left <= 2 * bend * floor_)) return 0;
         const double by_bend = bend > 0 ? 3 * bend / derivative_bound<3>(f_) : 0;
         return by_slope > by_bend ? by_slope : by_bend;  // a NaN decides nothing
     }

@@ -11,7 +11,7 @@
 
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "text/expected.hpp"
 #include "text/option.hpp"
 
@@ -73,7 +73,7 @@ template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;
     { method.resolution(system) } -> std::same_as<Resolution>;
-    { method.run(problem) } -> std::same_as<Trajectory>;
+    { method.run(problem) } -> std::same_as<Run>;
 };
 
 /// A view of any method, for arguments only: it does not keep the method alive.
@@ -97,7 +97,7 @@ public:
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {
         return common_->resolution(method_, system);
     }
-    [[nodiscard]] Trajectory run(const Problem& problem) const { return common_->run(method_, problem); }
+    [[nodiscard]] Run run(const Problem& problem) const { return common_->run(method_, problem); }
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
     /// Returns whether M is evaluated in order of time, so that a memory in M does no harm.
     [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
@@ -112,7 +112,7 @@ private:
         std::optional<text::Error> (*wrong)(const void* method, const model::Oscillator& system,
                                             const model::Excitation& excitation);
         Resolution (*resolution)(const void* method, const model::Oscillator& system);
-        Trajectory (*run)(const void* method, const Problem& problem);
+        Run (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
         std::optional<Cut> (*cut)(const void* method);
         bool asks_in_order;

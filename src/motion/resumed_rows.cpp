@@ -7,7 +7,7 @@
 
 namespace dinal::motion {
 
-text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const Grid& rows, std::size_t columns,
+text::Expected<Grid> grid_of_both(const Run& so_far, double t_end, const Grid& rows, std::size_t columns,
                                   const Limits& limits) {
     if (!(t_end > so_far.t_stop)) {
         return text::Error{
@@ -22,7 +22,7 @@ text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const 
     return grid;
 }
 
-RowsToCome rows_to_come(const Trajectory& so_far, const Grid& grid) {
+RowsToCome rows_to_come(const Run& so_far, const Grid& grid) {
     // The last row of the first part is dropped if it existed only because of the old t_end.
     RowsToCome rows{std::min(static_cast<std::size_t>(so_far.size()), grid.count()), {}};
     if (rows.kept > 0 && so_far.rows(static_cast<Eigen::Index>(rows.kept) - 1, 0) != grid.time(rows.kept - 1)) {

@@ -8,13 +8,13 @@
 namespace dinal::motion {
 
 /// All rows of a run continued to t_end. Fails as simulate() does.
-text::Expected<Grid> grid_of_both(const Trajectory& so_far, double t_end, const Grid& rows, std::size_t columns,
+text::Expected<Grid> grid_of_both(const Run& so_far, double t_end, const Grid& rows, std::size_t columns,
                                   const Limits& limits);
 
 struct RowsToCome {
     std::size_t kept;  ///< rows of the first part that remain
     std::vector<double> times;
 };
-RowsToCome rows_to_come(const Trajectory& so_far, const Grid& grid);
+RowsToCome rows_to_come(const Run& so_far, const Grid& grid);
 
 }  // namespace dinal::motion

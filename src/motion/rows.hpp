@@ -15,11 +15,11 @@ namespace dinal::motion {
 class RowWriter {
 public:
     /// Requires a grid from Grid::within; reserves all its rows.
-    RowWriter(const model::Oscillator& system, const Grid& grid, Trajectory& trajectory)
-        : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
+    RowWriter(const model::Oscillator& system, const Grid& grid, Run& run)
+        : grid_(grid), run_(run), damping_(system.damping()) {
         Growing<double> table(grid.count(), column_count);
         column_ = table.writable();
-        trajectory.rows = Rows(std::move(table));
+        run.rows = Rows(std::move(table));
         set_next();
     }
     RowWriter(const RowWriter&) = delete;
@@ -58,7 +58,7 @@ public:
     /// Drops the unwritten rows of a run that ended early.
     void finish() {
         if (next_ < grid_.count()) {
-            trajectory_.rows = Rows(trajectory_.rows.table().first(next_));
+            run_.rows = Rows(run_.rows.table().first(next_));
         }
     }
     /// The number of steps of length h between two rows if they coincide to rounding, otherwise 0.
@@ -72,7 +72,7 @@ private:
     void set_next() { next_time_ = next_ < grid_.count() ? grid_.time(next_) : model::never; }
 
     const Grid& grid_;
-    Trajectory& trajectory_;
+    Run& run_;
     double damping_;
     double* column_ = nullptr;
     std::size_t next_ = 0;
@@ -82,13 +82,13 @@ private:
 /// Runs an engine to its end and collects the results.
 template <class Engine>
 void run_whole(Engine& engine, const Problem& problem, RowWriter& rows, std::vector<model::Event>& events,
-               std::shared_ptr<const Course> course, Trajectory& trajectory) {
-    trajectory.outcome = engine.run();
+               std::shared_ptr<const Course> course, Run& run) {
+    run.outcome = engine.run();
     rows.finish();
-    trajectory.t_start = problem.window.start;
-    engine.leave(trajectory);
-    trajectory.events = Growing<model::Event>(std::move(events));
-    trajectory.course = std::move(course);
+    run.t_start = problem.window.start;
+    engine.leave(run);
+    run.events = Growing<model::Event>(std::move(events));
+    run.course = std::move(course);
 }
 
 }  // namespace dinal::motion

@@ -197,12 +197,12 @@ namespace {
 struct Past {
     std::optional<model::Motion> motion;
     std::size_t course_bytes = 0;
-    const Carried* carried = nullptr;
+    const engine::Left* left = nullptr;
 };
 
-text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& system, const model::Drive& drive,
-                                    const Window& window, const Grid& rows, MethodView method, const Monitor& monitor,
-                                    const Limits& limits) {
+text::Expected<Run> run_from(const Past& past, const model::Oscillator& system, const model::Drive& drive,
+                             const Window& window, const Grid& rows, MethodView method, const Monitor& monitor,
+                             const Limits& limits) {
     const model::State initial = drive.start();
     if (!std::isfinite(initial.theta))
         return text::Error{.sentence = fmt::format("theta0 = {} must be a finite number", initial.theta),
@@ -241,22 +241,22 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                                     method.about().call.name),
             .option = "integrator"};
     }
-    problem.carried = past.carried;
+    problem.left = past.left;
     problem.more = more;
-    Trajectory trajectory = method.run(problem);
-    trajectory.initial = initial;
+    Run run = method.run(problem);
+    run.initial = initial;
     // A native M is always finite, so the spring torque overflowed: the motion diverged.
     const bool own_spring = system.spring().as<model::springs::PolynomialSpring>() != nullptr;
-    if (trajectory.outcome == model::Outcome::excitation_not_finite && own_spring && !drive.M().has_script() &&
+    if (run.outcome == model::Outcome::excitation_not_finite && own_spring && !drive.M().has_script() &&
         std::isfinite(drive.M().most())) {
-        trajectory.outcome = model::Outcome::state_not_finite;
+        run.outcome = model::Outcome::state_not_finite;
     }
     if (oath) {
-        const bool whole = model::is_whole(trajectory.outcome) || trajectory.outcome == model::Outcome::stopped;
-        trajectory.contradiction = oath->verdict(whole);
-        if (trajectory.contradiction) trajectory.outcome = model::Outcome::not_a_function;
+        const bool whole = model::is_whole(run.outcome) || run.outcome == model::Outcome::stopped;
+        run.contradiction = oath->verdict(whole);
+        if (run.contradiction) run.outcome = model::Outcome::not_a_function;
     }
-    return trajectory;
+    return run;
 }
 
 /// Returns whether the mass stood at the end, for ever or not.
@@ -265,7 +265,7 @@ bool stands(model::Outcome outcome) {
 }
 
 /// The events of both parts; a rest at the end of the first becomes a stick.
-Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second) {
+Growing<model::Event> joined(const Run& so_far, const Run& second) {
     const Growing<model::Event>& first = so_far.events;
     std::vector<model::Event> later;
     std::size_t kept = first.size();
@@ -289,7 +289,7 @@ Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second)
 }
 
 /// The second part appended to the first, of which `kept` rows remain.
-Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, const Limits& limits) {
+Run joined(const Run& first, std::size_t kept, Run second, const Limits& limits) {
     const std::size_t most = limits.memory / (column_count * sizeof(double));
     second.rows = Rows(first.rows.table().followed_by(kept, second.rows.table(), most));
     second.events = joined(first, second);
@@ -306,26 +306,25 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
 
 }  // namespace
 
-text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
-                                    const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
+text::Expected<Run> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
+                             const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
     auto result = run_from({}, system, drive, window, rows, method, monitor, limits);
     if (result) settle(result.value(), system, drive);
     return result;
 }
 
-text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
-                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor,
-                                  const Limits& limits) {
+text::Expected<Run> resume(const model::Oscillator& system, const model::Drive& drive, const Run& so_far, double t_end,
+                           const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
     const auto grid = grid_of_both(so_far, t_end, rows, column_count, limits);
     if (!grid) return grid.error();
     const Window window{so_far.t_stop, t_end};
     auto [kept, times] = rows_to_come(so_far, *grid);
-    const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0, so_far.carried.get()};
+    const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0, so_far.left.get()};
     model::Drive from_there = drive;
     from_there.start_at(so_far.state_at_stop);
     auto second = run_from(past, system, from_there, window, Grid::at(std::move(times)), method, monitor, limits);
     if (!second) return second.error();
-    Trajectory whole = joined(so_far, kept, std::move(second).value(), limits);
+    Run whole = joined(so_far, kept, std::move(second).value(), limits);
     settle(whole, system, drive);
     return whole;
 }

@@ -1,4 +1,4 @@
-// The entry point of the core: simulates a system under a drive with an integrator; returns a trajectory.
+// The entry point of the core: simulates a system under a drive with an integrator; returns a run.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 #include "model/system.hpp"
 #include "motion/growing.hpp"
 #include "motion/method.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::motion {
@@ -92,41 +92,35 @@ struct Problem {
     const Limits& limits;
     std::optional<model::Motion> before = {};  ///< motion at the end of the run that is continued
     std::size_t course_bytes = 0;              ///< memory limit of the course
-    bool more = false;                 ///< whether there are walls, controllers with a memory, or more drive than M
-    const Carried* carried = nullptr;  ///< integrator's data from the run that is continued
+    bool more = false;                   ///< whether there are walls, controllers with a memory, or more drive than M
+    const engine::Left* left = nullptr;  ///< of the run that is continued
 };
 
 /// Runs from the drive's initial state at window.start. Fails before the first step if the window, the grid or the
-/// integrator's options are invalid or the rows do not fit; later failures are outcomes of the trajectory.
-text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
-                                    const Grid& rows, MethodView method, const Monitor& monitor = {},
-                                    const Limits& limits = {});
+/// integrator's options are invalid or the rows do not fit; later failures are outcomes of the run.
+text::Expected<Run> simulate(const model::Oscillator& system, const model::Drive& drive, const Window& window,
+                             const Grid& rows, MethodView method, const Monitor& monitor = {},
+                             const Limits& limits = {});
 
 /// The same for any system. If its bodies have names, the rows have all columns, and only its parts have a course.
-text::Expected<Trajectory> simulate(const model::System& system, const model::Drive& drive, const Window& window,
-                                    const Grid& rows, MethodView method, const Monitor& monitor = {},
-                                    const Limits& limits = {});
+text::Expected<Run> simulate(const model::System& system, const model::Drive& drive, const Window& window,
+                             const Grid& rows, MethodView method, const Monitor& monitor = {},
+                             const Limits& limits = {});
 
-/// Continues `so_far` from its end to t_end, as if it had not been interrupted. Returns the trajectory of both, which
+/// Continues `so_far` from its end to t_end, as if it had not been interrupted. Returns the run of both, which
 /// shares the data of `so_far`. `rows` covers both parts; `so_far` has the first of them, and perhaps one more at its
 /// end. Fails like simulate().
-text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Drive& drive, const Trajectory& so_far,
-                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
-                                  const Limits& limits = {});
+text::Expected<Run> resume(const model::Oscillator& system, const model::Drive& drive, const Run& so_far, double t_end,
+                           const Grid& rows, MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
 
-text::Expected<Trajectory> resume(const model::System& system, const model::Drive& drive, const Trajectory& so_far,
-                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor = {},
-                                  const Limits& limits = {});
+text::Expected<Run> resume(const model::System& system, const model::Drive& drive, const Run& so_far, double t_end,
+                           const Grid& rows, MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
 
-/// The run of all bodies as a trajectory; if they have names, with all columns.
-Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
-                         std::shared_ptr<const engine::Run> run);
-/// The trajectory of one body or link.
-Trajectory seen_from(const model::System& system, const model::Drive& drive, std::shared_ptr<const engine::Run> run,
-                     std::size_t joint);
+/// The run of the general loop as its user sees it.
+Run completed(const model::System& system, const model::Drive& drive, Run run);
+/// A view: what one body or link sees of a run; without names it is the run itself.
+Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint);
 /// The number of columns of its rows.
 std::size_t columns_of(const model::System& system, const model::Drive& drive);
-/// Returns whether the motion between the rows was kept.
-bool is_dense(const Trajectory& trajectory);
 
 }  // namespace dinal::motion

@@ -2,22 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "motion/engine/modes.hpp"
 #include "motion/engine/part.hpp"
-#include "motion/engine/plain.hpp"
+#include "motion/engine/run.hpp"
 #include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion {
 
 namespace {
-
-/// A run that ended where it began needs no memory for its motion.
-bool keeps_motion(const engine::Run& run) {
-    return run.history != nullptr && (run.history->bytes() > 0 || run.t_stop == run.t_start);
-}
 
 /// An error if the method does not support such systems, or suits not every mode of the bodies. Holding contacts slow
 /// no mode down, so they are left out.
@@ -37,9 +32,9 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
     return {};
 }
 
-text::Expected<engine::Run> run_of(const model::System& system, const model::Drive& drive, const Window& window,
-                                   const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits,
-                                   std::shared_ptr<const engine::Carry> before = {}) {
+text::Expected<Run> run_of(const model::System& system, const model::Drive& drive, const Window& window,
+                           const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits,
+                           std::shared_ptr<const engine::Carry> before = {}) {
     if (auto wrong = window.complaint()) return *wrong;
     const auto grid = rows.within(window);
     if (!grid) return grid.error();
@@ -60,77 +55,74 @@ text::Expected<engine::Run> run_of(const model::System& system, const model::Dri
                         .keeps_torques = true});
 }
 
+/// What a joint is by itself, for a run that has kept its motion.
+std::optional<model::Oscillator> oscillator_if_dense(const model::System& system, const Run& run, std::size_t joint) {
+    if (!run.left->is_dense(run)) return {};
+    auto made = model::oscillator_at(system, joint);
+    return made ? std::optional(std::move(made).value()) : std::nullopt;
+}
+
 }  // namespace
 
 std::size_t columns_of(const model::System& system, const model::Drive& drive) {
-    return system.is_plain() ? static_cast<std::size_t>(column_count) : engine::column_names_of(system, drive).size();
+    return system.is_plain() ? static_cast<std::size_t>(column_count)
+                             : engine::column_names_of(system, drive).size() + system.bodies.size();
 }
 
-bool is_dense(const Trajectory& trajectory) {
-    return trajectory.course != nullptr || (trajectory.bodies != nullptr && keeps_motion(*trajectory.bodies));
+bool Run::is_dense() const {
+    return course != nullptr || (left != nullptr && left->is_dense(*this));
 }
 
-Trajectory seen_from(const model::System& system, const model::Drive& drive, std::shared_ptr<const engine::Run> run,
-                     std::size_t joint) {
+Run completed(const model::System& system, const model::Drive& drive, Run run) {
     std::optional<model::Oscillator> seen;
-    if (keeps_motion(*run)) {
-        if (auto made = model::oscillator_at(system, joint)) seen = std::move(made).value();
-    }
-    Trajectory part = engine::part_with_rows(system, drive, *run, joint, seen);
-    part.bodies = std::move(run);
-    return part;
+    if (!system.named) seen = oscillator_if_dense(system, run, 0);
+    engine::complete(run, system, drive, seen);
+    if (run.rough) run.rough->other_integrators = false;
+    return run;
 }
 
-Trajectory trajectory_of(const model::System& system, const model::Drive& drive,
-                         std::shared_ptr<const engine::Run> run) {
-    if (!system.named) return seen_from(system, drive, std::move(run), 0);
-    Trajectory all = engine::part_of(system, drive, *run, 0, {});
-    if (all.rough) all.rough->other_integrators = false;
-    all.own_names = engine::column_names_of(system, drive);
-    all.rows = Rows(run->table);
-    std::vector<model::Event> events;
-    std::copy_if(run->events.begin(), run->events.end(), std::back_inserter(events),
-                 [](const model::Event& e) { return e.user < 0 || e.where == 0; });  // each user event only once
-    all.events = Growing<model::Event>(std::move(events));
-    all.bodies = std::move(run);
-    return all;
+Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint) {
+    return system.named ? engine::part_of(system, drive, run, joint, oscillator_if_dense(system, run, joint)) : run;
 }
 
-text::Expected<Trajectory> simulate(const model::System& system, const model::Drive& drive, const Window& window,
-                                    const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
+text::Expected<Run> simulate(const model::System& system, const model::Drive& drive, const Window& window,
+                             const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
     if (system.is_plain()) {
         const auto alone = model::oscillator_at(system, 0);
         return alone ? simulate(*alone, drive, window, rows, method, monitor, limits) : alone.error();
     }
     auto run = run_of(system, drive, window, rows, method, monitor, limits);
     if (!run) return run.error();
-    return trajectory_of(system, drive, std::make_shared<const engine::Run>(std::move(run).value()));
+    return completed(system, drive, std::move(run).value());
 }
 
-text::Expected<Trajectory> resume(const model::System& system, const model::Drive& drive, const Trajectory& so_far,
-                                  double t_end, const Grid& rows, MethodView method, const Monitor& monitor,
-                                  const Limits& limits) {
+text::Expected<Run> resume(const model::System& system, const model::Drive& drive, const Run& so_far, double t_end,
+                           const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
     if (system.is_plain()) {
         const auto alone = model::oscillator_at(system, 0);
         return alone ? resume(*alone, drive, so_far, t_end, rows, method, monitor, limits) : alone.error();
     }
-    const engine::Run& first = *so_far.bodies;
     const std::size_t columns = columns_of(system, drive);
     const auto grid = grid_of_both(so_far, t_end, rows, columns, limits);
     if (!grid) return grid.error();
     auto [kept, times] = rows_to_come(so_far, *grid);
-    auto second =
-        run_of(system, drive, {so_far.t_stop, t_end}, Grid::at(std::move(times)), method, monitor, limits, first.carry);
+    auto second = run_of(system, drive, {so_far.t_stop, t_end}, Grid::at(std::move(times)), method, monitor, limits,
+                         so_far.left->carry);
     if (!second) return second.error();
-    engine::Run whole = std::move(second).value();
-    whole.table = first.table.followed_by(kept, whole.table, limits.memory / (columns * sizeof(double)));
-    whole.events.insert(whole.events.begin(), first.events.begin(), first.events.end());
-    whole.t_start = first.t_start, whole.begun = first.begun;
-    whole.gap = std::max(first.gap, whole.gap);
-    whole.unproven = std::max(first.unproven, whole.unproven);
-    whole.noise = std::max(first.noise, whole.noise);
-    whole.jumps += first.jumps;
-    return trajectory_of(system, drive, std::make_shared<const engine::Run>(std::move(whole)));
+    Run whole = std::move(second).value();
+    const std::size_t most = limits.memory / (columns * sizeof(double));
+    whole.rows = Rows(so_far.rows.table().followed_by(kept, whole.rows.table(), most));
+    whole.events =
+        so_far.events.followed_by(so_far.events.size(), whole.events, std::numeric_limits<std::size_t>::max());
+    auto left = std::make_shared<engine::Left>(*whole.left);
+    left->start = so_far.left->start, left->begun = so_far.left->begun;
+    whole.left = std::move(left);
+    whole.t_start = so_far.t_start;
+    whole.gap = std::max(so_far.gap, whole.gap);
+    whole.unproven = std::max(so_far.unproven, whole.unproven);
+    whole.noise = std::max(so_far.noise, whole.noise);
+    whole.jumps += so_far.jumps;
+    return completed(system, drive, std::move(whole));
 }
 
 }  // namespace dinal::motion

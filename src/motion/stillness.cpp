@@ -31,7 +31,7 @@ bool moved_by_others(const model::Drive& drive) {
 }
 
 /// Decides once more at the very end, as M may have jumped there after the integrator's last decision.
-bool stays(const Trajectory& run, const model::Lowered& system, const std::optional<model::Walls>& walls, double M) {
+bool stays(const Run& run, const model::Lowered& system, const std::optional<model::Walls>& walls, double M) {
     const double theta = run.state_at_stop.theta;
     const model::Motion way = model::motion_from_standstill(system, M, theta);
     const bool leans = walls && ((way == model::Motion::backward && theta <= walls->lower) ||
@@ -39,7 +39,7 @@ bool stays(const Trajectory& run, const model::Lowered& system, const std::optio
     return way == model::Motion::stuck || leans;
 }
 
-bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Drive& drive, double since) {
+bool for_good(const Run& run, const model::Oscillator& oscillator, const model::Drive& drive, double since) {
     const model::Lowered system(oscillator);
     const bool creeps = run.motion_at_stop != model::Motion::stuck;
     std::optional<model::Excitation> with_base;
@@ -56,25 +56,25 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
 
 }  // namespace
 
-void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive) {
-    if (trajectory.outcome != model::Outcome::stuck_at_end || moved_by_others(drive)) return;
-    const std::size_t stop = last_stop(trajectory.events);
-    const double since = stop == no_stop ? trajectory.t_start : trajectory.events[stop].t;
-    if (!for_good(trajectory, system, drive, since)) return;
-    trajectory.outcome = model::Outcome::at_rest;
+void settle(Run& run, const model::Oscillator& system, const model::Drive& drive) {
+    if (run.outcome != model::Outcome::stuck_at_end || moved_by_others(drive)) return;
+    const std::size_t stop = last_stop(run.events);
+    const double since = stop == no_stop ? run.t_start : run.events[stop].t;
+    if (!for_good(run, system, drive, since)) return;
+    run.outcome = model::Outcome::at_rest;
     if (stop == no_stop) return;
-    const auto events = trajectory.events.column(0);
-    if (trajectory.events.own_bytes() > 0) {  // not shared with others
-        trajectory.events.writable()[stop].kind = model::EventKind::rest;
+    const auto events = run.events.column(0);
+    if (run.events.own_bytes() > 0) {  // not shared with others
+        run.events.writable()[stop].kind = model::EventKind::rest;
         return;
     }
     std::vector<model::Event> last(events.begin() + static_cast<std::ptrdiff_t>(stop), events.end());
     last.front().kind = model::EventKind::rest;
-    trajectory.events = trajectory.events.followed_by(stop, Growing<model::Event>(std::move(last)),
-                                                      std::numeric_limits<std::size_t>::max());
+    run.events =
+        run.events.followed_by(stop, Growing<model::Event>(std::move(last)), std::numeric_limits<std::size_t>::max());
 }
 
-std::vector<model::Event> turns_on_belt(const Trajectory& run) {
+std::vector<model::Event> turns_on_belt(const Run& run) {
     constexpr std::size_t most_looks = 100'000;
     std::vector<double> times = {run.t_start, run.t_stop};
     for (const model::Event& event : run.events) times.push_back(event.t);
@@ -118,18 +118,18 @@ std::vector<model::Event> turns_on_belt(const Trajectory& run) {
     return turns;
 }
 
-double peak(const Trajectory& trajectory) {
-    double greatest = std::max(std::fabs(trajectory.initial.theta), std::fabs(trajectory.state_at_stop.theta));
-    if (const auto theta = trajectory.find("theta"); theta && trajectory.size() > 0) {
-        greatest = std::max(greatest, trajectory.rows.col(*theta).cwiseAbs().maxCoeff());
+double peak(const Run& run) {
+    double greatest = std::max(std::fabs(run.initial.theta), std::fabs(run.state_at_stop.theta));
+    if (const auto theta = run.find("theta"); theta && run.size() > 0) {
+        greatest = std::max(greatest, run.rows.col(*theta).cwiseAbs().maxCoeff());
     }
-    for (const model::Event& event : trajectory.events) {
+    for (const model::Event& event : run.events) {
         greatest = std::max(greatest, std::fabs(event.theta));
-        if (event.kind != model::EventKind::user || !trajectory.course) continue;
-        if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // acts move it
+        if (event.kind != model::EventKind::user || !run.course) continue;
+        if (const auto y = run.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // acts move it
     }
-    if (trajectory.on_belt) {
-        for (const model::Event& turn : turns_on_belt(trajectory)) greatest = std::max(greatest, std::fabs(turn.theta));
+    if (run.on_belt) {
+        for (const model::Event& turn : turns_on_belt(run)) greatest = std::max(greatest, std::fabs(turn.theta));
     }
     return greatest;
 }

@@ -2,19 +2,19 @@
 #pragma once
 
 #include "model/drive.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 
 namespace dinal::motion {
 
 /// A mass stuck at the end is at rest if M can never move it again: M is constant from then on, nowhere large enough,
 /// or has completed a period without moving it. Sets the outcome and turns the last stop into a rest. Done here once,
 /// as integrators do not know the future of M.
-void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Drive& drive);
+void settle(Run& run, const model::Oscillator& system, const model::Drive& drive);
 
 /// The extremes of theta on a belt, which are no events, from a search between events and rows.
-std::vector<model::Event> turns_on_belt(const Trajectory& run);
+std::vector<model::Event> turns_on_belt(const Run& run);
 
 /// The greatest |theta| of the motion between the rows, too; rad.
-double peak(const Trajectory& trajectory);
+double peak(const Run& run);
 
 }  // namespace dinal::motion

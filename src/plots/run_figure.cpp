@@ -62,11 +62,11 @@ std::string axis_label(const RunData& run, std::string_view name) {
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
-    const auto column = files::find_column(run.trajectory->names(), name);
+    const auto column = files::find_column(run.result->names(), name);
     if (!column) {
         return column.error();
     }
-    const auto values = run.trajectory->rows.col(*column);
+    const auto values = run.result->rows.col(*column);
     return Numbers{run.owner, {values.data(), static_cast<std::size_t>(values.size())}};
 }
 
@@ -98,18 +98,18 @@ text::Expected<Numbers> column(const RunData& run, std::string_view name) {
 }
 
 bool has(const RunData& run, std::string_view name) {
-    return run.trajectory->find(name).has_value();
+    return run.result->find(name).has_value();
 }
 
 bool is_excited(const RunData& run, std::string_view name) {
-    const auto M = run.trajectory->find(name);
-    return M && run.trajectory->size() > 0 && run.trajectory->rows.col(*M).cwiseAbs().maxCoeff() > 0;
+    const auto M = run.result->find(name);
+    return M && run.result->size() > 0 && run.result->rows.col(*M).cwiseAbs().maxCoeff() > 0;
 }
 
 /// The default columns of other tables: the second over the first.
 std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
     if (!has(run, "theta")) {
-        const auto& names = run.trajectory->names();
+        const auto& names = run.result->names();
         const auto other = std::find_if(names.begin(), names.end(), [x](const std::string& name) { return name != x; });
         return {other != names.end() ? *other : std::string(x)};
     }
@@ -128,9 +128,9 @@ std::string symbol_for(std::string_view column) {
     return std::string(symbol_of(column).symbol);
 }
 
-std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
+std::vector<Interval> stuck_intervals(const motion::Run& run) {
     std::vector<Interval> intervals;
-    for (const analysis::Stretch& stretch : analysis::stretches(trajectory)) {
+    for (const analysis::Stretch& stretch : analysis::stretches(run)) {
         if (stretch.stuck && stretch.begun_by && !intervals.empty() && intervals.back().high == stretch.from) {
             intervals.back().high = stretch.to;  // it stuck before it came to rest
         } else if (stretch.stuck) {
@@ -143,14 +143,14 @@ std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
 namespace {
 
 /// Impacts and relay switches on the curve of theta, without those too close to be distinguished.
-std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
+std::vector<Mark> marks_of_events(const motion::Run& run) {
     constexpr double apart = 1.0 / 200;  // part of the run
     std::vector<Mark> marks;
     for (const auto& [event, kind] : {std::pair{model::EventKind::impact, MarkKind::impact},
                                       std::pair{model::EventKind::switched, MarkKind::switched}}) {
         double last = -model::never;
-        for (const model::Event& e : trajectory.events) {
-            if (e.kind != event || e.t - last < apart * (trajectory.t_stop - trajectory.t_start)) {
+        for (const model::Event& e : run.events) {
+            if (e.kind != event || e.t - last < apart * (run.t_stop - run.t_start)) {
                 continue;
             }
             marks.push_back({e.t, e.theta, kind});
@@ -197,9 +197,9 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
         figure.y.names_curves = measure != Measure::torque;
     }
     if (across == "t") {
-        figure.stuck = stuck_intervals(*run.trajectory);
+        figure.stuck = stuck_intervals(*run.result);
         if (with_theta) {
-            figure.marks = marks_of_events(*run.trajectory);
+            figure.marks = marks_of_events(*run.result);
         }
     }
     return figure;
@@ -208,10 +208,10 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
 }  // namespace
 
 text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked) {
-    if (run.trajectory->names().empty()) {
+    if (run.result->names().empty()) {
         return text::Error{"the run has no columns to draw"};
     }
-    const std::string across = !asked.x.empty() ? asked.x : has(run, "t") ? "t" : run.trajectory->names().front();
+    const std::string across = !asked.x.empty() ? asked.x : has(run, "t") ? "t" : run.result->names().front();
     const std::vector<std::string> names = asked.ys.empty() ? usual_columns(run, across) : asked.ys;
     const auto x_values = column(run, across);
     if (!x_values) {
@@ -244,12 +244,12 @@ namespace {
 
 /// Adds the corners between rows to a phase curve: impacts, relay switches, opened and closed contacts. Divides
 /// velocities by `by`.
-void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) {
+void add_corners(Curve& curve, const motion::Run& run, double by) {
     const auto is_corner = [](const model::Event& e) {
         return e.kind > model::EventKind::rest && e.kind != model::EventKind::user;
     };
-    const auto times = trajectory.find("t");
-    if (!times || std::none_of(trajectory.events.begin(), trajectory.events.end(), is_corner)) {
+    const auto times = run.find("t");
+    if (!times || std::none_of(run.events.begin(), run.events.end(), is_corner)) {
         return;
     }
     std::vector<double> x, y;
@@ -257,15 +257,13 @@ void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) 
         x.push_back(theta);
         y.push_back(velocity);
     };
-    auto event = trajectory.events.begin();
+    auto event = run.events.begin();
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        for (;
-             event != trajectory.events.end() && event->t <= trajectory.rows.col(*times)[static_cast<Eigen::Index>(i)];
-             ++event) {
+        for (; event != run.events.end() && event->t <= run.rows.col(*times)[static_cast<Eigen::Index>(i)]; ++event) {
             if (!is_corner(*event)) continue;
             put(event->theta, event->velocity / by);
             if (event->kind == model::EventKind::impact) {
-                put(event->theta, -trajectory.restitution * event->velocity / by);
+                put(event->theta, -run.restitution * event->velocity / by);
             }
         }
         put(curve.x.values[i], curve.y.values[i]);
@@ -293,7 +291,7 @@ text::Expected<Figure> phase_figure(const RunData& run) {
     plane.equal = scaled;
     plane.circles = record || run.system->has_linear_spring();
     if (!record) {
-        add_corners(plane.curves.front(), *run.trajectory, scaled ? run.system->natural_frequency() : 1);
+        add_corners(plane.curves.front(), *run.result, scaled ? run.system->natural_frequency() : 1);
     }
     const Curve& motion = plane.curves.front();
     if (const std::size_t rows = motion.size(); rows > 0) {

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "model/oscillator.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "plots/figure.hpp"
 
 namespace dinal::plots {
 
 struct RunData {
-    std::shared_ptr<const void> owner;  ///< owner of the trajectory
-    const motion::Trajectory* trajectory;
+    std::shared_ptr<const void> owner;  ///< owner of the run
+    const motion::Run* result;
     std::optional<model::Oscillator> system;  ///< none if read from a file, or for several bodies
     model::Units units = {};
     std::optional<double> load = {};  ///< constant torque on the mass in addition to its system's; none if it varies
@@ -42,6 +42,6 @@ text::Expected<Figure> phase_figure(const RunData& run);
 std::string symbol_for(std::string_view column);
 
 /// The intervals of sticking, from the events.
-std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory);
+std::vector<Interval> stuck_intervals(const motion::Run& run);
 
 }  // namespace dinal::plots

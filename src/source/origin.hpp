@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "lua/lua_headers.hpp"
-#include "motion/engine/run.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 
@@ -20,7 +19,7 @@ struct Task {
     motion::Integrator integrator;
 };
 
-/// The origin of a simulated trajectory; one read from a file has none.
+/// The origin of a simulated run; one read from a file has none.
 struct Origin : Task {
     /// Lua text rebuilding M and the system, upvalues as at the start; empty without functions, when it can be made
     /// later.

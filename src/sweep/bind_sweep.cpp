@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/run.hpp"
+#include "api/lua_run.hpp"
 #include "api/steady_answer.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
@@ -177,9 +177,8 @@ int looks_of_point(lua_State* L) {
         lua_gettable(L, -2);
     }
     const int run = lua_gettop(L);
-    if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->trajectory.outcome)) {
-        lua::raise(L,
-                   fmt::format("the run ended before the last sample: {}", motion::outcome_text((*own)->trajectory)));
+    if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->result.outcome)) {
+        lua::raise(L, fmt::format("the run ended before the last sample: {}", motion::outcome_text((*own)->result)));
     }
     lua_createtable(L, 0, static_cast<int>(2 * keep));
     for (const char* column : {"theta", "velocity"}) {

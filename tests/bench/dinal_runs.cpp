@@ -38,7 +38,7 @@ Oscillator oscillator(const Workload& work) {
                                   .kinetic_friction = work.friction_ratio}));
 }
 
-Trajectory trajectory(const Workload& work, const Integrator& integrator, const Grid& rows) {
+Run trajectory(const Workload& work, const Integrator& integrator, const Grid& rows) {
     return need(simulate(oscillator(work), {excitation(work), {work.u0, work.v0}}, {0, work.length}, rows, integrator));
 }
 
@@ -49,7 +49,7 @@ double run(const Workload& work, const Integrator& integrator) {
 }
 
 double error(const Workload& work, const Integrator& integrator) {
-    const Trajectory run = trajectory(work, integrator, Grid::every(0.01));
+    const Run run = trajectory(work, integrator, Grid::every(0.01));
     const auto t = run.column(Column::t), theta = run.column(Column::theta);
     Comparison watch(work);
     for (Eigen::Index i = 0; i < run.size(); ++i) {

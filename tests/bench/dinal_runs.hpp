@@ -16,7 +16,7 @@ extern const Peer dinal_1989;        ///< h = .001
 dinal::model::Oscillator oscillator(const Workload& work);
 
 /// A run of the work with rows; ends the program with the reason when dinal refuses it.
-dinal::motion::Trajectory trajectory(const Workload& work, const dinal::motion::Integrator& integrator,
-                                     const dinal::motion::Grid& rows);
+dinal::motion::Run trajectory(const Workload& work, const dinal::motion::Integrator& integrator,
+                              const dinal::motion::Grid& rows);
 
 }  // namespace bench

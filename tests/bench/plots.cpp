@@ -19,9 +19,8 @@ const Workload& driven_motion = workloads[3];
 /// W4 with its 1e6 rows, and what run:plot() and run:phase_plot() draw of it.
 struct Pictures {
     dinal::model::Oscillator system = oscillator(driven_motion);
-    dinal::motion::Trajectory run =
-        trajectory(driven_motion, dinal::motion::Spectral{}, dinal::motion::Grid::every(0.001));
-    dinal::plots::RunData data{nullptr, &run, &system};
+    dinal::motion::Run run = trajectory(driven_motion, dinal::motion::Spectral{}, dinal::motion::Grid::every(0.001));
+    dinal::plots::RunData data{nullptr, &run, system};
     dinal::plots::Figure response = dinal::plots::column_figures(data)->front();
     dinal::plots::Figure phase = *dinal::plots::phase_figure(data);
 };

@@ -33,7 +33,7 @@ std::filesystem::path memory_folder() {
 enum class Timed { writing, reading };
 
 void csv(benchmark::State& state, const std::filesystem::path& folder, Timed timed) {
-    const dinal::motion::Trajectory run =
+    const dinal::motion::Run run =
         trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
     const auto columns = dinal::files::named_columns(run.names(), run.rows.matrix());
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();

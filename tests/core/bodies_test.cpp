@@ -73,7 +73,7 @@ Rig random_chain(unsigned seed, bool sticky) {
     return rig;
 }
 
-engine::Run run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
+Run run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
     const Window window{0, 10};
     const Grid grid = Grid::every(0.25).within(window).value();
     return engine::run({rig.system, rig.drive, window, grid, {}, {}, {}, tolerance, longest});
@@ -133,7 +133,7 @@ Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
 }
 
 /// The same events; those of one moment in any order.
-bool alike(const engine::Run& a, const engine::Run& b) {
+bool alike(const Run& a, const Run& b) {
     const auto same = [](const model::Event& x, const model::Event& y) {
         return x.kind == y.kind && x.where == y.where && std::fabs(x.t - y.t) <= 1e-9;
     };
@@ -162,15 +162,16 @@ TEST_CASE("chains that rub move the same at other resolutions, and as a time ste
         for (std::size_t number = 0; number < group.seeds.size(); ++number) {
             CAPTURE(group.seeds[number], group.sticky);
             const Rig rig = random_chain(group.seeds[number], group.sticky);
-            const engine::Run found = run(rig), finer = run(rig, 1e-10, 0.05);
+            const Run found = run(rig), finer = run(rig, 1e-10, 0.05);
             REQUIRE(is_whole(found.outcome));
-            REQUIRE(found.table.size() == finer.table.size());
+            REQUIRE(found.size() == finer.size());
             CHECK(alike(found, finer));
             const bool judges = number < group.judged;
             const Eigen::VectorXd judged = judges ? by_time_stepping(rig, 10, group.dt) : Eigen::VectorXd();
             for (std::size_t i = 0; i < rig.system.bodies.size(); ++i) {
-                const double theta = found.table(found.table.size() - 1, 1 + engine::columns_of_body * i);
-                CHECK(std::fabs(theta - finer.table(finer.table.size() - 1, 1 + engine::columns_of_body * i)) <= 1e-11);
+                const auto column = static_cast<Eigen::Index>(1 + engine::columns_of_body * i);
+                const double theta = found.rows(found.size() - 1, column);
+                CHECK(std::fabs(theta - finer.rows(finer.size() - 1, column)) <= 1e-11);
                 if (judges) CHECK(std::fabs(theta - judged(static_cast<Eigen::Index>(i))) <= group.near);
             }
         }

@@ -105,7 +105,7 @@ std::vector<Row> rows_for(const ReferenceSystem& s, const ExactMotion& exact) {
     return rows;
 }
 
-void check_events(const ReferenceSystem& s, const Trajectory& run, const ExactMotion& exact, double tolerance) {
+void check_events(const ReferenceSystem& s, const Run& run, const ExactMotion& exact, double tolerance) {
     const auto& expected = exact.events();
     std::string told;
     std::string wanted;
@@ -141,7 +141,7 @@ TEST_CASE("each integrator follows every reference system, with its events in ki
             for (const Integrator& method : row.methods) {
                 if (!row.follows) continue;
                 CAPTURE(s.name, MethodView(method).lua_text(text::Defaults::left_out));
-                const Trajectory run = must_run(s, generic_grid(s), method);
+                const Run run = must_run(s, generic_grid(s), method);
                 const double error = error_of(run, exact, s.oscillator);
                 INFO(fmt::format("error {:.2e}, tolerance {:.2e}", error, row.tolerance));
                 CHECK(error <= row.tolerance);
@@ -156,7 +156,7 @@ TEST_CASE("rows are at the asked times and their torques add up", "[conformance]
         CAPTURE(s.name);
         const Oscillator& o = s.oscillator;
         const ExactMotion exact = s.exact();
-        const Trajectory run = must_run(s, generic_grid(s), Spectral{});
+        const Run run = must_run(s, generic_grid(s), Spectral{});
         const double torque = o.stiffness() * s.size;
         const double dt = generic_grid(s).dt();
         for (Eigen::Index i = 0; i < run.size(); ++i) {

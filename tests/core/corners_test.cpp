@@ -93,11 +93,11 @@ TEST_CASE("a speed that only touches a corner, or stays at it, goes on", "[laws]
     const Tabulated table{.speed = {0, 1, 2}, .torque = {0.5, 0.3, 0.6}};
     const Oscillator block = Oscillator::make({.inertia = 1, .stiffness = 0, .friction = table}).value();
     const Excitation push = Excitation::make(Constant{0.3}).value();
-    const Trajectory run = must_run(block, push, {0, 1}, {0, 3}, Grid::every(0.5), Spectral{});
+    const Run run = must_run(block, push, {0, 1}, {0, 3}, Grid::every(0.5), Spectral{});
     CHECK(run.outcome == Outcome::reached_end);
     CHECK(run.state_at_stop.theta == within(3, 1e-12));
     // Above the corner friction rises: 0.3 v' = ... the speed comes back to it as exp(-0.3 t).
-    const Trajectory back = must_run(block, push, {0, 1.5}, {0, 20}, Grid::every(0.5), Spectral{});
+    const Run back = must_run(block, push, {0, 1.5}, {0, 20}, Grid::every(0.5), Spectral{});
     CHECK(back.state_at_stop.velocity == within(1 + 0.5 * std::exp(-6), 1e-12));
 }
 

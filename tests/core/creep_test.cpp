@@ -21,7 +21,7 @@ struct Creeper {
     [[nodiscard]] Oscillator system() const { return nondimensional(zeta, 0.3, 0.5); }
     [[nodiscard]] Excitation M() const { return Excitation::make(Ramp{.slope = slope, .at = at}).value(); }
     /// `watched`: with an event of a user that never comes, so that the engine takes the steps of rk4.
-    [[nodiscard]] Trajectory run(double end, const Integrator& method, bool watched = false) const {
+    [[nodiscard]] Run run(double end, const Integrator& method, bool watched = false) const {
         model::Drive drive{M(), {1.5, 0}};
         if (watched) {
             drive.events.push_back(
@@ -52,10 +52,10 @@ TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd
         const Oscillator free = nondimensional(zeta, 0);
         for (const auto& [method, watched] : ways()) {
             CAPTURE(zeta, method.index(), watched);
-            const Trajectory run = creeper.run(at + 10, method, watched);
+            const Run run = creeper.run(at + 10, method, watched);
             CHECK(run.outcome == Outcome::reached_end);
             CHECK(run.events.empty());
-            const Trajectory answer =
+            const Run answer =
                 must_run(free, Excitation::make(Ramp{.slope = slope}).value(), {}, {0, 10}, Grid::every(0.25), Exact{});
             for (Eigen::Index i = 0; i < answer.size(); ++i) {
                 const double theta = run.at(at + answer.rows(i, 0))->theta;
@@ -71,7 +71,7 @@ TEST_CASE("a ramp that pulls a creeping mass back holds it until Re is passed on
         const double at = 60 * zeta, slope = 0.4;
         for (const auto& [method, watched] : ways()) {
             CAPTURE(zeta, method.index(), watched);
-            const Trajectory run = Creeper{zeta, slope, at}.run(at + 4, method, watched);
+            const Run run = Creeper{zeta, slope, at}.run(at + 4, method, watched);
             REQUIRE(run.events.size() == 2);
             CHECK(run.events[0].kind == EventKind::stick);
             CHECK(run.events[0].t == within(at, 1e-3));
@@ -87,14 +87,14 @@ TEST_CASE("what creeps at the end of a run is stuck there, and goes on creeping 
     for (const Integrator& method : std::vector<Integrator>{Exact{}, Spectral{}}) {
         CAPTURE(method.index());
         const Creeper creeper{1.5, -0.04, 90};
-        const Trajectory first = creeper.run(80, method);
+        const Run first = creeper.run(80, method);
         CHECK(first.outcome == Outcome::stuck_at_end);  // the ramp is still to come
         REQUIRE(first.events.size() == 1);
         CHECK(first.events[0].kind == EventKind::stick);
         CHECK(first.events[0].t < 60);
         CHECK(first.state_at_stop.theta == within(0.3, 1e-11));
         CHECK(first.state_at_stop.velocity == 0);
-        const Trajectory whole = creeper.run(100, method);
+        const Run whole = creeper.run(100, method);
         auto both = resume(creeper.system(), creeper.M(), first, 100, Grid::every(0.25), method);
         REQUIRE(both);
         CHECK(both->events.empty());

@@ -87,7 +87,7 @@ TEST_CASE("a block drawn with Re = Rd comes down to velocity zero once a period,
         CAPTURE(c.k, c.Re, c.speed);
         for (const Integrator& method : std::vector<Integrator>{Exact{}, Spectral{}}) {
             CAPTURE(method.index());
-            const Trajectory run =
+            const Run run =
                 must_run(system, made(Ramp{.slope = c.k * c.speed}), {}, {0, starts + 9.4 * T0}, Grid::none(), method);
             REQUIRE(run.events.size() == 1);
             CHECK(run.events[0].kind == EventKind::slip);

@@ -33,13 +33,13 @@ double amplitude(double r, double gamma, double zeta = 0) {
 }
 
 /// Starts at the peak of this motion, with the load where it is then, and runs `periods` of the load.
-Trajectory from_the_peak(const Oscillator& system, double r, const SlidingMotion& y, double periods) {
+Run from_the_peak(const Oscillator& system, double r, const SlidingMotion& y, double periods) {
     const double omega = 2 * pi * r;
     return truth::must_run(system, truth::harmonic(1, omega, y.lag + pi / 2), {y.amplitude, 0}, {0, periods / r},
                            Grid::none(), Rk4{std::min(1.0, 1 / r) / 2000});
 }
 
-long sticks_since(const Trajectory& run, double t) {
+long sticks_since(const Run& run, double t) {
     return std::count_if(run.events.begin(), run.events.end(), [t](const Event& event) {
         return event.t > t && (event.kind == EventKind::stick || event.kind == EventKind::rest);
     });

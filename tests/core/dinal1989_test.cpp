@@ -74,14 +74,14 @@ struct Listing {
 /// theta after n steps of h from theta = 1 at rest, M = 0.
 double after(const Oscillator& system, double h, int n, bool slip) {
     const double t = n * h;
-    const Trajectory run = must_run(system, {}, {1, 0}, {0, t}, Grid::at({t}), Dinal1989{.h = h, .slip = slip});
+    const Run run = must_run(system, {}, {1, 0}, {0, t}, Grid::at({t}), Dinal1989{.h = h, .slip = slip});
     return run.rows(0, 1);
 }
 
 /// The geometric mean growth per step of a free motion, over many steps.
 double growth(const Oscillator& system, double h, int steps, bool slip) {
     const double t = steps * h;
-    const Trajectory run = must_run(system, {}, {1, 0}, {0, t}, Grid::every(h), Dinal1989{.h = h, .slip = slip});
+    const Run run = must_run(system, {}, {1, 0}, {0, t}, Grid::every(h), Dinal1989{.h = h, .slip = slip});
     // Amplitude in the phase plane, compared a whole number of half turns apart as nearly as the steps allow: many.
     const auto radius = [&](Eigen::Index i) {
         return std::hypot(run.rows(i, 1), run.rows(i, 2) / system.natural_frequency());
@@ -122,7 +122,7 @@ TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundr
                                 .U = c.theta0,
                                 .V = c.velocity0};
                 constexpr int steps = 700;
-                const Trajectory run =
+                const Run run =
                     must_run(nondimensional(c.zeta, c.gamma, c.Re), harmonic(c.amplitude, 2 * pi * c.r),
                              {c.theta0, c.velocity0}, {0, steps * c.h}, Grid::every(c.h), Dinal1989{c.h, stop, slip});
                 REQUIRE(run.size() == steps + 1);
@@ -169,7 +169,7 @@ TEST_CASE("chapter 6 diverges from h = 0.196 on, the printed listing from 0.457 
 }
 
 TEST_CASE("a step far beyond stability is a result of dinal1989, not an error", "[dinal1989]") {
-    const Trajectory run = must_run(nondimensional(0, 0), {}, {1, 0}, {0, 5000}, Grid::every(1), Dinal1989{.h = 1});
+    const Run run = must_run(nondimensional(0, 0), {}, {1, 0}, {0, 5000}, Grid::every(1), Dinal1989{.h = 1});
     CHECK(run.outcome == Outcome::state_not_finite);
     CHECK(run.size() > 10);
     CHECK(run.rows.matrix().allFinite());

@@ -27,7 +27,7 @@ constexpr double promised = 1e-12;
 constexpr double near = 1e-12;
 
 Energy energy_of_run(const Oscillator& system, const Excitation& M, const State& initial, const Window& window) {
-    const Trajectory run = must_run(system, M, initial, window, Grid::none(), Spectral{});
+    const Run run = must_run(system, M, initial, window, Grid::none(), Spectral{});
     auto energy = energy_of(run);
     if (!energy) FAIL(energy.error().sentence);
     return std::move(energy).value();
@@ -132,7 +132,7 @@ TEST_CASE("the columns are the balance of a run up to each row", "[energy]") {
         const ReferenceSystem& s = reference_system(name);
         CAPTURE(s.name);
         const double dt = (s.window.end - s.window.start) / 37;
-        const Trajectory run = must_run(s, Grid::every(dt), Spectral{});
+        const Run run = must_run(s, Grid::every(dt), Spectral{});
         const Energy whole = energy_of(run).value();
         const Eigen::MatrixXd columns = energy_columns(run);
         REQUIRE(columns.rows() == run.size());
@@ -175,7 +175,7 @@ TEST_CASE("a run that went on after its panels were full says up to when they re
     CHECK(kept < 500);
     CHECK(first->at(kept));
     CHECK_THAT(first->at(kept + 1).error().sentence, Catch::Contains(fmt::format("kept only up to t = {:.6g}", kept)));
-    for (const Trajectory& run : {*first, *all}) {
+    for (const Run& run : {*first, *all}) {
         const auto energy = energy_of(run);
         REQUIRE_FALSE(energy);
         CHECK_THAT(energy.error().sentence, Catch::Contains(fmt::format("kept only up to t = {:.6g}", kept)));
@@ -193,7 +193,7 @@ TEST_CASE("what acts with a delay knows its past where the memory for the motion
         REQUIRE(first);
         return *resume(system, M, *first, 210, Grid::none(), Spectral{}, {}, limits);
     };
-    const Trajectory full = run({.memory = 100000}), whole = run({});
+    const Run full = run({.memory = 100000}), whole = run({});
     CHECK(full.course->whole_until() < 100);
     CHECK(full.state_at_stop.theta == whole.state_at_stop.theta);
     CHECK(full.events.size() == whole.events.size());

@@ -64,12 +64,12 @@ TEST_CASE("along a record of samples exact goes from line to line, whatever rows
             const auto run = [&](const Grid& rows, MethodView method) {
                 return must_run(system, M, {0.4, 0.1}, {0, 29}, rows, method);
             };
-            const Trajectory rows = run(Grid::every(0.0037), Exact{}), other = run(Grid::every(0.0037), Spectral{});
+            const Run rows = run(Grid::every(0.0037), Exact{}), other = run(Grid::every(0.0037), Spectral{});
             CHECK(rows.events.size() > 10);
             CHECK((rows.rows.matrix() - other.rows.matrix()).cwiseAbs().maxCoeff() <= 1e-11);
             // A row is written beside the motion, which does not see it.
-            const Trajectory without = run(Grid::none(), Exact{}), at_samples = run(Grid::at(asked), Exact{});
-            for (const Trajectory* same : {&without, &at_samples}) {
+            const Run without = run(Grid::none(), Exact{}), at_samples = run(Grid::at(asked), Exact{});
+            for (const Run* same : {&without, &at_samples}) {
                 REQUIRE(same->events.size() == rows.events.size());
                 for (std::size_t i = 0; i < rows.events.size(); ++i) {
                     CHECK(same->events[i].t == rows.events[i].t);
@@ -91,7 +91,7 @@ TEST_CASE("a row stands where it stands, whatever the arc before it was made of"
     const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
     const double width = 0.125;
     const Excitation M = Excitation::make(Pulse{.amplitude = 1, .at = 1, .width = width}).value();
-    const Trajectory run = must_run(system, M, {1, 0}, {0, 4}, Grid::every(width), Exact{});
+    const Run run = must_run(system, M, {1, 0}, {0, 4}, Grid::every(width), Exact{});
     const auto stepped = [](double since) { return since > 0 ? 1 - std::cos(since) : 0; };
     for (Eigen::Index i = 0; i < run.size(); ++i) {
         const double t = run.rows(i, 0);

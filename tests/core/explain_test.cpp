@@ -28,7 +28,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 /// The story as one line, so that a phrase is found wherever lines were broken; how long it is was checked before.
-std::string told(const Trajectory& run, const Oscillator& system, const Excitation& M, const Integrator& integrator) {
+std::string told(const Run& run, const Oscillator& system, const Excitation& M, const Integrator& integrator) {
     std::string text = explain(run, system, M, integrator);
     std::istringstream lines(text);
     std::size_t count = 0;
@@ -216,7 +216,7 @@ TEST_CASE("the story does not need dense output, rows, or units of a certain siz
     CHECK_THAT(text, Contains("It stopped at t = 999.4502 at"));
     for (const char* name : {"W3 with I = 1e-6, k = 1e3, angles of 1e-9", "W3 with I = 1e5, k = 1, angles of 1e6"}) {
         const ReferenceSystem& s = reference_system(name);
-        const Trajectory run = must_run(s, Grid::none(), Spectral{});
+        const Run run = must_run(s, Grid::none(), Spectral{});
         CHECK_THAT(told(run, s.oscillator, s.excitation, Spectral{}),
                    Contains("the period of M") && Contains("twice in each period and is stuck for 35 %"));
     }

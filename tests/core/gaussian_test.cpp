@@ -71,8 +71,8 @@ TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on
     // From 1e-308 down numbers lose their digits, and no M is smooth there.
     for (const double width : {0.01, 0.06}) {
         const auto bump = probe([width](double t) { return std::exp(-0.5 * std::pow((t - 4.45) / width, 2)); });
-        const Trajectory run = must_run(oscillator(0, 0), made(Scripted{.function = bump}).scaled(1e6), {}, {0, 6},
-                                        Grid::at({6}), Spectral{});
+        const Run run = must_run(oscillator(0, 0), made(Scripted{.function = bump}).scaled(1e6), {}, {0, 6},
+                                 Grid::at({6}), Spectral{});
         REQUIRE(run.outcome == Outcome::reached_end);
         const double swing = 1e6 * width * std::sqrt(2 * pi) / w0 * std::exp(-w0 * w0 * width * width / 2);
         CHECK(run.rows(0, 1) == within(swing * std::sin(w0 * 1.55), 1e-10 * swing));
@@ -93,8 +93,7 @@ TEST_CASE("a method with a step refuses what it would step over, and says which 
     CHECK(refusal(M, {0, 9}, Spectral{}).empty());
     // The step that is just allowed sees all of it: the error of the rule that it comes to is exp(-pi^2 / h^2 ...).
     const double swing = 0.01 * std::sqrt(2 * pi) / w0 * std::exp(-w0 * w0 * 1e-4 / 2);
-    const Trajectory run =
-        must_run(oscillator(0, 0), made(Gaussian{1, 5, 0.01}), {}, {0, 7.3}, Grid::at({7.3}), Rk4{0.005});
+    const Run run = must_run(oscillator(0, 0), made(Gaussian{1, 5, 0.01}), {}, {0, 7.3}, Grid::at({7.3}), Rk4{0.005});
     CHECK(run.rows(0, 1) == within(swing * std::sin(w0 * 2.3), 1e-6 * swing));
 }
 

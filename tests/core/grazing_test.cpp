@@ -41,7 +41,7 @@ TEST_CASE("a velocity that dips through zero and back within a step turns twice"
         for (const double depth : {1e-2, 1e-3, 1e-4, 1e-5, -1e-5, -1e-4, -1e-3}) {
             const ReferenceSystem s = grazing(friction, depth);
             const ExactMotion exact = s.exact();
-            const Trajectory run = must_run(s, Grid::none(), integrator);
+            const Run run = must_run(s, Grid::none(), integrator);
             CAPTURE(spectral, friction, depth, exact.events().size());
             REQUIRE((depth > 0) == (exact.events().size() > 20));
             REQUIRE(run.events.size() == exact.events().size());

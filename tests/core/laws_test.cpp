@@ -60,7 +60,7 @@ Oscillator with_law(const Friction& law, double damping = 0) {
 TEST_CASE("the energy adds up under every friction law, and rows tell its friction", "[laws][energy]") {
     for (const LawCase& c : law_cases()) {
         CAPTURE(c.name);
-        const Trajectory run =
+        const Run run =
             must_run(with_law(c.law, 0.02), harmonic(0.8, 0.7), {1.3, 0}, {0, 60}, Grid::every(0.5), Spectral{});
         const auto energy = analysis::energy_of(run);
         REQUIRE(energy);

@@ -30,7 +30,7 @@ Excitation constant(double level) {
 Excitation ramp(double slope, double at) {
     return Excitation::make(model::Ramp{.slope = slope, .at = at}).value();
 }
-std::vector<Event> of_kind(const Trajectory& run, EventKind kind) {
+std::vector<Event> of_kind(const Run& run, EventKind kind) {
     std::vector<Event> found;
     for (const Event& event : run.events) {
         if (event.kind == kind) found.push_back(event);
@@ -53,7 +53,7 @@ TEST_CASE("a belt carries the mass against the wall and slides along it", "[wall
             const auto result =
                 simulate(walled({-none, 1, e}, 0, Rd, Re), drive, {0, 30}, Grid::every(0.5), integrator);
             REQUIRE(result);
-            const Trajectory& run = *result;
+            const Run& run = *result;
             REQUIRE(run.events.size() > 2);
             CHECK(run.events[0].kind == EventKind::impact);
             CHECK(run.events[0].t == within(2, 10 * tolerance));
@@ -97,28 +97,26 @@ TEST_CASE("states go on while the mass leans, and events of the user see impacts
     drive.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
     drive.events.push_back(
         {.name = "down", .when = written([](double, const State& y, std::span<const double>) { return y.velocity; })});
-    const Trajectory run = run_more(walled({-none, 0.5, 0}), drive, 4, 0.5, Spectral{});
+    const Run run = run_more(walled({-none, 0.5, 0}), drive, 4, 0.5, Spectral{});
     CHECK(run.rows(8, 6) == within(0.125 + 0.5 * 3.5, 1e-12));
     // An M that is the state lets the mass go when it says so.
     const Excitation M = feedback([](double, const State&, std::span<const double> z) { return 1 - z[0]; });
     drive.loads = {M}, drive.start_at({0.5, 0});
-    const Trajectory off = run_more(walled({-none, 0.5, 0}), drive, 5, 0.5, Spectral{});
+    const Run off = run_more(walled({-none, 0.5, 0}), drive, 5, 0.5, Spectral{});
     REQUIRE(of_kind(off, EventKind::slip).size() == 1);
     CHECK(of_kind(off, EventKind::slip)[0].t == within(2, 1e-12));
 }
 
 TEST_CASE("what begins at a wall stands there, or hits it at once", "[walls]") {
     for (const auto& [integrator, tolerance] : methods_at_walls) {
-        const Trajectory pressed =
-            must_run(walled({-1, 1, 0.5}), constant(1), {1, 0}, {0, 5}, Grid::every(1), integrator);
+        const Run pressed = must_run(walled({-1, 1, 0.5}), constant(1), {1, 0}, {0, 5}, Grid::every(1), integrator);
         CHECK(pressed.events.empty());
         CHECK(pressed.began_stuck);
         CHECK(pressed.outcome == Outcome::at_rest);
-        const Trajectory pulled =
-            must_run(walled({-1, 1, 0.5}), constant(-1), {1, 0}, {0, 1}, Grid::every(1), integrator);
+        const Run pulled = must_run(walled({-1, 1, 0.5}), constant(-1), {1, 0}, {0, 1}, Grid::every(1), integrator);
         CHECK(pulled.events.empty());
         CHECK(pulled.state_at_stop.theta == within(0.5, 10 * tolerance));
-        const Trajectory thrown = must_run(walled({-1, 1, 0.5}), {}, {1, 1}, {0, 1}, Grid::every(1), integrator);
+        const Run thrown = must_run(walled({-1, 1, 0.5}), {}, {1, 1}, {0, 1}, Grid::every(1), integrator);
         REQUIRE(thrown.events.size() == 1);
         CHECK(thrown.events[0].kind == EventKind::impact);
         CHECK(thrown.events[0].t == 0);
@@ -131,7 +129,7 @@ TEST_CASE("a load that only touches the limit does not take the mass off the wal
     // 1 + cos t comes down to 0 once in a turn, where it neither presses nor pulls.
     const Excitation M = constant(1) + harmonic(1, 1, pi / 2);
     for (const auto& [integrator, tolerance] : methods_at_walls) {
-        const Trajectory run = must_run(walled({-none, 0, 0.5}), M, {0, 0}, {0, 20}, Grid::none(), integrator);
+        const Run run = must_run(walled({-none, 0, 0.5}), M, {0, 0}, {0, 20}, Grid::none(), integrator);
         CHECK(run.state_at_stop.theta == within(0, 1e-12));
         CHECK(run.outcome == Outcome::at_rest);
     }
@@ -140,7 +138,7 @@ TEST_CASE("a load that only touches the limit does not take the mass off the wal
 TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][explain]") {
     const Oscillator ball = walled({0, none, 0.5});
     const Excitation M = constant(-2) + ramp(1, 8);
-    const Trajectory run = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), Spectral{});
+    const Run run = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), Spectral{});
     const std::string story = analysis::explain(run, ball, M, Spectral{});
     CAPTURE(story);
     for (const char* part : {"There is a wall at theta = 0; an impact keeps 50 % of the speed.", "It hit the wall",

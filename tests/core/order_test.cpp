@@ -14,7 +14,7 @@ using namespace dinal::truth;
 namespace {
 
 /// How far a state is from a row, as an angle in units of the system's size.
-double distance(const ReferenceSystem& s, const State& y, const Trajectory& run, Eigen::Index row) {
+double distance(const ReferenceSystem& s, const State& y, const Run& run, Eigen::Index row) {
     return std::max(std::fabs(y.theta - run.rows(row, 1)),
                     std::fabs(y.velocity - run.rows(row, 2)) / s.oscillator.natural_frequency()) /
            s.size;
@@ -40,8 +40,8 @@ TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dopri
         for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
             const double dt = (s.window.end - s.window.start) / 61.3;
-            const Trajectory with_rows = must_run(s, Grid::every(dt), integrator);
-            const Trajectory without = must_run(s, Grid::none(), integrator);
+            const Run with_rows = must_run(s, Grid::every(dt), integrator);
+            const Run without = must_run(s, Grid::none(), integrator);
             for (Eigen::Index i = 0; i < with_rows.size(); ++i) {
                 const auto y = without.at(with_rows.rows(i, 0));
                 REQUIRE(y);
@@ -60,12 +60,12 @@ TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dopri5
         const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dopri5{1e-8}, Dinal1989{.h = h}};
         for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
-            const Trajectory none = must_run(s, Grid::none(), integrator);
-            const Trajectory some = must_run(s, Grid::every(7.3 * h), integrator);
-            const Trajectory many = must_run(s, Grid::every(0.31 * h), integrator);
-            const Trajectory steps = must_run(s, Grid::every(h), integrator);
-            const std::vector<const Trajectory*> others{&some, &many, &steps};
-            for (const Trajectory* other : others) {
+            const Run none = must_run(s, Grid::none(), integrator);
+            const Run some = must_run(s, Grid::every(7.3 * h), integrator);
+            const Run many = must_run(s, Grid::every(0.31 * h), integrator);
+            const Run steps = must_run(s, Grid::every(h), integrator);
+            const std::vector<const Run*> others{&some, &many, &steps};
+            for (const Run* other : others) {
                 REQUIRE(none.events.size() == other->events.size());
                 for (std::size_t i = 0; i < none.events.size(); ++i) {
                     REQUIRE(none.events[i].t == other->events[i].t);

@@ -52,7 +52,7 @@ const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = omega}).
 TEST_CASE("a very overdamped motion of a million natural periods has its digits", "[exact]") {
     constexpr double start = 0.75, end = 6 * std::numbers::pi / omega;
     const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping});
-    const Trajectory run = must_run(system, M, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
+    const Run run = must_run(system, M, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
     const Answer answer;
     const Free free(answer, start - answer.theta(0), -answer.velocity(0));
     for (Eigen::Index i = 0; i < run.size(); ++i) {
@@ -67,7 +67,7 @@ TEST_CASE("a very overdamped mass slips when M passes Re, and stops when it must
     // past Re.
     constexpr double friction = 0.1;
     const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping, .kinetic_friction = friction});
-    const Trajectory run = must_run(system, M, {0, 0}, {0, 3 / omega}, Grid::none(), Exact{});
+    const Run run = must_run(system, M, {0, 0}, {0, 3 / omega}, Grid::none(), Exact{});
     std::string kinds;
     for (const Event& event : run.events) kinds.append(name(event.kind)) += ' ';
     REQUIRE(kinds == "slip stick slip ");
@@ -93,7 +93,7 @@ TEST_CASE("a very overdamped mass follows a line in a few arcs", "[exact]") {
     constexpr double slope = 1e-6, start = 0.75, end = 8e6;
     const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping});
     const auto line = Excitation::make(Polynomial{.coefficients = {0, slope}}).value();
-    const Trajectory run = must_run(system, line, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
+    const Run run = must_run(system, line, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
     const Answer answer;
     const Free free(answer, start + slope * damping, -slope);
     for (Eigen::Index i = 0; i < run.size(); ++i) {
@@ -112,7 +112,7 @@ TEST_CASE("an overdamped motion that comes from afar has its digits when it is n
     for (const double start : {1e3, 1e6, 1e12, 1e24}) {
         CAPTURE(start);
         const auto system = system_of({.inertia = I, .stiffness = k, .damping = C, .kinetic_friction = Rd});
-        const Trajectory run = must_run(system, {}, {start, 0}, {0, 100}, Grid::every(0.5), Exact{});
+        const Run run = must_run(system, {}, {start, 0}, {0, 100}, Grid::every(0.5), Exact{});
         const long double place = static_cast<long double>(Rd) / static_cast<long double>(k), far = start - place;
         for (Eigen::Index i = 0; i < run.size(); ++i) {
             const long double t = run.rows(i, 0);

@@ -31,12 +31,12 @@ double tolerance_of(const Integrator& integrator, double of_rk4) {
 }
 
 /// I = 1/(4 pi^2), k = 1: T0 = 1.
-Trajectory run_of(const Oscillator& system, const Excitation& M, const State& initial, double t_end,
-                  const Integrator& integrator) {
+Run run_of(const Oscillator& system, const Excitation& M, const State& initial, double t_end,
+           const Integrator& integrator) {
     return must_run(system, M, initial, {0, t_end}, Grid::every(t_end / 64), integrator);
 }
 
-void check_never_moved(const Trajectory& run, double theta) {
+void check_never_moved(const Run& run, double theta) {
     CHECK(run.events.empty());
     CHECK((run.rows.col(1).array() == theta).all());
     CHECK((run.rows.col(2).array() == 0).all());
@@ -52,10 +52,10 @@ TEST_CASE("a load of exactly Re holds for ever, one unit in the last place more 
             system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.5 * Re, .breakaway = Re});
         for (const double side : {1.0, -1.0}) {
             CAPTURE(Re, side);
-            const Trajectory held = run_of(system, native(Constant{side * Re}), {0, 0}, 20, integrator);
+            const Run held = run_of(system, native(Constant{side * Re}), {0, 0}, 20, integrator);
             check_never_moved(held, 0);
             CHECK(held.outcome == Outcome::at_rest);
-            const Trajectory released =
+            const Run released =
                 run_of(system, native(Constant{side * std::nextafter(Re, infinity)}), {0, 0}, 3, integrator);
             CHECK(side * released.rows(released.size() - 1, 1) > 0.5 * Re);
             CHECK(released.events.empty());  // nothing is an event at the start
@@ -70,7 +70,7 @@ TEST_CASE("theta0 = Re/k stays, for any k", "[razor]") {
         const double Re = 0.1 + 0.9 * i / 2000;
         const double k = 1 + 0.0137 * i;
         const Oscillator system = system_of({.inertia = 1, .stiffness = k, .kinetic_friction = Re});
-        const Trajectory run = run_of(system, {}, {i % 2 == 0 ? Re / k : -Re / k, 0}, 1, integrator);
+        const Run run = run_of(system, {}, {i % 2 == 0 ? Re / k : -Re / k, 0}, 1, integrator);
         CAPTURE(Re, k);
         REQUIRE(run.events.empty());
         REQUIRE(run.outcome == Outcome::at_rest);
@@ -111,7 +111,7 @@ TEST_CASE("a load that passes the limit between two samples releases", "[razor]"
     // 1e-6 over the limit for a time of 2e-3, in steps of 0.01 that straddle it.
     const Excitation parabola = native(Polynomial{.coefficients = {0.5 + 1e-6, 0, -1}, .at = 1.0025});
     const Integrator integrator = either(0.01);
-    const Trajectory run = must_run(system, parabola, {0, 0}, {0.1, 1.9}, Grid::none(), integrator);
+    const Run run = must_run(system, parabola, {0, 0}, {0.1, 1.9}, Grid::none(), integrator);
     REQUIRE_FALSE(run.events.empty());
     CHECK(run.events[0].kind == EventKind::slip);
     // A rounding of M moves the release by 1e-16 over its slope of 2e-3.
@@ -122,7 +122,7 @@ TEST_CASE("a release is at the moment when M passes the limit, to rounding", "[r
     const Oscillator system = nondimensional(0.1, 0.25, 0.5);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.0137}, Rk4{0.001}}) {
-        const Trajectory run =
+        const Run run =
             must_run(system, native(Ramp{.slope = 0.3, .at = 0.2}), {0, 0}, {0, 3}, Grid::none(), integrator);
         REQUIRE_FALSE(run.events.empty());
         CHECK(run.events[0].kind == EventKind::slip);
@@ -137,10 +137,10 @@ TEST_CASE("a mass put down at rest: inside the dead zone it stays, outside it mo
     const Integrator integrator = either();
     CAPTURE(integrator.index());
     const Oscillator system = nondimensional(0, 0.25, 0.5);
-    const Trajectory inside = run_of(system, {}, {0.4, 0}, 3, integrator);
+    const Run inside = run_of(system, {}, {0.4, 0}, 3, integrator);
     check_never_moved(inside, 0.4);
     CHECK(inside.outcome == Outcome::at_rest);
-    const Trajectory outside = run_of(system, {}, {0.6, 0}, 3, integrator);
+    const Run outside = run_of(system, {}, {0.6, 0}, 3, integrator);
     // Half a cycle about Rd/k = 0.25, to -0.1, and there it rests.
     REQUIRE(outside.events.size() == 1);
     CHECK(outside.events[0].kind == EventKind::rest);
@@ -152,7 +152,7 @@ TEST_CASE("a mass at rest stays exactly where it is, for ever", "[razor]") {
     const Integrator integrator = either();
     CAPTURE(integrator.index());
     const Oscillator system = nondimensional(0.01, 0.167);
-    const Trajectory run = must_run(system, harmonic(0.01, 3.3), {0, 2 * pi}, {0, 1000}, Grid::every(0.37), integrator);
+    const Run run = must_run(system, harmonic(0.01, 3.3), {0, 2 * pi}, {0, 1000}, Grid::every(0.37), integrator);
     CHECK(run.outcome == Outcome::at_rest);
     const Event& last = run.events.back();
     CHECK(last.kind == EventKind::rest);
@@ -175,7 +175,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         const double at = 0.5 + ulps * 0x1p-53;
         CAPTURE(ulps);
         // To 0.5: on towards 0.3 +- 0.9, turn at t = 1, theta = 1.2.
-        const Trajectory onward = run_of(system, native(Step{.amplitude = 0.5, .at = at}), {1, 0}, 1.2, integrator);
+        const Run onward = run_of(system, native(Step{.amplitude = 0.5, .at = at}), {1, 0}, 1.2, integrator);
         REQUIRE(onward.events.size() == 2);
         CHECK(onward.events[0].kind == EventKind::turn);
         CHECK(onward.events[0].theta == within(-0.6, near));
@@ -183,7 +183,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         CHECK(onward.events[1].t == within(1, near));
         CHECK(onward.events[1].theta == within(1.2, near));
         // To -0.6, which balances the spring: at rest there, whichever comes first by rounding.
-        const Trajectory balanced = run_of(system, native(Step{.amplitude = -0.6, .at = at}), {1, 0}, 3, integrator);
+        const Run balanced = run_of(system, native(Step{.amplitude = -0.6, .at = at}), {1, 0}, 3, integrator);
         CHECK(balanced.outcome == Outcome::at_rest);
         REQUIRE_FALSE(balanced.events.empty());
         CHECK(balanced.events.size() <= 2);
@@ -198,7 +198,7 @@ TEST_CASE("a jump of M on a stuck mass releases it at that very time", "[razor]"
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.003}, Rk4{0.25}}) {
         for (const double at : {0.5, 0.503, 1.0 / 3}) {
-            const Trajectory run =
+            const Run run =
                 must_run(system, native(Step{.amplitude = 0.5, .at = at}), {0.1, 0}, {0, 2}, Grid::none(), integrator);
             REQUIRE_FALSE(run.events.empty());
             CHECK(run.events[0].kind == EventKind::slip);
@@ -213,7 +213,7 @@ TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth 
     const Excitation pulse = native(Pulse{.amplitude = 1, .at = 20, .width = 0.05});
     const std::vector<Integrator> all{Exact{}, Spectral{}, Rk4{0.001}, Rk4{0.01}, Rk4{0.07}, Rk4{0.3}};
     for (const Integrator& integrator : all) {
-        const Trajectory run = must_run(nondimensional(0, 0.167), pulse, {0, 0}, {0, 25}, Grid::none(), integrator);
+        const Run run = must_run(nondimensional(0, 0.167), pulse, {0, 0}, {0, 25}, Grid::none(), integrator);
         CAPTURE(integrator.index(), run.events.size());
         REQUIRE(run.events.size() == 2);
         CHECK(run.events[0].kind == EventKind::slip);
@@ -228,8 +228,8 @@ TEST_CASE("a break of M at t_start is the load from the beginning", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.1);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}, Dinal1989{.h = 0.001}}) {
-        const Trajectory step = run_of(system, native(Step{.amplitude = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
-        const Trajectory level = run_of(system, native(Constant{0.7}), {0.2, 0.3}, 3, integrator);
+        const Run step = run_of(system, native(Step{.amplitude = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
+        const Run level = run_of(system, native(Constant{0.7}), {0.2, 0.3}, 3, integrator);
         CHECK(step.rows == level.rows);
         CHECK(step.rows(0, 3) == 0.7);
     }
@@ -239,8 +239,8 @@ TEST_CASE("a break of M at t_end does not change the motion before it", "[razor]
     const Integrator integrator = either();
     CAPTURE(integrator.index());
     const Oscillator system = nondimensional(0.1, 0.1);
-    const Trajectory without = run_of(system, {}, {1, 0.3}, 0.8, integrator);
-    const Trajectory with = run_of(system, native(Step{.amplitude = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
+    const Run without = run_of(system, {}, {1, 0.3}, 0.8, integrator);
+    const Run with = run_of(system, native(Step{.amplitude = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
     const Eigen::Index last = with.size() - 1;
     REQUIRE(with.rows(last, 0) == 0.8);
     CHECK(with.rows(last, 1) == Approx(without.rows(last, 1)).epsilon(1e-13));
@@ -253,12 +253,12 @@ TEST_CASE("breaks closer together than a step, and than rounding, are all obeyed
     const Integrator integrator = either(0.01);
     const Oscillator system = nondimensional(0, 0);
     // An impulse of 1e3 * 1e-4 at t = 0.5: velocity jumps by 0.1/I = 0.4 pi^2.
-    const Trajectory run = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 1e-4}), {0, 0},
-                                    {0, 0.75}, Grid::at({0.75}), integrator);
+    const Run run = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 1e-4}), {0, 0}, {0, 0.75},
+                             Grid::at({0.75}), integrator);
     // theta = 0.1/(I w0) sin w0 (t - 0.50005), but for the width: (w0 1e-4)^2/24.
     CHECK(run.rows(0, 1) == Approx(0.1 * 2 * pi * std::sin(2 * pi * (0.75 - 0.50005))).epsilon(1e-6));
-    const Trajectory spike = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 0x1p-53}), {0, 0},
-                                      {0, 0.75}, Grid::at({0.75}), integrator);
+    const Run spike = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 0x1p-53}), {0, 0}, {0, 0.75},
+                               Grid::at({0.75}), integrator);
     CHECK(std::fabs(spike.rows(0, 1)) < 1e-11);
 }
 
@@ -270,7 +270,7 @@ TEST_CASE("a function that is not a number ends the run with what there is", "[r
     for (const bool feedback : {false, true}) {
         for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}, Dinal1989{.h = 0.01}}) {
             const Excitation M = native(Scripted{.function = std::make_shared<Breaking>(), .feedback = feedback});
-            const Trajectory run = must_run(nondimensional(0.1, 0.1), M, {1, 0}, {0, 5}, Grid::every(0.1), integrator);
+            const Run run = must_run(nondimensional(0.1, 0.1), M, {1, 0}, {0, 5}, Grid::every(0.1), integrator);
             CAPTURE(feedback, integrator.index());
             CHECK(run.outcome == Outcome::excitation_not_finite);
             CHECK(run.size() >= 9);
@@ -286,7 +286,7 @@ TEST_CASE("a motion too large for its derivatives ends the run, also without fri
     // The fuzzer's: with a bound of the second derivative that is no number, the search for turns never ended.
     const double speed = GENERATE(-1e308, 1e305, 1e280);
     const double dry = GENERATE(0.0, 0.1);
-    const Trajectory run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
+    const Run run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
     CHECK((std::fabs(speed) > 1e300 || run.outcome == Outcome::reached_end));
     CHECK(run.rows.matrix().allFinite());
 }
@@ -301,8 +301,8 @@ TEST_CASE("a decay whose last extreme is Re/k ends there", "[razor]") {
                     const double Re = ratio * Rd;
                     const Oscillator system =
                         system_of({.inertia = 1, .stiffness = k, .kinetic_friction = Rd, .breakaway = Re});
-                    const Trajectory run = must_run(system, {}, {(Re + 2 * n * Rd) / k, 0},
-                                                    {0, 10 * system.natural_period()}, Grid::none(), integrator);
+                    const Run run = must_run(system, {}, {(Re + 2 * n * Rd) / k, 0}, {0, 10 * system.natural_period()},
+                                             Grid::none(), integrator);
                     CAPTURE(integrator.index(), k, Rd, ratio, n);
                     REQUIRE(run.events.size() == static_cast<std::size_t>(n));
                     const Event& last = run.events.back();
@@ -323,7 +323,7 @@ TEST_CASE("a run knows whether it began stuck, whatever came later", "[razor]") 
     const Integrator integrator = either();
     CAPTURE(integrator.index());
     const auto began_stuck = [&](const Excitation& M, const State& initial, const Oscillator& s) {
-        const Trajectory run = must_run(s, M, initial, {0, 3}, Grid::every(0.1), integrator);
+        const Run run = must_run(s, M, initial, {0, 3}, Grid::every(0.1), integrator);
         CHECK(analysis::stretches(run).front().stuck == run.began_stuck);
         return run.began_stuck;
     };

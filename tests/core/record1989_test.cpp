@@ -33,8 +33,8 @@ Oscillator system_with_stiffness_4() {
     return std::move(Oscillator::make({.inertia = 1, .stiffness = 4, .damping = 0.5, .kinetic_friction = 1})).value();
 }
 
-Trajectory small_run() {
-    Trajectory run;
+Run small_run() {
+    Run run;
     run.own_names = {"t", "theta", "velocity", "M", "friction", "damping"};
     Eigen::MatrixXd rows(2, 6);
     rows << 0, 1, 0, 2, -0.0, 0,  //
@@ -53,7 +53,7 @@ TEST_CASE("a run is recorded as time and five angles behind the number of rows",
 
 TEST_CASE("columns are taken by name, whatever their order", "[record1989]") {
     const TemporaryFolder folder;
-    Trajectory run = small_run();
+    Run run = small_run();
     std::swap(run.own_names[0], run.own_names[5]);
     Eigen::MatrixXd rows = run.rows.matrix();
     rows.col(0).swap(rows.col(5));

@@ -12,7 +12,7 @@ using namespace dinal::truth;
 
 namespace {
 
-void check_like_whole(const Trajectory& parts, const Trajectory& whole, const ReferenceSystem& s, double tolerance) {
+void check_like_whole(const Run& parts, const Run& whole, const ReferenceSystem& s, double tolerance) {
     REQUIRE(parts.size() == whole.size());
     for (Eigen::Index i = 0; i < whole.size(); ++i) {
         REQUIRE(parts.rows(i, 0) == whole.rows(i, 0));
@@ -42,9 +42,9 @@ TEST_CASE("a run in three parts is the run in one, for every reference system", 
         const Grid rows = Grid::every(length / 61.3);
         for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{h}}) {
             CAPTURE(s.name, integrator.index());
-            const Trajectory whole = must_run(s, rows, integrator);
-            Trajectory run = must_run(s.oscillator, s.excitation, s.initial,
-                                      {s.window.start, s.window.start + 0.337 * length}, rows, integrator);
+            const Run whole = must_run(s, rows, integrator);
+            Run run = must_run(s.oscillator, s.excitation, s.initial, {s.window.start, s.window.start + 0.337 * length},
+                               rows, integrator);
             for (const double part : {0.5, 1.0}) {
                 const double t_end = part == 1 ? s.window.end : s.window.start + part * length;
                 auto longer = resume(s.oscillator, s.excitation, run, t_end, rows, integrator);
@@ -70,7 +70,7 @@ TEST_CASE("a run that is stopped among many rows between two events goes on as i
     CHECK(first->rows(first->size() - 1, 0) == first->t_stop);
     const auto both = resume(system, {}, *first, 2.5, rows, Exact{});
     REQUIRE(both);
-    const Trajectory whole = must_run(system, {}, {1, 0}, {0, 2.5}, rows, Exact{});
+    const Run whole = must_run(system, {}, {1, 0}, {0, 2.5}, rows, Exact{});
     REQUIRE(both->size() == whole.size());
     for (Eigen::Index i = 0; i < whole.size(); i += 97) {
         REQUIRE(both->rows(i, 0) == whole.rows(i, 0));
@@ -82,7 +82,7 @@ TEST_CASE("a run that is stopped among many rows between two events goes on as i
 TEST_CASE("a run goes on from wherever it was stopped, also from the very moment of a slip", "[long][resume]") {
     const Oscillator system = nondimensional(0.01, 0.3);
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1}).value();
-    const Trajectory whole = must_run(system, M, {0, 0}, {0, 400}, Grid::every(1), Spectral{});
+    const Run whole = must_run(system, M, {0, 0}, {0, 400}, Grid::every(1), Spectral{});
     for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}}) {
         int slips = 0;
         for (double stop = 20; stop < 400; stop += 3.1) {
@@ -109,7 +109,7 @@ TEST_CASE("a mass that is stuck and goes on into a load slips as if there had be
         CHECK(first->events.back().kind == EventKind::stick);
         auto both = resume(system, late, *first, 6, Grid::every(0.5), Spectral{});
         REQUIRE(both);
-        const Trajectory whole = must_run(system, late, {1, 0}, {0, 6}, Grid::every(0.5), Spectral{});
+        const Run whole = must_run(system, late, {1, 0}, {0, 6}, Grid::every(0.5), Spectral{});
         REQUIRE(both->events.size() == whole.events.size());
         for (std::size_t i = 0; i < whole.events.size(); ++i) {
             CHECK(both->events[i].kind == whole.events[i].kind);
@@ -122,10 +122,10 @@ TEST_CASE("a run that goes on from the very time of a turn has that turn once", 
     for (int i = 0; i < 6; ++i) {
         const Oscillator system = nondimensional(i % 3 == 0 ? 0 : 0.07, i % 2 == 0 ? 0 : 0.1);
         const Excitation M = Excitation::make(Sawtooth{.amplitude = 1.3, .period = 0.9 + 0.07 * i}).value();
-        const Trajectory whole = must_run(system, M, {0.4, 5}, {0, 20}, Grid::none(), Spectral{});
+        const Run whole = must_run(system, M, {0.4, 5}, {0, 20}, Grid::none(), Spectral{});
         for (const Event& cut : whole.events) {
             if (cut.kind != EventKind::turn) continue;
-            const Trajectory first = must_run(system, M, {0.4, 5}, {0, cut.t}, Grid::none(), Spectral{});
+            const Run first = must_run(system, M, {0.4, 5}, {0, cut.t}, Grid::none(), Spectral{});
             const auto all = resume(system, M, first, 20, Grid::none(), Spectral{});
             CAPTURE(i, cut.t);
             REQUIRE(all);
@@ -145,7 +145,7 @@ TEST_CASE("a run with very many rows at rest stops when it is told to, and goes 
     CHECK(part->t_stop < 2000);
     CHECK(part->rows(part->size() - 1, 0) == part->t_stop);
     const auto all = resume(system, load, *part, 2500, Grid::every(0.01), Spectral{});
-    const Trajectory whole = must_run(system, load, {0.1, 0}, {0, 2500}, Grid::every(0.01), Spectral{});
+    const Run whole = must_run(system, load, {0.1, 0}, {0, 2500}, Grid::every(0.01), Spectral{});
     REQUIRE(all);
     CHECK(all->outcome == whole.outcome);
     CHECK(all->rows == whole.rows);
@@ -160,7 +160,7 @@ TEST_CASE("a run that goes on from what is a row of all but for its rounding has
     REQUIRE(part);
     const auto all = resume(s.oscillator, s.excitation, *part, 0.6, rows, Spectral{});
     REQUIRE(all);
-    const Trajectory whole = must_run(s.oscillator, s.excitation, s.initial, {0, 0.6}, rows, Spectral{});
+    const Run whole = must_run(s.oscillator, s.excitation, s.initial, {0, 0.6}, rows, Spectral{});
     REQUIRE(all->size() == whole.size());
     for (Eigen::Index i = 0; i < whole.size(); ++i) {
         CHECK(std::fabs(all->rows(i, 0) - whole.rows(i, 0)) <= 6e-17);  // one unit of the last place of 0.3
@@ -172,7 +172,7 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
     const Grid rows = Grid::every(0.03);  // no part ends on a row of all
     constexpr int parts = 200;
     const auto end_of = [](int part) { return 0.1 * (part + 1) + 0.005; };
-    std::vector<Trajectory> runs;
+    std::vector<Run> runs;
     std::size_t bytes = 0, event_bytes = 0;
     for (int i = 0; i < parts; ++i) {
         auto run = i == 0 ? simulate(s.oscillator, {s.excitation, s.initial}, {0, end_of(0)}, rows, Spectral{})
@@ -183,7 +183,7 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
         event_bytes += runs.back().events.own_bytes();
     }
     // Room doubles: all that was ever taken is less than 1 + 1/2 + 1/4 ... of the last, which may be twice too large.
-    const Trajectory& last = runs.back();
+    const Run& last = runs.back();
     CHECK(bytes <= 4 * static_cast<std::size_t>(last.size()) * column_count * sizeof(double));
     CHECK(event_bytes <= 4 * last.events.size() * sizeof(Event));
 
@@ -191,7 +191,7 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
         const auto run = static_cast<std::size_t>(i);
         CAPTURE(i);
         REQUIRE(runs[run].t_stop == end_of(i));
-        const Trajectory whole = must_run(s.oscillator, s.excitation, s.initial, {0, end_of(i)}, rows, Spectral{});
+        const Run whole = must_run(s.oscillator, s.excitation, s.initial, {0, end_of(i)}, rows, Spectral{});
         ReferenceSystem part = s;
         part.window.end = end_of(i);
         check_like_whole(runs[run], whole, part, 1e-12);

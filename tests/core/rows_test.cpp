@@ -74,8 +74,8 @@ TEST_CASE("every integrator ends its rows at t_end, whatever h and dt", "[rows]"
         for (const double dt : {0.01, 0.0123, 0.5, 7.0}) {
             for (const double h : {0.01, 0.0031, 0.02}) {
                 for (const Integrator& integrator : std::vector<Integrator>{Rk4{h}, Dinal1989{.h = h}}) {
-                    const Trajectory run = must_run(nondimensional(0.1, 0.1), harmonic(1, 5), {1, 0}, {0, t_end},
-                                                    Grid::every(dt), integrator);
+                    const Run run = must_run(nondimensional(0.1, 0.1), harmonic(1, 5), {1, 0}, {0, t_end},
+                                             Grid::every(dt), integrator);
                     CAPTURE(t_end, dt, h, integrator.index());
                     CHECK(run.rows(run.size() - 1, 0) == t_end);
                     CHECK(run.t_stop == t_end);
@@ -89,7 +89,7 @@ TEST_CASE("every integrator ends its rows at t_end, whatever h and dt", "[rows]"
 TEST_CASE("the last row of dinal1989 is the state at t_end, not that of the step beyond it", "[rows][dinal1989]") {
     // h = dt = 0.3 does not divide 1: the last row lies inside the fourth step.
     const Oscillator system = nondimensional(0, 0);
-    const Trajectory coinciding = must_run(system, {}, {1, 0}, {0, 0.1}, Grid::every(0.03), Dinal1989{.h = 0.03});
+    const Run coinciding = must_run(system, {}, {1, 0}, {0, 0.1}, Grid::every(0.03), Dinal1989{.h = 0.03});
     CHECK(coinciding.rows(coinciding.size() - 1, 0) == 0.1);
     CHECK(coinciding.rows(coinciding.size() - 1, 1) == within(std::cos(2 * std::numbers::pi * 0.1), 1e-4));
 }

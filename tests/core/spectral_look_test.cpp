@@ -27,7 +27,7 @@ Oscillator nondimensional(double zeta, double friction_ratio) {
 }
 
 struct Seen {
-    Trajectory run;
+    Run run;
     int calls;
 };
 
@@ -44,7 +44,7 @@ auto pulse(double at, double width) {
     return [=](double t) { return t >= at && t < at + width ? 50.0 : 0.0; };
 }
 
-bool differs(const Trajectory& a, const Trajectory& b) {
+bool differs(const Run& a, const Run& b) {
     return a.events.size() != b.events.size() || std::fabs(a.state_at_stop.theta - b.state_at_stop.theta) > 1e-9 ||
            std::fabs(a.state_at_stop.velocity - b.state_at_stop.velocity) > 1e-9;
 }

@@ -41,8 +41,8 @@ double sgn(double x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-Trajectory by_spectral(const Oscillator& system, const Excitation& M, const State& initial, const Window& window,
-                       const Spectral& options = {}) {
+Run by_spectral(const Oscillator& system, const Excitation& M, const State& initial, const Window& window,
+                const Spectral& options = {}) {
     return must_run(system, M, initial, window, Grid::every((window.end - window.start) / 64), options);
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("a sine that passes Re by a part in 1e13 releases, and when it does", 
         for (int i = 0; i < 100; ++i) {
             const double Re = lot.between(0.05, 2), omega = 2 * pi * lot.power_of_ten(-1, 1), A = Re * (1 + excess);
             const Oscillator system = nondimensional(0, Re / 2, Re);
-            const Trajectory run = by_spectral(system, harmonic(A, omega), {0, 0}, {0, 0.7 * 2 * pi / omega});
+            const Run run = by_spectral(system, harmonic(A, omega), {0, 0}, {0, 0.7 * 2 * pi / omega});
             CAPTURE(excess, i, Re, omega);
             REQUIRE_FALSE(run.events.empty());
             CHECK(run.events[0].kind == EventKind::slip);
@@ -96,7 +96,7 @@ TEST_CASE("a function that rests at Re and then leaves it gently releases when i
     const Oscillator system = nondimensional(0, 0.2, 0.5);
     for (int power = 1; power <= 6; ++power) {
         const auto M = script([power](double t) { return 0.5 + std::pow(std::max(0.0, t - 0.3), power); });
-        const Trajectory run = by_spectral(system, M.M, {0, 0}, {-0.2, 0.6});
+        const Run run = by_spectral(system, M.M, {0, 0}, {-0.2, 0.6});
         CAPTURE(power);
         REQUIRE(run.events.size() == 1);
         CHECK(run.events[0].kind == EventKind::slip);
@@ -110,8 +110,7 @@ TEST_CASE("a mass that M is nowhere great enough to move waits for any length of
     for (const Excitation& M : {harmonic(0.2, 7), harmonic(0.1, 7) + made(Square{.amplitude = 0.1, .period = 0.37}),
                                 made(Chirp{.amplitude = 0.2, .from = 1, .to = 5, .duration = 10}),
                                 made(Triangle{.amplitude = 0.2, .period = 3})}) {
-        const Trajectory run =
-            must_run(system, M, {-0.05, 0}, {0, 1e8}, Grid::at({0, 0.1, 12345678.9, 1e8}), Spectral{});
+        const Run run = must_run(system, M, {-0.05, 0}, {0, 1e8}, Grid::at({0, 0.1, 12345678.9, 1e8}), Spectral{});
         CHECK(run.outcome == Outcome::at_rest);
         CHECK(run.events.empty());
         for (Eigen::Index i = 0; i < run.size(); ++i) {
@@ -121,7 +120,7 @@ TEST_CASE("a mass that M is nowhere great enough to move waits for any length of
         CHECK(run.at(7654321.1)->theta == -0.05);
     }
     // An exponential that grows, and a ramp, have no such bound.
-    const Trajectory late = by_spectral(system, made(Exponential{.amplitude = 1e-9, .tau = -50}), {0, 0}, {0, 2000});
+    const Run late = by_spectral(system, made(Exponential{.amplitude = 1e-9, .tau = -50}), {0, 0}, {0, 2000});
     REQUIRE_FALSE(late.events.empty());
     CHECK(late.events[0].t == within(50 * std::log(0.3e9), 1e-10));
 }
@@ -131,7 +130,7 @@ TEST_CASE("a mass that M is nowhere great enough to move waits for any length of
 TEST_CASE("a stiff relaxation oscillator is followed through its jumps", "[spectral][feedback]") {
     const Oscillator system = nondimensional(0.02, 0);
     const Excitation M = feedback([](double, const State& y) { return 50 * (1 - y.theta * y.theta) * y.velocity; });
-    const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
+    const Run run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
     // Richardson's limit of classical Runge-Kutta in long double with 2 and 4 million steps.
     CHECK(run.at(10)->theta == within(1.143363102918, 1e-11));
     CHECK(run.at(12)->theta == within(-1.98732282598, 2e-10));
@@ -143,7 +142,7 @@ TEST_CASE("negative damping grows beyond all numbers without inventing turns on 
         const Oscillator system = nondimensional(0.05, Rd);
         // Both roots of the free motion are real and positive: it turns once at most.
         const Excitation M = feedback([](double, const State& y) { return 2 * y.velocity; });
-        const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
+        const Run run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
         CAPTURE(Rd);
         CHECK(run.outcome == Outcome::state_not_finite);
         CHECK(run.events.size() == 1);
@@ -160,8 +159,7 @@ TEST_CASE("feedback that pushes at rest and holds in motion ends, its events in 
         const Excitation M = feedback([](double t, const State& y) {
             return 1.2 * std::sin(t) - 0.3 * std::exp(-std::fabs(y.velocity) / 0.1) * sgn(y.velocity);
         });
-        const Trajectory run =
-            must_run(nondimensional(zeta, 0.3), M, {0.3, 0.2}, {0, 20}, Grid::every(0.3), integrator);
+        const Run run = must_run(nondimensional(zeta, 0.3), M, {0.3, 0.2}, {0, 20}, Grid::every(0.3), integrator);
         CHECK(run.outcome == Outcome::chattering);
         REQUIRE(run.events.size() == 1);  // and none for each of the motions that did not get under way
         CHECK(run.events[0].kind == EventKind::stick);
@@ -171,7 +169,7 @@ TEST_CASE("feedback that pushes at rest and holds in motion ends, its events in 
 TEST_CASE("at its equilibrium a system under feedback does not turn", "[spectral][feedback]") {
     const Excitation M = feedback([](double, const State& y) { return 100 * (0.5 - y.theta) - 3 * y.velocity; });
     // Damped with 3/(2 sqrt(101) I w0): at rest, to rounding, after some ten swings.
-    const Trajectory run = by_spectral(nondimensional(0, 0), M, {0, 0}, {0, 200});
+    const Run run = by_spectral(nondimensional(0, 0), M, {0, 0}, {0, 200});
     CHECK(run.outcome == Outcome::reached_end);
     CHECK(run.events.size() < 60);
     // A rounding of its torques of 50 is 50 eps/101 of angle, 1.1e-16, and the iteration stops at a hundred of them.
@@ -187,7 +185,7 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
         const Oscillator system = system_of({.inertia = 1, .stiffness = k, .kinetic_friction = 0.3});
         const auto hidden = script([](double t) { return t - std::floor(t) < 0.5 ? 1.0 : -1.0; });
         for (const Excitation& M : {made(Square{.amplitude = 1, .period = 1}), hidden.M}) {
-            const Trajectory run = by_spectral(system, M, {0, 0}, {0, 1000});
+            const Run run = by_spectral(system, M, {0, 0}, {0, 1000});
             CAPTURE(k);
             CHECK(run.outcome == Outcome::reached_end);
             REQUIRE(run.events.size() == 1999);
@@ -196,8 +194,7 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
     }
     // Slow enough for it to stop in each half: 0.3 of friction outweighs a load of 0.25 at rest.
     const Oscillator system = system_of({.inertia = 1, .stiffness = 1e-12, .kinetic_friction = 0.3});
-    const Trajectory run =
-        by_spectral(system, made(Square{.amplitude = 0.4, .period = 1, .duty = 0.25}), {0, 0}, {0, 20000});
+    const Run run = by_spectral(system, made(Square{.amplitude = 0.4, .period = 1, .duty = 0.25}), {0, 0}, {0, 20000});
     CHECK(run.outcome != Outcome::chattering);
     CHECK(run.events.size() > 20000);
     check_order(run.events);
@@ -206,7 +203,7 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
 TEST_CASE("a mass at rest without friction does not turn before a smooth pulse comes", "[spectral]") {
     for (const double k : {0.0, 0.3}) {
         const Oscillator system = system_of({.inertia = 0.65, .stiffness = k, .damping = 5.2});
-        const Trajectory run =
+        const Run run =
             by_spectral(system, made(Gaussian{.amplitude = 3.7, .at = 14.6, .sigma = 0.16}), {0, 0}, {0, 15});
         CAPTURE(k);
         CHECK(run.events.empty());  // it goes forward all the time: the pulse is not over yet
@@ -224,7 +221,7 @@ TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spect
     const ReferenceSystem s{"stiff, late", system, harmonic(2, 0.7), harmonic_drive(2, 0.7), {0.4, -0.01},
                             {start, end},  0.5};
     const ExactMotion exact = s.exact();
-    const Trajectory run = must_run(s, Grid::every(0.37), Spectral{});
+    const Run run = must_run(s, Grid::every(0.37), Spectral{});
     CHECK(run.outcome == Outcome::reached_end);
     CHECK(error_of(run, exact, system) < 1e-12);
     REQUIRE(run.events.size() == exact.events().size());

@@ -46,7 +46,7 @@ TEST_CASE("the energy of springs adds up, of a user's function as well", "[sprin
     for (const auto& [name, spring] : all) {
         CAPTURE(name);
         const Oscillator system = with_spring(spring, 0.8, 0.05, 0.1, 0.03);
-        const Trajectory run = must_run(system, harmonic(0.8, 0.7), {1.3, 0}, {0, 60}, Grid::every(0.5), Spectral{});
+        const Run run = must_run(system, harmonic(0.8, 0.7), {1.3, 0}, {0, 60}, Grid::every(0.5), Spectral{});
         const auto energy = analysis::energy_of(run);
         REQUIRE(energy);
         CHECK(energy->closure() < 1e-11);  // corners of the clearance cost a panel's tolerance each
@@ -69,7 +69,7 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
     REQUIRE(steady.status == analysis::SteadyStatus::steady);
     CHECK(steady.stable);
     CHECK(steady.symmetric);
-    const Trajectory run = must_run(system, M, {}, {0, 60 * period}, Grid::at({60 * period}), Spectral{});
+    const Run run = must_run(system, M, {}, {0, 60 * period}, Grid::at({60 * period}), Spectral{});
     CHECK(steady.start.theta == within(run.state_at_stop.theta, 1e-9));
     CHECK(steady.start.velocity == within(run.state_at_stop.velocity, 1e-9));
     // A load that friction can hold: the mass may stay wherever the spring pulls back with no more than is left.

@@ -27,14 +27,14 @@ Excitation wave(double amplitude, double omega, double phase = 0) {
     return native(Harmonic{.amplitude = amplitude, .omega = omega, .phase = phase});
 }
 
-Trajectory run_of(Drive drive, double t_end, MethodView method) {
+Run run_of(Drive drive, double t_end, MethodView method) {
     drive.start_at({1, 0});
     return simulate(swinging, drive, {0, t_end}, Grid::none(), method).value();
 }
 
 /// The outcome of a run until t_end, the same for all integrators that may run it; its last event agrees.
 Outcome outcome_of(const Drive& drive, double t_end, bool more = false) {
-    const Trajectory first = run_of(drive, t_end, Integrator(Spectral{}));
+    const Run first = run_of(drive, t_end, Integrator(Spectral{}));
     const bool rests = first.outcome == Outcome::at_rest;
     CHECK(first.events.back().kind == (rests ? EventKind::rest : EventKind::stick));
     CHECK(run_of(drive, t_end, Integrator(Rk4{0.01})).outcome == first.outcome);
@@ -89,8 +89,8 @@ TEST_CASE("a belt, a base and what a user does at an event may move what M canno
 TEST_CASE("going on from a stop that M may end, and from one that it cannot, is one run", "[outcome][resume]") {
     const Excitation M = native(Pulse{.amplitude = 1, .at = 20, .width = 1});
     for (const double t_end : {15.0, 30.0, 60.0}) {
-        const Trajectory whole = run_of(M, t_end, Integrator(Spectral{}));
-        const Trajectory first = run_of(M, 10, Integrator(Spectral{}));
+        const Run whole = run_of(M, t_end, Integrator(Spectral{}));
+        const Run first = run_of(M, 10, Integrator(Spectral{}));
         const auto both = resume(swinging, M, first, t_end, Grid::none(), Integrator(Spectral{}));
         REQUIRE(both);
         CHECK(both->outcome == whole.outcome);
@@ -100,10 +100,10 @@ TEST_CASE("going on from a stop that M may end, and from one that it cannot, is 
 }
 
 TEST_CASE("the peak of a motion is that between the rows", "[outcome]") {
-    const Trajectory run = run_of({}, 10, Integrator(Spectral{}));
+    const Run run = run_of({}, 10, Integrator(Spectral{}));
     CHECK(peak(run) == 1);
     // Thrown from the middle: sqrt(v^2 + (Rd/k)^2) - Rd/k, at a time that is no row; without dry friction v/w0.
-    const Trajectory thrown = simulate(swinging, {{}, {0, 3}}, {0, 10}, Grid::every(5), Integrator()).value();
+    const Run thrown = simulate(swinging, {{}, {0, 3}}, {0, 10}, Grid::every(5), Integrator()).value();
     CHECK(std::fabs(peak(thrown) - (std::sqrt(9 + 0.04) - 0.2)) <= 1e-12);
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("the peak on a belt is where the mass turns against the ground, which 
     // Friction from a belt that is always faster is the constant 0.2: it swings by 3 about 0.2.
     Drive drive{{}, {0.2, 3}};
     drive.belts = {native(Constant{.amplitude = 50})};
-    const Trajectory run = simulate(swinging, drive, {0, 10}, Grid::none(), Integrator(Spectral{})).value();
+    const Run run = simulate(swinging, drive, {0, 10}, Grid::none(), Integrator(Spectral{})).value();
     CHECK(run.events.empty());
     CHECK(std::fabs(peak(run) - 3.2) <= 1e-9);
 }

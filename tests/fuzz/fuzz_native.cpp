@@ -166,7 +166,7 @@ void print(const Case& c) {
     std::abort();
 }
 
-std::optional<motion::Trajectory> run(const Case& c, motion::MethodView method) {
+std::optional<motion::Run> run(const Case& c, motion::MethodView method) {
     if (std::getenv("DINAL_FUZZ_PRINT") != nullptr) print(c);
     int looks = 0;
     auto run = motion::simulate(c.system, {c.M, c.initial}, c.window, motion::Grid::every(c.dt), method,
@@ -193,7 +193,7 @@ std::optional<motion::Trajectory> run(const Case& c, motion::MethodView method) 
 
 /// Far from where numbers end, where rounding is the same at every scale.
 constexpr double least = 1e-120, most = 1e120;
-bool ordinary(const motion::Trajectory& run) {
+bool ordinary(const motion::Run& run) {
     const auto fits = [](double x) { return x == 0 || (std::fabs(x) > least && std::fabs(x) < most); };
     for (Eigen::Index i = 0; i < run.rows.rows(); ++i) {
         for (Eigen::Index k = 1; k < run.rows.cols(); ++k) {
@@ -203,7 +203,7 @@ bool ordinary(const motion::Trajectory& run) {
     return model::is_whole(run.outcome);
 }
 
-void compare(const motion::Trajectory& a, const motion::Trajectory& b, const Scale& scale) {
+void compare(const motion::Run& a, const motion::Run& b, const Scale& scale) {
     if (a.outcome != b.outcome || a.rows.rows() != b.rows.rows()) wrong("another end in other units");
     for (Eigen::Index i = 0; i < a.rows.rows(); ++i) {
         for (Eigen::Index k = 1; k < a.rows.cols(); ++k) {

@@ -14,20 +14,20 @@
 
 namespace dinal::truth {
 
-inline motion::Trajectory must_run(const model::Oscillator& oscillator, const model::Excitation& excitation,
-                                   const model::State& initial, const motion::Window& window, const motion::Grid& rows,
-                                   motion::MethodView method) {
+inline motion::Run must_run(const model::Oscillator& oscillator, const model::Excitation& excitation,
+                            const model::State& initial, const motion::Window& window, const motion::Grid& rows,
+                            motion::MethodView method) {
     auto run = motion::simulate(oscillator, {excitation, initial}, window, rows, method);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();
 }
 
-inline motion::Trajectory must_run(const ReferenceSystem& s, const motion::Grid& rows, motion::MethodView method) {
+inline motion::Run must_run(const ReferenceSystem& s, const motion::Grid& rows, motion::MethodView method) {
     return must_run(s.oscillator, s.excitation, s.initial, s.window, rows, method);
 }
 
 /// The greatest error of a row in theta or velocity/w0, in the units of theta.
-inline double error_of(const motion::Trajectory& run, const ExactMotion& exact, const model::Oscillator& oscillator) {
+inline double error_of(const motion::Run& run, const ExactMotion& exact, const model::Oscillator& oscillator) {
     const double w0 = oscillator.natural_frequency();
     double worst = 0;
     for (Eigen::Index i = 0; i < run.size(); ++i) {

@@ -370,7 +370,7 @@ std::string kinds_of_all(const Events& events) {
     return text;
 }
 
-std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
+std::string fault_in(const MixedCase& c, const text::Expected<motion::Run>& run, const std::string& expected,
                      const MixedTruth& truth, const MixedTruth& beside, double accuracy);
 
 /// The fault found; empty if correct, "?" if undecidable.
@@ -399,7 +399,7 @@ std::string fault_of(const MixedCase& c, double accuracy, bool rk4_too) {
     return late.empty() ? "" : "by rk4: " + late;
 }
 
-std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
+std::string fault_in(const MixedCase& c, const text::Expected<motion::Run>& run, const std::string& expected,
                      const MixedTruth& truth, const MixedTruth& beside, double accuracy) {
     if (!run) return run.error().sentence;
     if (!model::is_whole(run->outcome)) return std::string(model::sentence(run->outcome));

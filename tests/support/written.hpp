@@ -32,8 +32,8 @@ inline model::Excitation feedback(Body body) {
     return native(model::Scripted{.function = written(std::move(body)), .feedback = true});
 }
 
-inline motion::Trajectory run_more(const model::Oscillator& system, const model::Drive& drive, double t_end, double dt,
-                                   motion::MethodView method) {
+inline motion::Run run_more(const model::Oscillator& system, const model::Drive& drive, double t_end, double dt,
+                            motion::MethodView method) {
     auto run = motion::simulate(system, drive, {0, t_end}, motion::Grid::every(dt), method);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();

@@ -102,7 +102,7 @@ inline std::shared_ptr<Memory> copied(const std::shared_ptr<Memory>& memory) {
 
 /// A user's function, delayed by `delay`, with its declared properties. The excitation itself evaluates it, as it may
 /// need the state and may fail.
-// Shared: every excitation and trajectory with the function keeps it alive.
+// Shared: every excitation and run with the function keeps it alive.
 struct Scripted {
     static const TermText about;
 

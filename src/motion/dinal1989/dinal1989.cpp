@@ -134,9 +134,9 @@ std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
         .option = "integrator"};
 }
 
-Trajectory Dinal1989::run(const Problem& problem) const {
-    Trajectory trajectory;
-    RowWriter rows(problem.system, problem.rows, trajectory);
+Run Dinal1989::run(const Problem& problem) const {
+    Run run;
+    RowWriter rows(problem.system, problem.rows, run);
     // A step that would begin within rounding of the end is omitted.
     const double covering = std::min((problem.window.end - problem.window.start) / h, 1e18);
     const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
@@ -153,7 +153,7 @@ Trajectory Dinal1989::run(const Problem& problem) const {
         if (now.step == block_end) {
             replay->checkpoints.add(now);
             if (problem.monitor && !problem.monitor(dinal.time(now))) {
-                trajectory.outcome = model::Outcome::interrupted;
+                run.outcome = model::Outcome::interrupted;
                 break;
             }
             block = now.step;
@@ -169,28 +169,28 @@ Trajectory Dinal1989::run(const Problem& problem) const {
         if (finite(next)) {
             const bool row_at_end = on_step(rows, problem.window.start, h, next.step, steps_per_row);
             if (!row_at_end && !rows_between(rows, dinal, now, next)) {
-                trajectory.outcome = model::Outcome::excitation_not_finite;
+                run.outcome = model::Outcome::excitation_not_finite;
                 break;
             }
             record_event(events, dinal, now, next);
         }
         now = next;
     }
-    if (!finite(now)) trajectory.outcome = not_finite(now);
-    trajectory.t_start = problem.window.start;
-    trajectory.t_stop = std::min(dinal.time(now), problem.window.end);
-    if (trajectory.outcome == model::Outcome::reached_end) {
+    if (!finite(now)) run.outcome = not_finite(now);
+    run.t_start = problem.window.start;
+    run.t_stop = std::min(dinal.time(now), problem.window.end);
+    if (run.outcome == model::Outcome::reached_end) {
         while (rows.next_time() < model::never) rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
-        trajectory.t_stop = problem.window.end;
-        if (now.frozen) trajectory.outcome = model::Outcome::stuck_at_end;
+        run.t_stop = problem.window.end;
+        if (now.frozen) run.outcome = model::Outcome::stuck_at_end;
     }
     rows.finish();
-    if (problem.drive.M().has_script()) trajectory.gap = trajectory.unproven = h / 2;
-    trajectory.state_at_stop = dinal.state(now);
-    trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
-    trajectory.events = Growing<model::Event>(std::move(events));
-    if (problem.limits.dense) trajectory.course = replay;
-    return trajectory;
+    if (problem.drive.M().has_script()) run.gap = run.unproven = h / 2;
+    run.state_at_stop = dinal.state(now);
+    run.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(run.state_at_stop.velocity);
+    run.events = Growing<model::Event>(std::move(events));
+    if (problem.limits.dense) run.course = replay;
+    return run;
 }
 
 }  // namespace dinal::motion::dinal1989

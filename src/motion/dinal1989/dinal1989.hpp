@@ -19,7 +19,7 @@ struct Dinal1989 {
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
-    [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Run run(const Problem& problem) const;
     [[nodiscard]] OwnRule own_rule() const;
 };
 

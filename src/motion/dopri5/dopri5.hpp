@@ -32,7 +32,7 @@ struct Dopri5 {
         return {"T0/27", system.natural_period() / 27, false};
     }
     [[nodiscard]] Cut cut() const { return {.tolerance = tolerance, .pair = &pair}; }
-    [[nodiscard]] Trajectory run(const Problem& problem) const { return engine::run(problem, cut()); }
+    [[nodiscard]] Run run(const Problem& problem) const { return engine::run(problem, cut()); }
 };
 
 inline constexpr text::Option dopri5_options[] = {

@@ -37,16 +37,13 @@ void Engine::finish() {
     Walls::keep_within(problem_.system, now_.y);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.t.hi;
-    if (recorder_->next_row() < problem_.rows.count()) result_.table = result_.table.first(recorder_->next_row());
-    recorder_->history()->close(now_.t, now_.y);
-    result_.history = recorder_->history();
     auto carry = std::make_shared<Carry>();
     carry->y = now_.y, carry->low = now_.low, carry->mode = now_.mode, carry->watches = users_.watches(),
     carry->echoes = breaks_.echoes(), carry->heading = recorder_->heading(), carry->born = pace_.born,
     carry->floor = solver_->noise().floor();
     if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = recorder_->history();
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
-    result_.carry = std::move(carry);
+    recorder_->finish(now_, std::move(carry));
 }
 
 /// Returns how the run stands at its end, if nothing moves.

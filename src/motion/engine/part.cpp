@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -38,7 +39,7 @@ struct Place {
 class PartCourse final : public Course {
 public:
     PartCourse(const model::Oscillator& seen, const Place& place, std::size_t states, const Run& run)
-        : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.history) {}
+        : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.left->history) {}
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
             return text::Error{fmt::format(
@@ -90,68 +91,74 @@ bool turns_are_events(const model::System& system, const model::Drive& drive, st
     });
 }
 
-}  // namespace
-
-Trajectory part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
-                   const std::optional<model::Oscillator>& seen) {
-    const Place place(system, joint);
-    Trajectory part;
+/// The columns of a joint, without its name before them.
+std::vector<std::string> names_at(const model::System& system, const model::Drive& drive, std::size_t joint) {
+    std::vector<std::string> names = column_names();
     if (system.is_link(joint)) {
-        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
-    } else if (!drive.states.empty() || system.bodies[joint].moved) {
-        part.own_names = column_names();
-        if (system.bodies[joint].moved) part.own_names.emplace_back("torque");
+        names = {"t", "theta", "velocity", "torque", "friction"};
+    } else if (system.bodies[joint].moved) {
+        names.emplace_back("torque");
     }
-    for (const model::OwnState& state : drive.states) part.own_names.push_back(state.name);
-    const auto left = std::make_shared<Left>(run.carry, place.bodies);
-    left->states.resize(drive.states.size());  // drops the states of bristles
-    part.carried = left;
-    std::vector<model::Event> events;
-    for (const model::Event& e : run.events) {
-        if (e.where == static_cast<int>(joint)) events.push_back(e);
-    }
-    part.events = Growing<model::Event>(std::move(events));
-    for (const model::WantedEvent& wanted : drive.events) part.event_names.push_back(wanted.name);
-    part.outcome = run.outcome;
-    part.contradiction = run.contradiction;
-    part.rough = run.rough;
-    part.gap = run.gap;
-    part.unproven = run.unproven;
-    part.noise = run.noise;
-    part.jumps = run.jumps;
-    part.located = run.located;
-    part.t_start = run.t_start;
-    part.t_stop = run.t_stop;
-    part.initial = {place.weights.sum(drive.theta0), place.weights.sum(drive.velocity0)};
-    if (system.has_moved()) part.initial = place.state(run.initial);
-    part.state_at_stop = place.state(run.carry->y);
-    part.motion_at_stop = joint == 0 ? run.motion_at_stop : way_at_stop(run.carry->mode, joint);
-    part.began_stuck = run.begun.holds(joint);
-    part.began_open = rubs(system.joints[joint]) && run.begun.rubs[joint] == 0;
-    part.on_belt = !turns_are_events(system, drive, joint);
-    if (const auto& walls = system.joints[joint].walls) part.restitution = walls->restitution;
-    if (system.joints[joint].stops) part.restitution = -1;  // at an elastic wall the velocity continues
-    if (seen) part.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
-    return part;
+    for (const model::OwnState& state : drive.states) names.push_back(state.name);
+    return names;
 }
 
-Trajectory part_with_rows(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
-                          const std::optional<model::Oscillator>& seen) {
-    Trajectory part = part_of(system, drive, run, joint, seen);
-    if (part.rough) part.rough->other_integrators = false;
-    part.computed = !system.is_link(joint);
-    const std::vector<std::string> all = column_names_of(system, drive);
-    const std::vector<std::string>& names = part.names();
-    const std::size_t rows = run.table.size();
-    Growing<double> table(rows, names.size());
+/// The columns of a joint, and the acceleration of a body.
+Rows rows_at(const model::System& system, const Run& run, std::size_t joint, const std::vector<std::string>& names,
+             std::size_t states) {
+    const std::size_t rows = run.rows.table().size(), more = system.is_link(joint) ? 0 : 1;
+    Growing<double> table(rows, names.size() + more);
+    double* to = table.writable();
+    const auto copy = [&](std::size_t column) {
+        const auto from = run.rows.table().column(column);
+        to = std::copy(from.begin(), from.end(), to);
+    };
     for (std::size_t c = 0; c < names.size(); ++c) {
-        const bool own = c > 0 && c < part.first_state() && system.named;
-        const auto place =
-            std::find(all.begin(), all.end(), own ? system.joints[joint].name + "." + names[c] : names[c]);
-        const auto from = run.table.column(static_cast<std::size_t>(place - all.begin()));
-        std::copy(from.begin(), from.end(), table.writable() + c * rows);
+        const bool own = c > 0 && c + states < names.size();
+        copy(static_cast<std::size_t>(run.find(own ? system.joints[joint].name + "." + names[c] : names[c]).value()));
     }
-    part.rows = Rows(std::move(table));
+    if (more > 0) copy(run.names().size() + joint);
+    return Rows(std::move(table));
+}
+
+/// Fills in what one joint sees of a run: the members from `initial` on.
+void see(Run& run, const model::System& system, const model::Drive& drive, std::size_t joint,
+         const std::optional<model::Oscillator>& seen) {
+    const Left& left = *run.left;
+    const Place place(system, joint);
+    run.initial = {place.weights.sum(drive.theta0), place.weights.sum(drive.velocity0)};
+    if (system.has_moved()) run.initial = place.state(left.start);
+    run.state_at_stop = place.state(left.carry->y);
+    if (joint > 0) run.motion_at_stop = way_at_stop(left.carry->mode, joint);
+    run.began_stuck = left.begun.holds(joint);
+    run.began_open = rubs(system.joints[joint]) && left.begun.rubs[joint] == 0;
+    run.on_belt = !turns_are_events(system, drive, joint);
+    if (const auto& walls = system.joints[joint].walls) run.restitution = walls->restitution;
+    if (system.joints[joint].stops) run.restitution = -1;  // at an elastic wall the velocity continues
+    if (seen) run.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
+}
+
+}  // namespace
+
+void complete(Run& run, const model::System& system, const model::Drive& drive,
+              const std::optional<model::Oscillator>& seen) {
+    if (system.named || !drive.states.empty()) run.own_names = column_names_of(system, drive);
+    run.states = drive.states.size();
+    for (const model::WantedEvent& wanted : drive.events) run.event_names.push_back(wanted.name);
+    see(run, system, drive, 0, seen);
+}
+
+Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
+            const std::optional<model::Oscillator>& seen) {
+    Run part = run;
+    part.own_names = names_at(system, drive, joint);
+    part.rows = rows_at(system, run, joint, part.own_names, drive.states.size());
+    std::vector<model::Event> events;
+    std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
+                 [joint](const model::Event& e) { return e.where == static_cast<int>(joint); });
+    part.events = Growing<model::Event>(std::move(events));
+    part.computed = !system.is_link(joint);
+    see(part, system, drive, joint, seen);
     return part;
 }
 

@@ -6,6 +6,6 @@
 namespace dinal::motion::engine {
 
 /// Runs the problem. The columns of its states follow the others.
-Trajectory run(const Problem& problem, const Cut& cut);
+Run run(const Problem& problem, const Cut& cut);
 
 }  // namespace dinal::motion::engine

@@ -24,8 +24,10 @@ Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& resu
     history_ = std::make_shared<History>(std::move(weights), n(), start.y, start.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
     const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
-                                mechanics.states_of_user() - (problem.joined_elsewhere ? n() : 0);
-    result.table = Growing<double>(problem.rows.count(), columns);
+                                mechanics.states_of_user() + (problem.joined_elsewhere ? 0 : n());
+    Growing<double> table(problem.rows.count(), columns);
+    cells_ = table.writable();
+    result.rows = Rows(std::move(table));
 }
 
 void Recorder::tell_user(const Now& now, std::size_t event) {
@@ -40,7 +42,7 @@ void Recorder::tell(const Decision& decision, double unit) {
         if (told.unless == Told::Unless::touched && only_touched(told, unit)) continue;
         const bool takes_back = told.unless == Told::Unless::taken_back;
         if (takes_back && take_back_slip(static_cast<std::size_t>(told.event.where), told.event.t)) continue;
-        result_.events.push_back(told.event);
+        events_.push_back(told.event);
     }
 }
 
@@ -56,11 +58,11 @@ void Recorder::tell_slide(const Now& now, std::size_t joint) {
 }
 
 bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
-    auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const Event& e) {
+    auto told = std::find_if(events_.rbegin(), events_.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
     });
-    if (told == result_.events.rend()) return false;
-    result_.events.erase(std::next(told).base());
+    if (told == events_.rend()) return false;
+    events_.erase(std::next(told).base());
     return true;
 }
 
@@ -69,46 +71,45 @@ bool Recorder::take_back(EventKind kind, std::size_t joint, double t) {
 /// longer an event, or is a turn.
 bool Recorder::only_touched(const Told& slip, double unit) {
     constexpr double briefly = 1e-3, withheld = 64 * rounding;
-    if (result_.events.empty() || slip.slid == Motion::stuck) return false;
-    Event& last = result_.events.back();
+    if (events_.empty() || slip.slid == Motion::stuck) return false;
+    Event& last = events_.back();
     const double part = (slip.event.t - last.t) / unit;
     if (last.kind != EventKind::stick || last.where != slip.event.where || part > briefly) return false;
     if (!(slip.off * (2 * std::numbers::pi * part) <= withheld * slip.size)) return false;
     if (slip.turns) {
         last.kind = EventKind::turn;
     } else {
-        result_.events.pop_back();
+        events_.pop_back();
     }
     return true;
 }
 
 void Recorder::forget_chatter(double unit) {
     constexpr double soon = 1e-6;
-    std::vector<Event>& events = result_.events;
     const auto follows = [&](const Event& e, const Event& before) {
         return e.kind <= EventKind::rest && e.t - before.t <= soon * unit;
     };
-    while (events.size() > 1 && follows(events.back(), *(events.end() - 2))) events.pop_back();
+    while (events_.size() > 1 && follows(events_.back(), *(events_.end() - 2))) events_.pop_back();
 }
 
 void Recorder::tell_crept(const Mode& mode) {
     for (const auto& [joint, event] : crept_) {
         if (mode.friction[joint].creeps == Motion::stuck) continue;
-        const auto later = std::upper_bound(result_.events.begin(), result_.events.end(), event,
+        const auto later = std::upper_bound(events_.begin(), events_.end(), event,
                                             [](const Event& a, const Event& b) { return a.t < b.t; });
-        result_.events.insert(later, event);
+        events_.insert(later, event);
     }
 }
 
 void Recorder::tell_rest() {
-    auto last = std::find_if(result_.events.rbegin(), result_.events.rend(),
-                             [](const Event& e) { return e.kind == EventKind::stick; });
-    if (last != result_.events.rend()) last->kind = EventKind::rest;
+    auto last =
+        std::find_if(events_.rbegin(), events_.rend(), [](const Event& e) { return e.kind == EventKind::stick; });
+    if (last != events_.rend()) last->kind = EventKind::rest;
 }
 
 void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise) {
     const auto& [now, segment, frame, balances, sampled] = of;
-    const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
+    const auto told = static_cast<std::ptrdiff_t>(events_.size());
     for (std::size_t i = 0; i < n(); ++i) {
         bool rubs = false;
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -119,8 +120,7 @@ void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& 
             record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled);
         }
     }
-    std::stable_sort(result_.events.begin() + told, result_.events.end(),
-                     [](const Event& a, const Event& b) { return a.t < b.t; });
+    std::stable_sort(events_.begin() + told, events_.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
 }
 
 void Recorder::record_turns(std::size_t body, const Segment& segment, double until, double nothing,
@@ -162,7 +162,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
         segment.state(x, y);
         const std::optional<double> known = sampled.at(body, x);
         const double M = known ? *known : mechanics_.load(body, {t, Side::at, y});
-        result_.events.push_back({.t = t, .theta = y[body], .M = M, .where = static_cast<int>(body)});
+        events_.push_back({.t = t, .theta = y[body], .M = M, .where = static_cast<int>(body)});
     }
     heading_[body] = static_cast<Motion>(way);
 }
@@ -196,7 +196,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || now.mode.holds(j);
     if (needs_look && x > -1 && !balances.on_stretch(segment, x, at, now.mode, frame, balance_, &sampled)) return false;
     if (needs_look && !(x > -1) && !balances.at_present(at, now, now.mode, frame, segment, balance_)) return false;
-    double* cell = result_.table.writable() + next_row_;
+    double* cell = cells_ + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
         *cell = value == 0 ? 0 : value;
@@ -211,7 +211,6 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         good = put(known ? *known : mechanics_.load(i, at)) && good;
         good = put(friction(now, i, at, balance_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
-        if (!problem_.joined_elsewhere) good = put(balance_.accelerations[i]) && good;
     }
     for (std::size_t j = n(); j < told_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
@@ -230,6 +229,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         good = put(balance_.holding[j] + more * balance_.accelerations[body]) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
+    for (std::size_t i = 0; i < n() && !problem_.joined_elsewhere; ++i) good = put(balance_.accelerations[i]) && good;
     if (good) ++next_row_;
     return good;
 }
@@ -251,6 +251,15 @@ void Recorder::keep(const Now& now, const Segment& segment, double length, doubl
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
     const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
+}
+
+void Recorder::finish(const Now& now, std::shared_ptr<const Carry> carry) {
+    if (next_row_ < problem_.rows.count()) result_.rows = Rows(result_.rows.table().first(next_row_));
+    result_.events = Growing<Event>(std::move(events_));
+    history_->close(now.t, now.y);
+    left_->history = history_;
+    left_->carry = std::move(carry);
+    result_.left = std::move(left_);
 }
 
 /// Returns the torques that act at each joint on the stretch.

@@ -27,12 +27,12 @@ public:
 
     // Events.
     void tell(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
-        result_.events.push_back(event_at(mechanics_, now, kind, where, user));
+        events_.push_back(event_at(mechanics_, now, kind, where, user));
     }
     /// An event of the user concerns every joint: each gets one, with its own angle and velocity.
     void tell_user(const Now& now, std::size_t event);
     [[nodiscard]] bool told_user_at(double t) const {
-        return !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == t;
+        return !events_.empty() && events_.back().user >= 0 && events_.back().t == t;
     }
     /// A load begins or ceases to slide along a condition. Both at one instant are no event, nor does a slide begin
     /// where a run goes on.
@@ -73,6 +73,10 @@ public:
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 
+    // The beginning and the end.
+    void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
+    void finish(const Now& now, std::shared_ptr<const Carry> carry);
+
 private:
     bool only_touched(const Told& slip, double unit);
     /// The place x of the segment; -2 is the present.
@@ -91,6 +95,9 @@ private:
     const Request& problem_;
     const Mechanics& mechanics_;
     Run& result_;
+    std::vector<model::Event> events_;
+    double* cells_ = nullptr;  ///< the table of the rows
+    std::shared_ptr<Left> left_ = std::make_shared<Left>();
     std::shared_ptr<History> history_;
     std::map<std::size_t, model::Event> crept_;
     std::vector<model::Motion> heading_;

@@ -115,8 +115,7 @@ void Engine::begin() {
         }
         if (now_.after_break) ask_after_break();
     }
-    result_.begun = now_.mode;
-    result_.initial = now_.y;
+    recorder_->begin(now_);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) walls_.reach[j] = std::fabs(mechanics_.angle(j, now_.y));
 }
 
@@ -415,7 +414,7 @@ std::vector<std::string> column_names_of(const model::System& system, const mode
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const std::string& name = system.joints[j].name;
         system.is_link(j) ? add(name, {"theta", "velocity", "torque", "friction"})
-                          : add(name, {"theta", "velocity", "M", "friction", "damping", "acceleration"});
+                          : add(name, {"theta", "velocity", "M", "friction", "damping"});
     }
     for (const model::Body& body : system.bodies) {
         if (body.moved) add(body.name, {"torque"});

@@ -2,57 +2,19 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "model/contradiction.hpp"
-#include "model/event.hpp"
-#include "model/outcome.hpp"
-#include "motion/engine/crossing.hpp"
-#include "motion/engine/history.hpp"
-#include "motion/engine/mechanics.hpp"
-#include "motion/growing.hpp"
+#include "motion/engine/left.hpp"
+#include "motion/run.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::engine {
 
-/// The state needed to resume a run.
-struct Carry {
-    std::vector<double> y;
-    std::vector<double> low;  ///< rounding errors of the angles; may be empty
-    Mode mode;
-    std::vector<std::vector<Signal::Memory>> controllers;  ///< memory of the loads of each body
-    std::vector<Watch> watches;                            ///< state of the user's events; may be empty
-    std::vector<std::pair<double, int>> echoes;            ///< breaks that delays repeat
-    std::vector<model::Motion> heading;                    ///< directions without dry friction; may be empty
-    std::shared_ptr<const History> past;
-    double born = 0;   ///< start of the first of these runs
-    Floor floor = {};  ///< may be empty
-};
-
-struct Run {
-    /// The columns named by column_names_of(system, drive); without accelerations if `joined_elsewhere`.
-    Growing<double> table;
-    std::vector<model::Event> events;
-    model::Outcome outcome = model::Outcome::reached_end;
-    double t_start = 0, t_stop = 0;
-    std::vector<double> initial = {};  ///< all angles, velocities and states at the start
-    double gap = 0;                    ///< longest distance between two samples of a user's function, time units
-    double unproven = 0;               ///< the longest stretch in which formulas may do more than was sampled
-    model::Motion motion_at_stop = model::Motion::stuck;  ///< motion of the first body
-    Mode begun = {};                                      ///< mode of the contacts at the start
-    bool located = false;                                 ///< whether all conditions on the motion were located
-    std::size_t jumps = 0;                                ///< number of jumps at these conditions
-    double noise = 0;                                     ///< noise of the noisiest load, torque
-    std::optional<Rough> rough = {};                      ///< cause of Outcome::unresolved, if known
-    std::shared_ptr<const History> history;
-    std::shared_ptr<const Carry> carry;
-    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
-};
-inline constexpr std::size_t columns_of_body = 6, columns_of_link = 4;
-/// t; theta, velocity, M, friction, damping and acceleration of each body; theta, velocity, torque and friction of each
-/// link, as in "load.theta"; the torque on each body with prescribed motion; states.
+inline constexpr std::size_t columns_of_body = 5, columns_of_link = 4;
+/// t; theta, velocity, M, friction and damping of each body; theta, velocity, torque and friction of each link, as in
+/// "load.theta"; the torque on each body with prescribed motion; states. The accelerations of the bodies follow without
+/// names, unless the run is `joined_elsewhere`.
 std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive);
 
 struct Request {

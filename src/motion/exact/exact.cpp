@@ -60,9 +60,9 @@ Resolution Exact::resolution(const model::Oscillator& system) const {
     return {"T0/8", system.natural_period() / looks, false};
 }
 
-Trajectory Exact::run(const Problem& problem) const {
-    Trajectory trajectory;
-    RowWriter rows(problem.system, problem.rows, trajectory);
+Run Exact::run(const Problem& problem) const {
+    Run run;
+    RowWriter rows(problem.system, problem.rows, run);
     std::shared_ptr<Arcs> arcs;
     if (problem.limits.dense) {
         arcs = std::make_shared<Arcs>(problem.system, problem.drive.M(), problem.course_bytes);
@@ -71,8 +71,8 @@ Trajectory Exact::run(const Problem& problem) const {
     constexpr std::size_t few = 8;
     events.reserve(few);
     ExactEngine engine(problem, rows, events, arcs.get());
-    run_whole(engine, problem, rows, events, std::move(arcs), trajectory);
-    return trajectory;
+    run_whole(engine, problem, rows, events, std::move(arcs), run);
+    return run;
 }
 
 }  // namespace dinal::motion::exact

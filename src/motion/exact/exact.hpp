@@ -14,7 +14,7 @@ struct Exact {
     /// Returns whether its arcs are short: lines or powers of t with a damping by which the motion follows them late.
     [[nodiscard]] static bool goes_slowly(const model::Oscillator& system, const model::Excitation& excitation);
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
-    [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Run run(const Problem& problem) const;
 };
 
 inline constexpr MethodText Exact::about{

@@ -25,11 +25,11 @@ public:
 
     model::Outcome run();
     /// Stores the time and state reached.
-    void leave(Trajectory& trajectory) const {
-        trajectory.t_stop = clock_.hi;
-        trajectory.state_at_stop = y_;
-        trajectory.motion_at_stop = standstill_.motion();
-        trajectory.began_stuck = standstill_.began_stuck();
+    void leave(Run& run) const {
+        run.t_stop = clock_.hi;
+        run.state_at_stop = y_;
+        run.motion_at_stop = standstill_.motion();
+        run.began_stuck = standstill_.began_stuck();
     }
 
 private:

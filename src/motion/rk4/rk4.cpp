@@ -34,8 +34,8 @@ text::Expected<model::State> Replay::at(double t) const {
     const Monitor monitor;
     const Limits limits;
     const Problem problem{system(), drive_, window_, *grid, monitor, limits};
-    Trajectory trajectory;
-    RowWriter rows(system(), *grid, trajectory);
+    Run run;
+    RowWriter rows(system(), *grid, run);
     Rk4Engine engine(problem, method_, rows, nullptr, nullptr);
 
     auto step = static_cast<std::size_t>((t - window_.start) / method_.h);
@@ -45,7 +45,7 @@ text::Expected<model::State> Replay::at(double t) const {
     // If no later checkpoint exists, the replay goes only to the end of the step.
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
     engine.run(checkpoints.before(step), last);
-    if (trajectory.size() > 0 && rows.next_row() == 0) {
+    if (run.size() > 0 && rows.next_row() == 0) {
         return text::Error{
             fmt::format("M failed between the rows near t = {:.6g}: it no longer returns a number there", t)};
     }
@@ -55,23 +55,23 @@ text::Expected<model::State> Replay::at(double t) const {
             return text::Error{"M has changed since the run: simulate again to evaluate it between the rows"};
         }
     }
-    return model::State{trajectory.rows(0, 1), trajectory.rows(0, 2)};
+    return model::State{run.rows(0, 1), run.rows(0, 2)};
 }
 
 }  // namespace
 
-Trajectory Rk4::run(const Problem& problem) const {
+Run Rk4::run(const Problem& problem) const {
     if (problem.more) return engine::run(problem, cut());
-    Trajectory trajectory;
-    RowWriter rows(problem.system, problem.rows, trajectory);
+    Run run;
+    RowWriter rows(problem.system, problem.rows, run);
     std::shared_ptr<Replay> replay;
     if (problem.limits.dense) replay = std::make_shared<Replay>(problem, *this);
     std::vector<model::Event> events;
     Rk4Engine engine(problem, *this, rows, &events, replay ? &replay->checkpoints : nullptr);
     if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
 
-    run_whole(engine, problem, rows, events, std::move(replay), trajectory);
-    return trajectory;
+    run_whole(engine, problem, rows, events, std::move(replay), run);
+    return run;
 }
 
 }  // namespace dinal::motion::rk4

@@ -17,7 +17,7 @@ struct Rk4 {
                                                        const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
     [[nodiscard]] Cut cut() const { return {.longest = h, .step = h}; }
-    [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Run run(const Problem& problem) const;
 };
 
 inline constexpr text::Option rk4_options[] = {

@@ -39,12 +39,12 @@ public:
     }
     [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, standstill_.mark()}; }
     /// Stores the time and state reached.
-    void leave(Trajectory& trajectory) const {
-        trajectory.t_stop = t_;
-        trajectory.state_at_stop = y_;
-        trajectory.motion_at_stop = standstill_.motion();
-        trajectory.began_stuck = standstill_.began_stuck();
-        if (excitation_.has_script()) trajectory.gap = trajectory.unproven = full_.h / 2;
+    void leave(Run& run) const {
+        run.t_stop = t_;
+        run.state_at_stop = y_;
+        run.motion_at_stop = standstill_.motion();
+        run.began_stuck = standstill_.began_stuck();
+        if (excitation_.has_script()) run.gap = run.unproven = full_.h / 2;
     }
 
 private:

@@ -29,7 +29,7 @@ double Spectral::longest(const Problem& problem) const {
                                               : part_of_run * (problem.window.end - problem.window.start));
 }
 
-Trajectory Spectral::run(const Problem& problem) const {
+Run Spectral::run(const Problem& problem) const {
     return engine::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
 }
 

@@ -25,7 +25,7 @@ struct Spectral {
     [[nodiscard]] double longest(const Problem& problem) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Cut cut() const { return {.tolerance = tolerance, .longest = std::min(max_panel, widest_looks())}; }
-    [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Run run(const Problem& problem) const;
 };
 
 inline constexpr text::Option spectral_options[] = {

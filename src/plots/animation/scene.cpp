@@ -28,8 +28,7 @@ bool is_stuck(const std::vector<Interval>& stuck, double t) {
     return next != stuck.begin() && t <= std::prev(next)->high;
 }
 
-Interval reach_of(const std::vector<Frame>& frames, const motion::Trajectory& run,
-                  const std::optional<model::Walls>& walls) {
+Interval reach_of(const std::vector<Frame>& frames, const motion::Run& run, const std::optional<model::Walls>& walls) {
     Interval reach{frames.front().theta, frames.front().theta};
     const auto include = [&](double t, double theta) {
         if (t < frames.front().t || t > frames.back().t) return;
@@ -59,14 +58,14 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
     Scene scene;
     scene.seconds = take.seconds;
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(take.count())));
-    const std::vector<Interval> stuck = stuck_intervals(*run.trajectory);
+    const std::vector<Interval> stuck = stuck_intervals(*run.result);
     Frame frame;
     for (std::size_t i = 0; i <= count; ++i) {
         if (!go_on()) return text::Error{"the animation was interrupted"};
         const double t = i == count
                              ? take.to
                              : take.from + (take.to - take.from) * static_cast<double>(i) / static_cast<double>(count);
-        const auto state = run.trajectory->at(t);
+        const auto state = run.result->at(t);
         if (!state) return state.error();
         if (belt != nullptr && i > 0) frame.surface += way_of(*belt, frame.t, t);
         frame.t = t;
@@ -81,7 +80,7 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
         scene.walls = run.system->walls();
         scene.spring = run.system->has_spring() || !run.system->spring().none();
     }
-    scene.reach = reach_of(scene.frames, *run.trajectory, scene.walls);
+    scene.reach = reach_of(scene.frames, *run.result, scene.walls);
     return scene;
 }
 

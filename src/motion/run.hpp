@@ -52,16 +52,6 @@ private:
     Growing<double> table_;
 };
 
-/// The run's own states and other data that a continuation needs besides the motion.
-struct Carried {
-    Carried() = default;
-    Carried(const Carried&) = default;
-    Carried& operator=(const Carried&) = default;
-    virtual ~Carried() = default;
-
-    std::vector<double> states;
-};
-
 /// The function whose roughness on every scale stopped a run.
 struct Rough {
     std::string who;
@@ -70,36 +60,38 @@ struct Rough {
 };
 
 namespace engine {
-struct Run;
+struct Left;
 }
 
-struct Trajectory {
-    std::vector<std::string> own_names = {};  ///< if they differ from the usual six: see names()
-    Rows rows;                                ///< never NaN
-    Growing<model::Event> events;             ///< in order of time
+/// What a system did, or, as a view, what one of its bodies or links did. The members from `initial` on are of that
+/// body or link; of a system whose bodies have names they are of its first body, and without a course.
+struct Run {
+    std::vector<std::string> own_names = {};    ///< if they differ from the usual six: see names()
+    Rows rows;                                  ///< never NaN; accelerations may follow the columns that have names
+    Growing<model::Event> events;               ///< in order of time; those of the user once at each joint
+    std::vector<std::string> event_names = {};  ///< names of the user's events, by Event::user
+    std::size_t states = 0;                     ///< the number of the run's own states, its last columns
     model::Outcome outcome = model::Outcome::reached_end;
-    model::State initial;  ///< at t_start
+    std::optional<Rough> rough = {};                         ///< cause of Outcome::unresolved, if known
+    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
     double t_start = 0;
     double t_stop = 0;  ///< the time reached: t_end unless the run ended early
+    double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
+    double unproven = 0;    ///< the longest stretch in which formulas may do more than was sampled
+    double noise = 0;       ///< torque by which M deviates from a smooth function on every scale
+    std::size_t jumps = 0;  ///< located jumps of a function M along the motion
+    bool located = false;   ///< whether formulas have conditions on the motion, which were located
+    bool computed = true;   ///< whether it was simulated; otherwise read from a file
+    std::shared_ptr<const engine::Left> left = {};  ///< what the general loop leaves; null for other integrators
+
+    model::State initial;  ///< at t_start
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;  ///< whether it was stuck until something moved it
-    bool began_open = false;   ///< whether nothing pressed on the contact until it closed
-    bool on_belt = false;      ///< whether turns of theta are no events, as on a belt
-    double restitution = 1;    ///< part of the speed left after an impact at a wall
-    bool computed = true;      ///< whether it was simulated; otherwise read from a file
-    double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
-    double unproven = 0;                        ///< the longest stretch in which formulas may do more than was sampled
-    double noise = 0;                           ///< torque by which M deviates from a smooth function on every scale
-    std::size_t jumps = 0;                      ///< located jumps of a function M along the motion
-    bool located = false;                       ///< whether formulas have conditions on the motion, which were located
-    std::optional<Rough> rough = {};            ///< cause of Outcome::unresolved, if known
-    std::vector<std::string> event_names = {};  ///< names of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;        ///< own states etc.; null for simple runs
-    std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
-    std::shared_ptr<const Course> course;  ///< null if declined, or if the trajectory was read from a file
-    /// The run of all bodies of which this is a part or the whole; null for a plain system.
-    std::shared_ptr<const engine::Run> bodies = {};
+    bool began_stuck = false;              ///< whether it was stuck until something moved it
+    bool began_open = false;               ///< whether nothing pressed on the contact until it closed
+    bool on_belt = false;                  ///< whether turns of theta are no events, as on a belt
+    double restitution = 1;                ///< part of the speed left after an impact at a wall
+    std::shared_ptr<const Course> course;  ///< null if declined, or if the run was read from a file
 
     /// Returns whether the jumps dominate the duration of the computation.
     [[nodiscard]] bool jumps_often() const {
@@ -107,7 +99,9 @@ struct Trajectory {
         return jumps >= often;
     }
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
-    /// One name for each column of `rows`.
+    /// Its events, those of the user only once.
+    [[nodiscard]] Growing<model::Event> told_events() const;
+    /// One name for each column of `rows` that users see.
     [[nodiscard]] const std::vector<std::string>& names() const {
         return computed && own_names.empty() ? column_names() : own_names;
     }
@@ -117,22 +111,22 @@ struct Trajectory {
     /// theta and velocity at t: from the integrator if available, otherwise by cubic interpolation of the rows.
     /// Fails if t is outside the run or the columns are missing.
     [[nodiscard]] text::Expected<model::State> at(double t) const;
-    /// The number of the run's own states, which are the last columns.
-    [[nodiscard]] std::size_t state_count() const { return carried ? carried->states.size() : 0; }
-    [[nodiscard]] std::size_t first_state() const { return names().size() - state_count(); }
+    [[nodiscard]] std::size_t first_state() const { return names().size() - states; }
+    /// Returns whether it keeps its motion between the rows.
+    [[nodiscard]] bool is_dense() const;
 };
 
 /// theta and velocity at t by cubic interpolation of the rows alone.
-text::Expected<model::State> between_rows(const Trajectory& trajectory, double t);
+text::Expected<model::State> between_rows(const Run& run, double t);
 
 /// The outcome as a sentence with a remedy.
-std::string outcome_text(const Trajectory& trajectory);
+std::string outcome_text(const Run& run);
 
 /// A remark if there are fewer than four rows an event, so that the rows do not show the motion; otherwise empty.
 std::string too_few_rows(std::size_t rows, std::size_t events);
 
 /// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
 /// |theta| 1.96".
-std::string summary(const Trajectory& trajectory);
+std::string summary(const Run& run);
 
 }  // namespace dinal::motion

@@ -1,4 +1,4 @@
-// The contents of a run object: the trajectory and its origin.
+// The contents of a run object: the result and its origin.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 #include "lua/values.hpp"
 #include "model/units.hpp"
 #include "motion/between_rows.hpp"
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 #include "source/origin.hpp"
 
 namespace dinal::api {
@@ -20,8 +20,8 @@ namespace dinal::api {
 struct MoreTime;
 struct Data;
 
-struct Run {
-    motion::Trajectory trajectory;
+struct LuaRun {
+    motion::Run result;
     std::shared_ptr<const source::Origin> origin = {};  ///< null if it was read from a file
     std::vector<std::string> comments = {};             ///< comments of that file
     std::optional<model::Excitation> terms = {};        ///< M as native terms, if its functions could be read
@@ -30,7 +30,7 @@ struct Run {
     lua::MemoryCharge rows = {};                        ///< memory of rows read from a file
     std::optional<std::size_t> joint = {};              ///< the named body or link from which it is seen
     // The run as seen from each joint, made on demand. Weak, as these keep the run of all bodies.
-    mutable std::vector<std::weak_ptr<const Run>> parts = {};
+    mutable std::vector<std::weak_ptr<const LuaRun>> parts = {};
 
     [[nodiscard]] const model::System& system() const { return *origin->system; }
     /// Returns whether it is the run of a named system as a whole.
@@ -42,7 +42,7 @@ struct Run {
 };
 
 // Shared: every column in Lua is a view that keeps the whole run alive.
-using RunHandle = std::shared_ptr<const Run>;
+using RunHandle = std::shared_ptr<const LuaRun>;
 
 /// Pushes the run.
 void push_run(lua_State* L, RunHandle run);
@@ -52,24 +52,24 @@ text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const 
                                        std::string_view what);
 
 /// The motion between the rows; keeps a reference to the run. Evaluating it may call user functions.
-motion::BetweenRows between_rows(const Run& run);
+motion::BetweenRows between_rows(const LuaRun& run);
 
 /// The run with rows close enough for a picture, within `window` if given; the run itself if it kept only its rows.
 /// Raises an error if M fails.
-std::shared_ptr<const motion::Trajectory> drawn_trajectory(lua_State* L, const RunHandle& run,
-                                                           const std::vector<double>& window = {});
+std::shared_ptr<const motion::Run> drawn_run(lua_State* L, const RunHandle& run,
+                                             const std::vector<double>& window = {});
 
 /// The rows as data, which keep the run alive.
 Data rows_of(const RunHandle& run);
 
 /// Raises an error that `member`, written as ".theta" or ":cycle", needs one body or link, if the run has several.
-void check_one(lua_State* L, const Run& run, std::string_view member);
+void check_one(lua_State* L, const LuaRun& run, std::string_view member);
 
 /// The body or link from which it is seen, as an oscillator; none for all bodies, or for a run read from a file.
-std::optional<model::Oscillator> alone(const Run& run);
+std::optional<model::Oscillator> alone(const LuaRun& run);
 
 /// The run as seen from this joint; the run itself if it is already seen from one or has a single unnamed body.
-std::shared_ptr<const Run> part_of(const std::shared_ptr<const Run>& run, std::size_t joint);
+std::shared_ptr<const LuaRun> part_of(const std::shared_ptr<const LuaRun>& run, std::size_t joint);
 
 /// The runs as seen from each body and link that add up to this one.
 std::vector<RunHandle> parts_of(const RunHandle& run);
@@ -82,12 +82,12 @@ std::vector<RunHandle> parts_of(const RunHandle& run);
 std::string_view status_word(model::Outcome outcome);
 
 /// tostring(run)
-std::string line_of(const Run& run);
+std::string line_of(const LuaRun& run);
 
 /// The text of run:explain(); raises errors of a user's spring.
 std::string story_of_run(lua_State* L, const RunHandle& handle);
 /// Lua text that makes the run again, as lines; or the comments of the file from which it was read.
-std::vector<std::string> repeat_lines(const Run& run);
+std::vector<std::string> repeat_lines(const LuaRun& run);
 /// The requested t_end, or the last requested time; otherwise the end at which a stopped run should have ended.
 double asked_end(const lua::Options& options, const MoreTime& asked, double stopped, double wanted);
 
@@ -116,7 +116,7 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run);
 std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options);
 
 /// The units of its system, or those in the file from which it was read.
-const model::Units& units_of(const Run& run);
+const model::Units& units_of(const LuaRun& run);
 
 /// The walls by name, without absent ones; none without walls.
 std::optional<lua::NamedNumbers> walls_by_name(const std::optional<model::Walls>& walls);

@@ -1,10 +1,12 @@
-#include "motion/trajectory.hpp"
+#include "motion/run.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <span>
 
 #include "motion/stillness.hpp"
@@ -24,17 +26,26 @@ Rows::Rows(Eigen::MatrixXd values) {
     table_ = Growing<double>(rows, own->data(), columns, own);
 }
 
-std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
+std::optional<Eigen::Index> Run::find(std::string_view name) const {
     const std::vector<std::string>& all = names();
     const auto it = std::find(all.begin(), all.end(), name);
     if (it == all.end()) return {};
     return static_cast<Eigen::Index>(it - all.begin());
 }
 
-text::Expected<model::State> between_rows(const Trajectory& trajectory, double t) {
-    const auto time = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
+Growing<model::Event> Run::told_events() const {
+    const auto first = std::find_if(events.begin(), events.end(), [](const model::Event& e) { return e.user >= 0; });
+    const auto repeats = [&](const model::Event& e) { return e.user >= 0 && e.where != first->where; };
+    if (std::none_of(first, events.end(), repeats)) return events;
+    std::vector<model::Event> told;
+    std::copy_if(events.begin(), events.end(), std::back_inserter(told), std::not_fn(repeats));
+    return Growing<model::Event>(std::move(told));
+}
+
+text::Expected<model::State> between_rows(const Run& run, double t) {
+    const auto time = run.find("t"), theta = run.find("theta"), velocity = run.find("velocity");
     if (!time || !theta || !velocity) return text::Error{"at() needs the columns t, theta and velocity"};
-    const auto& rows = trajectory.rows;
+    const auto& rows = run.rows;
     const Eigen::Index n = rows.rows();
     const double* begin = rows.col(*time).data();
     if (n == 0 || !(t >= begin[0]) || !(t <= begin[n - 1])) {
@@ -82,7 +93,7 @@ std::string events_text(std::span<const model::Event> events) {
 
 }  // namespace
 
-text::Expected<model::State> Trajectory::at(double t) const {
+text::Expected<model::State> Run::at(double t) const {
     if (!computed && !course) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
         const std::string why = model::is_whole(outcome) ? "" : "; it ended there: " + outcome_text(*this);
@@ -97,7 +108,7 @@ text::Expected<model::State> Trajectory::at(double t) const {
 namespace {
 
 /// Says where the run switched endlessly, and the remedy.
-std::string chatter_text(const Trajectory& run) {
+std::string chatter_text(const Run& run) {
     if (run.rough) {
         return fmt::format(
             "switched endlessly at one time: {} jumps to and fro and drives it back each time; a steep "
@@ -123,7 +134,7 @@ std::string chatter_text(const Trajectory& run) {
             "is too steep; a line over some small range of speeds would not",
             speed > next_to_none * fastest ? speed : 0.0);
     }
-    if (run.state_count() > 0) {  // a jump in the rate of a state may be the cause, too
+    if (run.states > 0) {  // a jump in the rate of a state may be the cause, too
         return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "
                "line or tanh in its place would not";
     }
@@ -148,12 +159,12 @@ std::string rough_text(const Rough& rough) {
 
 }  // namespace
 
-std::string outcome_text(const Trajectory& trajectory) {
-    if (trajectory.contradiction) return model::sentence_with_cure(*trajectory.contradiction);
-    if (trajectory.outcome == model::Outcome::chattering) return chatter_text(trajectory);
-    if (trajectory.rough) return rough_text(*trajectory.rough);
-    std::string text(model::sentence(trajectory.outcome));
-    if (trajectory.noise > 0) text += fmt::format(", within the noise of the torques, {:.2g}", trajectory.noise);
+std::string outcome_text(const Run& run) {
+    if (run.contradiction) return model::sentence_with_cure(*run.contradiction);
+    if (run.outcome == model::Outcome::chattering) return chatter_text(run);
+    if (run.rough) return rough_text(*run.rough);
+    std::string text(model::sentence(run.outcome));
+    if (run.noise > 0) text += fmt::format(", within the noise of the torques, {:.2g}", run.noise);
     return text;
 }
 
@@ -161,33 +172,33 @@ std::string too_few_rows(std::size_t rows, std::size_t events) {
     return rows > 0 && rows < 4 * events ? "; fewer than 4 rows an event" : "";
 }
 
-std::string summary(const Trajectory& trajectory) {
-    const auto& rows = trajectory.rows;
+std::string summary(const Run& run) {
+    const auto& rows = run.rows;
     std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
-    if (!trajectory.computed) {
-        for (std::size_t i = 0; i < trajectory.names().size(); ++i)
-            text += (i == 0 ? " of " : ", ") + text::displayable(trajectory.names()[i]);
+    if (!run.computed) {
+        for (std::size_t i = 0; i < run.names().size(); ++i)
+            text += (i == 0 ? " of " : ", ") + text::displayable(run.names()[i]);
         return text;
     }
-    text +=
-        fmt::format(", t {:.9g} … {:.9g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
-    switch (trajectory.outcome) {
+    const Growing<model::Event> events = run.told_events();
+    text += fmt::format(", t {:.9g} … {:.9g}; {}; ", run.t_start, run.t_stop, events_text(events));
+    switch (run.outcome) {
         case model::Outcome::reached_end:
-            text += trajectory.bodies == nullptr && trajectory.state_at_stop.velocity == 0 ? "velocity 0 at the end"
-                                                                                           : "moving at the end";
+            text +=
+                run.find("theta") && run.state_at_stop.velocity == 0 ? "velocity 0 at the end" : "moving at the end";
             break;
         case model::Outcome::chattering:
-            text += chatter_text(trajectory);
+            text += chatter_text(run);
             break;
         default:
-            text += trajectory.contradiction ? model::sentence(*trajectory.contradiction)
-                    : trajectory.rough       ? rough_text(*trajectory.rough)
-                                             : std::string(model::sentence(trajectory.outcome));
+            text += run.contradiction ? model::sentence(*run.contradiction)
+                    : run.rough       ? rough_text(*run.rough)
+                                      : std::string(model::sentence(run.outcome));
     }
-    if (trajectory.noise > 0) text += fmt::format("; noise of the torques {:.2g}", trajectory.noise);
-    if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
-    text += too_few_rows(static_cast<std::size_t>(rows.rows()), trajectory.events.size());
-    if (trajectory.find("theta")) text += fmt::format("; peak |theta| {:.3g}", peak(trajectory));
+    if (run.noise > 0) text += fmt::format("; noise of the torques {:.2g}", run.noise);
+    if (run.jumps_often()) text += fmt::format("; M jumped {} times", run.jumps);
+    text += too_few_rows(static_cast<std::size_t>(rows.rows()), events.size());
+    if (run.find("theta")) text += fmt::format("; peak |theta| {:.3g}", peak(run));
     return text;
 }
 
