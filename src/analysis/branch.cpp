@@ -64,15 +64,15 @@ public:
     PeriodCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
                   const motion::Monitor& monitor)
         : family_(family), monitor_(monitor), periods_(periods) {
-        half_ = motion.symmetric && periods == 1;
+        half_ = motion.symmetric && periods == 1 && is_alike_both_ways(family_(p));
         const SteadyQuestion question = family_(p);
-        first_ = place_of(motion.start, map(question).omega());
+        first_ = map(question).place(motion.start);
     }
 
     Lap lap(const Eigen::VectorXd& x, double p) override {
         const SteadyQuestion question = family_(p);
         const PeriodMap map = this->map(question);
-        Lap lap{.to = {}, .step = map(Place(x))};
+        Lap lap{.to = {}, .step = map.step(Place(x))};
         lap.to = sign() * lap.step.to;
         lap.finished = lap.step.finished;
         if (lap.step.differentiable) lap.derivative = sign() * lap.step.derivative;
@@ -83,24 +83,22 @@ public:
     SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
                         const Eigen::MatrixXd& derivative) override {
         const SteadyQuestion question = family_(p);
-        FixedPointSearch::Try found{.x = x, .off = lap.to - x, .step = lap.step, .size = units(x, lap, {})[0]};
-        found.step.derivative = sign() * derivative;
-        found.step.differentiable = true;
-        return facts_of(question, map(question), found, periods_, half_);
+        MapStep step = lap.step;
+        step.derivative = sign() * derivative;
+        step.differentiable = true;
+        return facts_of(question, map(question), step, Place(x), periods_);
     }
 
     [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
                                         const SteadyMotion& /*motion*/) const override {
-        const double size = std::max({x.norm(), lap.to.norm(), lap.step.high - lap.step.low, 1e-300});
-        return Eigen::Vector2d(size, size);
+        return Eigen::Vector2d::Constant(PeriodMap::size_of(Place(x), lap.step));
     }
     [[nodiscard]] double difference() const override { return 1e-6; }
 
 private:
     [[nodiscard]] double sign() const { return half_ ? -1 : 1; }
     [[nodiscard]] PeriodMap map(const SteadyQuestion& question) const {
-        const double length = half_ ? question.repeats.period / 2 : periods_ * question.repeats.period;
-        return {question.body, question.drive.M(), question.repeats.start, length, monitor_};
+        return half_ ? PeriodMap::half(question, monitor_) : PeriodMap(question, periods_, monitor_);
     }
 
     const Family& family_;

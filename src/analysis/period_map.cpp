@@ -11,65 +11,107 @@ namespace dinal::analysis {
 
 namespace {
 
-double omega_of(const model::Oscillator& system, double length) {
-    return system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length;
+double omega_of(const model::Oscillator& system, double period) {
+    return system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / period;
 }
 
 }  // namespace
 
-PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
-                     const motion::Monitor& monitor)
-    : system_(system),
-      lowered_(system),
-      drive_(excitation),
-      integrator_(motion::integrator_for(system, excitation)),
-      start_(start),
-      length_(length),
-      omega_(omega_of(system, length)),
-      monitor_(monitor) {}
-
-PeriodMap::PeriodMap(const PeriodMap& other, double length) : PeriodMap(other) {
-    length_ = length;
-    omega_ = omega_of(system_, length);
+bool PeriodMap::applies_to(const SteadyQuestion& question) {
+    const model::Excitation& M = question.drive.M();
+    return question.is_plain() && !question.is_timeless() && !question.drive.has_more() && !model::has_memory(M) &&
+           !M.has_feedback() && !model::Lowered(question.body).has_remainder();
 }
 
-double PeriodMap::rounding() const {
+PeriodMap::PeriodMap(const SteadyQuestion& question, double length, double sign, const motion::Monitor& monitor)
+    : system_(question.body),
+      lowered_(system_),
+      drive_(question.drive.M()),
+      integrator_(motion::integrator_for(system_, drive_)),
+      start_(question.repeats.start),
+      length_(length),
+      sign_(sign),
+      omega_(omega_of(system_, question.repeats.period)),
+      monitor_(monitor) {}
+
+PeriodMap::PeriodMap(const SteadyQuestion& question, double periods, const motion::Monitor& monitor)
+    : PeriodMap(question, periods * question.repeats.period, 1, monitor) {}
+
+PeriodMap PeriodMap::half(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    return {question, question.repeats.period / 2, -1, monitor};
+}
+
+double PeriodMap::rounding_of_place() const {
     constexpr double few = 4 * std::numeric_limits<double>::epsilon();
     return system_.has_linear_spring() ? few * lowered_.greatest_holding() / lowered_.stiffness() : 0;
 }
 
-motion::Run PeriodMap::run(const Place& from, double length, bool dense) const {
-    motion::Limits limits;
-    limits.dense = dense;  // a stored series is faster to evaluate than a closed form
-    drive_.start_at(state(from));
-    auto result = motion::simulate(system_, drive_, {start_, start_ + length}, motion::Grid::none(),
-                                   dense ? motion::Integrator(motion::Spectral{}) : integrator_, monitor_, limits);
-    if (result && result->contradiction) contradiction_ = result->contradiction;
-    if (result) return std::move(result).value();
-    motion::Run none;
-    none.outcome = model::Outcome::state_not_finite;
-    return none;
+double PeriodMap::size_of(const Place& from, const MapStep& step) {
+    return std::max({length_of(from), length_of(step.to), step.high - step.low, 1e-300});
 }
 
-MapStep PeriodMap::operator()(const Place& from) const {
-    MapStep step;
-    constexpr double most = 1e100;  // powers of larger motions would overflow
-    const bool powers = lowered_.has_remainder() || drive_.M().has_feedback();
-    const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
-    const motion::Run run = finite ? this->run(from, length_, false) : motion::Run{};
-    // A nonlinear spring may overflow in a diverging motion. (An overflow of M has been reported by its function.)
-    const bool flew_away =
-        run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !drive_.M().has_feedback();
-    step.outcome = finite && !flew_away ? run.outcome : model::Outcome::state_not_finite;
-    step.finished = model::is_whole(step.outcome);
-    if (!step.finished) {
-        step.to = from;
-        step.differentiable = false;
-        return step;
+Map::Return PeriodMap::measured(const Place& from) {
+    const MapStep first = step(from);
+    unit_ = size_of(from, first);
+    return {.to = from / unit_, .finished = first.finished, .outcome = first.outcome};
+}
+
+Map::Return PeriodMap::operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& /*mode*/, int returns) {
+    Return sum{.to = from, .finished = true};
+    for (int i = 0; i < returns && sum.finished; ++i) {
+        const MapStep next = step(place(sum.to));
+        sum.to = sign_ * next.to / unit_;
+        sum.time += length_;
+        sum.finished = next.finished && sum.to.allFinite();
+        sum.outcome = next.outcome;
+        if (!next.differentiable || (i > 0 && !sum.derivative)) {
+            sum.derivative.reset();
+            continue;
+        }
+        const Eigen::Matrix2d own = sign_ * next.derivative;
+        sum.derivative = i == 0 ? own : Eigen::Matrix2d(own * *sum.derivative);
     }
-    const std::vector<Stretch> parts = stretches(run);
-    step = step_of_run(run, parts);
-    differentiate(parts, step);
+    return sum;
+}
+
+std::optional<Map::Derivative> PeriodMap::derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode,
+                                                     int returns, int /*order*/) {
+    constexpr double h = 1e-6;
+    Derivative found{Eigen::MatrixXd(2, 2)};
+    const Place here = place(at);
+    for (int i = 0; i < 2; ++i) {
+        const Place aside = h * unit_ * Place::Unit(i);
+        const Place up = inside(system_, here + aside), down = inside(system_, here - aside);
+        const Return ahead = (*this)(up / unit_, mode, returns), behind = (*this)(down / unit_, mode, returns);
+        if (!ahead.finished || !behind.finished) return {};
+        found.by_place.col(i) = (ahead.to - behind.to) * (unit_ / (up - down)[i]);
+    }
+    return found;
+}
+
+MapStep PeriodMap::step(const Place& from) const {
+    if (!last_ || last_->first != from) last_ = {from, computed(from)};
+    return last_->second;
+}
+
+MapStep PeriodMap::computed(const Place& from) const {
+    MapStep step;
+    step.outcome = model::Outcome::state_not_finite;
+    if (from.allFinite()) {
+        drive_.start_at(state(from));
+        const auto run =
+            motion::simulate(system_, drive_, {start_, start_ + length_}, motion::Grid::none(), integrator_, monitor_);
+        if (run && run->contradiction) contradiction_ = run->contradiction;
+        if (run) step.outcome = run->outcome;
+        if (model::is_whole(step.outcome)) {
+            const std::vector<Stretch> parts = stretches(*run);
+            step = step_of_run(*run, parts);
+            differentiate(parts, step);
+            return step;
+        }
+    }
+    step.to = from;
+    step.finished = step.differentiable = false;
     return step;
 }
 
@@ -139,7 +181,6 @@ double PeriodMap::slope_before(double t) const {
 void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) const {
     const model::Lowered& system = lowered_;
     Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
-    step.differentiable = !system.has_remainder() && !drive_.M().has_feedback();
     for (const Stretch& s : parts) {
         if (!step.differentiable) break;
         if (s.stuck) {
@@ -188,20 +229,6 @@ void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) 
     }
     step.derivative = total;
     step.differentiable = step.differentiable && total.allFinite();
-}
-
-MapStep PeriodMap::with_derivative(const Place& from, double scale) const {
-    MapStep step = (*this)(from);
-    if (step.differentiable || !step.finished) return step;
-    const double h = 1e-6 * std::max(scale, 1e-300);
-    step.differentiable = true;
-    for (int i = 0; i < 2; ++i) {
-        const Place up = inside(system_, from + h * Place::Unit(i)), down = inside(system_, from - h * Place::Unit(i));
-        const MapStep ahead = (*this)(up), behind = (*this)(down);
-        step.differentiable = step.differentiable && ahead.finished && behind.finished;
-        step.derivative.col(i) = (ahead.to - behind.to) / (up - down)[i];
-    }
-    return step;
 }
 
 }  // namespace dinal::analysis

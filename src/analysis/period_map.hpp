@@ -1,18 +1,17 @@
-// The period map: the state after one period of M as a function of the initial state, with its exact derivative.
+// The period map of one plain body that is linear between events, with its exact derivative: the fast map of a search.
 //
 // A slide is linear, so its derivative is that of the free motion, whatever M is; an event contributes its jump matrix
-// (Aizerman and Gantmakher). If friction depends on speed, or M on the motion, the derivative is computed by
-// differences.
+// (Aizerman and Gantmakher). With walls the derivative is computed by differences.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <vector>
 
+#include "analysis/map.hpp"
+#include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
-#include "model/excitation.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
@@ -33,8 +32,9 @@ inline Place inside(const model::Oscillator& system, Place place) {
     return place;
 }
 
+/// One return of a period map.
 struct MapStep {
-    Place to;
+    Place to = Place::Zero();
     Eigen::Matrix2d derivative = Eigen::Matrix2d::Identity();
     bool differentiable = true;    ///< whether `derivative` is valid; otherwise use differences
     bool finished = true;          ///< whether the run reached its end with finite numbers
@@ -47,33 +47,44 @@ struct MapStep {
     model::Outcome outcome = model::Outcome::reached_end;
 };
 
-class PeriodMap {
+class PeriodMap final : public Map {
 public:
-    /// A map over `length` time units from `start`. The arguments must outlive it.
-    PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
-              const motion::Monitor& monitor);
-    /// The same with another length.
-    PeriodMap(const PeriodMap& other, double length);
+    /// Returns whether this map applies: one plain body that is linear between events, under an M of time alone.
+    static bool applies_to(const SteadyQuestion& question);
 
-    [[nodiscard]] MapStep operator()(const Place& from) const;
-    /// The step; if it has no derivative, by differences. `scale`: size of the motion.
-    [[nodiscard]] MapStep with_derivative(const Place& from, double scale) const;
+    /// A map over `periods` of M. The question must outlive it.
+    PeriodMap(const SteadyQuestion& question, double periods, const motion::Monitor& monitor);
+    /// The opposite of the state half a period later, for a symmetric problem.
+    static PeriodMap half(const SteadyQuestion& question, const motion::Monitor& monitor);
+
+    /// One return, with all that it shows.
+    [[nodiscard]] MapStep step(const Place& from) const;
+
+    // As a Map: a place is divided by the size of the motion.
+    Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
+    std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
+                                         int order) override;
+    [[nodiscard]] double rounding() const override { return rounding_of_place() / unit_; }
+    /// Divides places by the size of the motion that begins here; returns its first place.
+    Return measured(const Place& from);
+    [[nodiscard]] Place place(const Eigen::VectorXd& of_map) const { return inside(system_, unit_ * of_map); }
+    /// The size of the motion of a step.
+    static double size_of(const Place& from, const MapStep& step);
 
     [[nodiscard]] double length() const { return length_; }
+    [[nodiscard]] bool is_half() const { return sign_ < 0; }
     [[nodiscard]] double omega() const { return omega_; }  ///< scale of a Place; w0 if there is a spring
     /// The rounding of a place at which a linear spring and friction are in balance.
-    [[nodiscard]] double rounding() const;
+    [[nodiscard]] double rounding_of_place() const;
     [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
-    [[nodiscard]] motion::Run run(const Place& from, double length, bool dense) const;
-    /// Everything except the derivative of a step, from a run of any length.
-    [[nodiscard]] MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
-    [[nodiscard]] const model::Oscillator& system() const { return system_; }
-    [[nodiscard]] const model::Excitation& excitation() const { return drive_.M(); }
-    [[nodiscard]] double start() const { return start_; }
+    [[nodiscard]] Place place(const model::State& state) const { return {state.theta, state.velocity / omega_}; }
     /// A contradiction of a user's function found in any run so far.
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
 
 private:
+    PeriodMap(const SteadyQuestion& question, double length, double sign, const motion::Monitor& monitor);
+    [[nodiscard]] MapStep computed(const Place& from) const;
+    [[nodiscard]] MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
     void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
     [[nodiscard]] Eigen::Matrix2d free_motion(double length) const;
     [[nodiscard]] double slope_before(double t) const;
@@ -82,9 +93,11 @@ private:
     model::Lowered lowered_;
     mutable model::Drive drive_;     // drive of the last run
     motion::Integrator integrator_;  // the default
-    double start_, length_, omega_;
+    double start_, length_, sign_, omega_;
+    double unit_ = 1;
     motion::Monitor monitor_;
     mutable std::optional<model::Contradiction> contradiction_;
+    mutable std::optional<std::pair<Place, MapStep>> last_;
 };
 
 }  // namespace dinal::analysis

@@ -87,12 +87,10 @@ private:
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
         const SteadyQuestion question = question_.family(p);
-        const bool plain = question.is_plain() && !question.is_timeless() && !question.drive.has_more();
         if (!question.is_plain() && (question.settles >= 0 || contracts(question))) return {};
         if (contracts(question) && question.drive.states.empty() && question.drive.events.empty()) return {};
-        if (!plain) return circuit_of_returns(question_.family, p, motion, periods, monitor_);
-        if (model::has_memory(question.drive.M())) return {};
-        return circuit_of_periods(question_.family, p, motion, periods, monitor_);
+        if (PeriodMap::applies_to(question)) return circuit_of_periods(question_.family, p, motion, periods, monitor_);
+        return circuit_of_returns(question_.family, p, motion, periods, monitor_);
     }
 
     void note_outcome(const Circuit& circuit) {

@@ -29,6 +29,7 @@ public:
         Here& here = at(p);
         chart_.emplace(chart_of(here.runs));
         timeless_ = here.question.is_timeless();
+        half_ = motion.symmetric && periods == 1 && is_alike_both_ways(here.question);
         stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
         offset_ = motion.by_returns.question->repeats.start - here.question.repeats.start;
@@ -56,7 +57,7 @@ public:
         // A cycle may pass the section several times in its period.
         int passages = 0;
         for (double left = (1 - 1e-6) * period_; left > 0 && arrival.finished; ++passages) {
-            arrival = map(arrival.to, {});
+            arrival = map(arrival.to, {}, 1);
             left -= arrival.time;
             if (arrival.time < 1e-6 * period_) arrival.finished = false;  // rounding caused a passage at the start
         }
@@ -81,7 +82,8 @@ public:
         if (!stands_ && lap.mode) begin.mode = *lap.mode;
         const model::System& system = here.runs.system();
         SteadyMotion motion;
-        motion.multipliers = multipliers_of(derivative);
+        motion.multipliers = multipliers_of(half_ ? Eigen::MatrixXd(derivative * derivative) : derivative);
+        motion.symmetric = half_;
         motion.differentiable = true;
         motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
         motion.by_returns.drive = std::make_shared<const model::Drive>(here.runs.from(begin, start(here)));
@@ -95,7 +97,7 @@ public:
             return motion;
         }
         motion.periods = periods_;
-        motion.period = period_ = lap.time;
+        motion.period = period_ = half_ ? 2 * lap.time : lap.time;
         note_family(motion);
         constexpr int rows = 64;  // the range is read from them, and turns are searched between them
         auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.by_returns.drive, {}});
@@ -212,16 +214,14 @@ private:
         // For a rest a quarter of the fastest natural period: short enough to see each disturbance's rotation.
         const double natural = here.runs.system().shortest_natural_period();
         const double length = cycles_                  ? 3 * period_
+                              : half_                  ? here.question.repeats.period / 2
                               : !timeless_             ? periods_ * here.question.repeats.period
                               : std::isfinite(natural) ? natural / 4
                                                        : 1;
-        return {here.runs,
-                *chart_,
-                start(here),
-                length,
-                cycles_ ? std::optional(section) : std::nullopt,
-                VectorXd::Ones(there_.size()),
-                there_};
+        const auto passed = cycles_ ? std::optional(section) : std::nullopt;
+        Returns map(here.runs, *chart_, start(here), length, passed, VectorXd::Ones(there_.size()), there_);
+        if (half_) map.take_opposites();
+        return map;
     }
 
     const Family& family_;

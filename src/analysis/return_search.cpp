@@ -3,9 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include "algebra/decompositions.hpp"
+#include "analysis/forced_search.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
@@ -21,17 +22,6 @@ namespace {
 bool has_acts(const model::Drive& drive) {
     return std::any_of(drive.events.begin(), drive.events.end(),
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
-}
-
-/// Returns whether the system is linear except for dry friction, under torques independent of the motion: returns are
-/// cheap even far away.
-bool is_linear(const model::System& system, const model::Drive& drive) {
-    const auto loaded = [](const model::Excitation& load) { return load.has_feedback(); };
-    const auto bends = [](const model::Joint& joint) {
-        return !joint.spring.none() || joint.walls || !joint.is_plain() || joint.friction.law.depends_on_speed();
-    };
-    return std::none_of(drive.loads.begin(), drive.loads.end(), loaded) &&
-           std::none_of(system.joints.begin(), system.joints.end(), bends);
 }
 
 /// The longest delay of a controller.
@@ -58,7 +48,7 @@ double greatest(const Reach& reach, Index count) {
 }
 
 /// Finds the motion that a run from the start of the question leads to.
-class ReturnSearch {
+class ReturnSearch final : public ForcedSearch {
 public:
     ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
         : runs_(question, monitor), chart_(chart_of(runs_)) {}
@@ -66,6 +56,21 @@ public:
     SteadyMotion found();
 
 private:
+    Map& map() override { return *returns_; }
+    std::optional<Map::Return> begin() override;
+    std::optional<Map::Return> measured(const Map::Return& from) override {
+        return measured_at(returns_->moment(from.to, from.mode));
+    }
+    std::optional<Map::Return> measured_at(const Moment& moment);
+    [[nodiscard]] double range() const override { return range_; }
+    [[nodiscard]] double size_at(const Map::Return& place) const override;
+    bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
+    [[nodiscard]] bool is_bounded() const override { return false; }
+    [[nodiscard]] bool is_free() const override {
+        return question().is_plain() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
+               question().body.spring().none() && !question().body.walls();
+    }
+
     /// Completes the answer for a motion of facts_.period that begins at this moment, and returns its state half a
     /// period later; none if it cannot be run, and the search continues.
     std::optional<VectorXd> complete(const Moment& moment, double start);
@@ -82,7 +87,6 @@ private:
 
     std::optional<motion::Run> stretch(const Moment& from, double start, double length, Reach& reach);
     [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
-    void forced();
     class Settling;
     void cycle();
     [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
@@ -91,144 +95,15 @@ private:
     bool closes_from(const Moment& now, const Reach& reach, double length, int i);
     bool rests(const motion::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
     void note_rest(const motion::Run& run, bool stands);
-    struct Closed;
-    class ClosedSearch;
-    bool complete_closed(Returns& map, const Closed& found);
+    bool complete_closed(Returns& map, const Closed& found, bool any);
     void note_symmetry(const Eigen::VectorXd& begin, const Eigen::VectorXd& middle);
 
     Runs runs_;
     Chart chart_;
-    SteadyMotion facts_;
-    double largest_ = 0;  // greatest angle or velocity of a settling run
-};
-
-/// A motion that closes after some returns.
-struct ReturnSearch::Closed {
-    VectorXd x;
-    HeldMode mode;
-    int returns = 1;
-    double period = 0, residual = 0;
-};
-
-/// Finds a closed motion from successive returns, with Newton's method near it.
-class ReturnSearch::ClosedSearch {
-public:
-    using Return = Returns::Return;
-    ClosedSearch(Returns& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
-
-    /// Makes returns until the motion closes; checks after each of `counts`.
-    std::optional<Closed> follow(Return first, const std::vector<int>& counts) {
-        seen_ = {std::move(first)};
-        for (const int until : counts) {
-            while (static_cast<int>(seen_.size()) <= until) {
-                Return next = map_(seen_.back().to, seen_.back().mode);
-                ++maps_;
-                if (!next.finished) {
-                    failed_ = next.outcome;
-                    return {};
-                }
-                seen_.push_back(std::move(next));
-            }
-            for (const double near : {1e-5, 5e-2}) {
-                if (auto found = closes(near)) return found;
-            }
-        }
-        return {};
-    }
-
-    /// Tries Newton's method from here at once.
-    std::optional<Closed> at_once(const Return& from) { return newton(from, 1, 1e6); }
-    [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
-    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
-
-private:
-    static constexpr double to_rounding = 1e-11;
-
-    std::optional<Closed> closes(double near) {
-        const std::size_t last = seen_.size() - 1;
-        int tries = 0;  // chaotic motions come near to themselves repeatedly
-        for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
-            if (seen_[last].mode != seen_[last - m].mode) continue;
-            const double off = size_of_step(seen_[last].to - seen_[last - m].to);
-            if (off > near) continue;
-            ++tries;
-            auto found = newton(seen_[last], static_cast<int>(m));
-            if (found && approaches(found->x, m)) return shortest(*found);
-            if (found || off > to_rounding) continue;
-            return itself(seen_[last], static_cast<int>(m));
-        }
-        return {};
-    }
-
-    /// The smallest number of returns: slow decay makes more returns look closer.
-    Closed shortest(Closed found) {
-        for (int m = 1; m < found.returns; ++m) {
-            if (found.returns % m != 0) continue;
-            const Return back = map_(found.x, found.mode, m);
-            maps_ += m;
-            constexpr double there = 1e-10;
-            const double off = back.finished ? size_of_step(back.to - found.x) : 1;
-            if (!back.finished || back.mode != found.mode || off > std::max(there, 10 * found.residual)) continue;
-            found.returns = m, found.period = back.time, found.residual = off;
-            break;
-        }
-        return found;
-    }
-
-    /// Returns whether the run keeps approaching x and will soon be there.
-    [[nodiscard]] bool approaches(const VectorXd& x, std::size_t m) const {
-        const std::size_t last = seen_.size() - 1;
-        const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
-        constexpr double there = 1e-7, close = 0.3;
-        return now <= there || (now <= close && now < 0.98 * before);
-    }
-
-    /// Accepts a return within rounding, where differences are useless.
-    std::optional<Closed> itself(const Return& from, int m) {
-        const Return back = map_(from.to, from.mode, m);
-        maps_ += m;
-        if (!back.finished) return {};
-        return Closed{from.to, *from.mode, m, back.time, size_of_step(back.to - from.to)};
-    }
-
-    std::optional<Closed> newton(const Return& from, int m, double farthest = 1) {
-        VectorXd x = from.to;
-        std::optional<Closed> best;
-        std::optional<Returns::Derivative> D;
-        constexpr int most = 14;
-        for (int i = 0; i < most; ++i) {
-            const Return there = map_(x, from.mode, m);
-            maps_ += m;
-            if (!there.finished || there.mode != from.mode) return good(best);
-            const VectorXd off = there.to - x;
-            const double residual = size_of_step(off);
-            const bool slower = best && residual > 0.1 * best->residual;
-            if (best && residual >= best->residual && best->residual <= to_rounding) return best;
-            if (!best || residual < best->residual) best = Closed{x, *from.mode, m, there.time, residual};
-            if (residual <= 4 * std::numeric_limits<double>::epsilon()) return best;
-            if (!D || slower) {
-                D = map_.derivative(x, *from.mode, m, 2);
-                maps_ += 2 * m * static_cast<int>(x.size());
-                if (!D) return good(best);
-            }
-            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - D->by_place;
-            const VectorXd step = algebra::solve_shortest(left, off);
-            if (!step.allFinite()) return good(best);
-            x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
-        }
-        return good(best);
-    }
-
-    static std::optional<Closed> good(const std::optional<Closed>& best) {
-        constexpr double enough = 1e-9;
-        return best && best->residual <= enough ? best : std::nullopt;
-    }
-
-    Returns& map_;
-    int& maps_;
-    int longest_;
-    std::vector<Return> seen_;
-    std::optional<model::Outcome> failed_;
+    std::optional<Returns> returns_;  // from period to period
+    double start_ = 0;                // of these periods
+    double range_ = 0;                // of angles in the last measured period
+    double largest_ = 0;              // greatest angle or velocity of a settling run
 };
 
 double ReturnSearch::pace() const {
@@ -269,68 +144,38 @@ VectorXd ReturnSearch::units_of(const Reach& reach) const {
 
 // ---- with a period
 
-void ReturnSearch::forced() {
+std::optional<Map::Return> ReturnSearch::begin() {
     const double period = question().repeats.period;
     // An action at the very beginning of a run would be lost, so returns begin at a quiet phase.
     constexpr double nowhere = 0.3819660112501051;
-    Moment now = runs_.first();
-    double start = question().repeats.start;
+    start_ = question().repeats.start;
     Reach reach;
+    Moment now = runs_.first();
     if (has_acts(question().drive)) {
-        const auto run = stretch(now, start, nowhere * period, reach);
-        if (!run) return;
+        const auto run = stretch(now, start_, nowhere * period, reach);
+        if (!run) return {};
         now = Runs::at_stop(*run);
-        start += nowhere * period;
+        start_ += nowhere * period;
     }
-    const auto first = stretch(now, start, period, reach);
-    if (!first) return;
-    now = Runs::at_stop(*first);
-    if (question().periods <= 1 && is_linear(runs_.system(), question().drive)) {
-        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
-        ClosedSearch search(map, facts_.maps, 1);
-        const auto found = search.at_once({.to = map.place(now.y), .finished = true, .mode = now.mode});
-        if (found && complete_closed(map, *found)) return;
-    }
-    std::vector<double> ranges{greatest(reach, n())};  // ranges in single periods
-    std::vector<double> sizes;  // sizes of the first batch of returns and both halves of the second,
-    std::size_t between = 1;    // whose ends are this many returns apart
-    const double natural = runs_.natural_period();
-    const int longest = question().periods > 0 ? question().periods : 32;
-    for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
-        Returns map(runs_, chart_, start, period, {}, units_of(reach), now.y);
-        ClosedSearch search(map, facts_.maps, longest);
-        const auto found = search.follow({.to = map.place(now.y), .finished = true, .mode = now.mode}, counts);
-        if (found && complete_closed(map, *found)) return;
-        if (search.failed()) {
-            facts_.outcome = *search.failed();
-            if (facts_.outcome == model::Outcome::state_not_finite) facts_.status = SteadyStatus::grows;
-            return;
-        }
-        const auto& seen = search.seen();
-        const auto largest = [&](std::size_t from, std::size_t until) {
-            double size = 0;
-            for (std::size_t i = from; i < until; ++i) {
-                const VectorXd y = chart_.measured(map.moment(seen[i].to, seen[i].mode).y).cwiseAbs();
-                // free bodies may drift for ever
-                if (natural > 0) size = std::max(size, y.head(n()).maxCoeff());
-                const double pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
-                size = std::max(size, y.segment(n(), n()).maxCoeff() * pace);
-            }
-            return size;
-        };
-        const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
-        sizes.push_back(largest(0, half));
-        if (half < seen.size()) sizes.push_back(largest(half, seen.size())), between = seen.size() - half;
-        now = map.moment(seen.back().to, seen.back().mode);
-        if (!stretch(now, start, period, reach)) return;
-        ranges.push_back(greatest(reach, n()));
-    }
-    // A beating motion has equal maxima in both halves, a creeping one equal ranges.
-    const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
-    if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
-        facts_.status = SteadyStatus::grows;
-        facts_.growth = (sizes[2] - sizes[1]) / static_cast<double>(between);
-    }
+    return measured_at(now);
+}
+
+/// Begins a period later, where the mode is known.
+std::optional<Map::Return> ReturnSearch::measured_at(const Moment& moment) {
+    Reach reach;
+    const auto run = stretch(moment, start_, question().repeats.period, reach);
+    if (!run) return {};
+    const Moment now = Runs::at_stop(*run);
+    returns_.emplace(runs_, chart_, start_, question().repeats.period, std::nullopt, units_of(reach), now.y);
+    range_ = greatest(reach, n());
+    return Map::Return{.to = returns_->place(now.y), .finished = true, .mode = now.mode};
+}
+
+double ReturnSearch::size_at(const Map::Return& place) const {
+    const VectorXd y = chart_.measured(returns_->moment(place.to, place.mode).y).cwiseAbs();
+    const double natural = runs_.natural_period(), pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
+    const double size = y.segment(n(), n()).maxCoeff() * pace;
+    return natural > 0 || is_free() ? std::max(size, y.head(n()).maxCoeff()) : size;
 }
 
 // ---- with sampled or delayed controllers
@@ -497,6 +342,7 @@ private:
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.residual = off(m, 0);
+        facts.stable = true;
         if (beside_ > 0) run_ = s_.runs_.go_on(run_, t_, t_ - beside_ + length_, motion::Grid::none());
         if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
@@ -574,7 +420,7 @@ bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double len
     ClosedSearch search(map, facts_.maps, 16);
     const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
     const auto found = search.follow(first, counts);
-    return found && complete_closed(map, *found);
+    return found && complete_closed(map, *found, false);
 }
 
 /// Detects a rest of an autonomous system: standing, or steady rotation with all other numbers constant.
@@ -602,36 +448,31 @@ void ReturnSearch::note_rest(const motion::Run& run, bool stands) {
     complete_rest(run, stands);
 }
 
-/// Completes the answer for a closed motion; returns false if no run stays on it.
-bool ReturnSearch::complete_closed(Returns& map, const Closed& found) {
+/// Completes the answer for a closed motion; returns false if it cannot be run, or no run stays on it and `any` is
+/// false.
+bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) {
     if (!(found.period > 0)) return false;  // a passage at once: the motion has nearly stopped
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
-    std::vector<std::complex<double>> multipliers;
-    if (D) multipliers = multipliers_of(D->by_place);
-    if (!multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
     const bool forced = question().repeats.period > 0;
-    facts_.periods = forced ? found.returns : 1;
-    facts_.period = forced ? found.returns * question().repeats.period : found.period;
-    facts_.differentiable = D.has_value();
-    facts_.stable = true;
-    facts_.residual = found.residual;
-    facts_.multipliers = std::move(multipliers);
+    SteadyMotion facts;
+    facts.maps = facts_.maps;
+    facts.periods = forced ? found.returns : 1;
+    facts.period = forced ? found.returns * question().repeats.period : found.period;
+    facts.residual = found.residual;
+    facts.stable = true;
+    constexpr double smooth = 0.01;
     const bool alone = forced && !chart_.any_goes_round();
-    constexpr double smooth = 0.01, differences = 1e-5;
-    if (alone && D && D->bend < smooth && contracts(question())) {
-        facts_.unique = miss_one(facts_.multipliers) > differences;
-    } else {
-        note_family(facts_);
-    }
+    if (D) judge(question(), multipliers_of(D->by_place), {.alone = alone && D->bend < smooth}, facts);
+    if (!facts.stable && !any) return false;
+    const SteadyMotion before = std::exchange(facts_, std::move(facts));
     const Moment moment = map.moment(found.x, found.mode);
     const auto middle = complete(moment, map.start());
     if (middle) {
         note_symmetry(moment.y, *middle);
     } else {
-        facts_.differentiable = false;
-        facts_.multipliers.clear();
-        facts_.unique.reset();
+        const auto outcome = facts_.outcome;
+        facts_ = before, facts_.outcome = outcome;
     }
     return middle.has_value();
 }
@@ -649,7 +490,14 @@ void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) 
 
 SteadyMotion ReturnSearch::found() {
     facts_.period = question().repeats.period;
-    question().settles >= 0 ? Settling(*this).search() : question().repeats.period > 0 ? forced() : cycle();
+    if (question().settles >= 0) {
+        Settling(*this).search();
+    } else if (question().repeats.period > 0) {
+        const auto last = search(question(), contracts(question()));
+        if (last) look_beside(*last, question().periods);
+    } else {
+        cycle();
+    }
     if (runs_.contradiction()) {
         facts_.contradiction = runs_.contradiction();
         facts_.outcome = model::Outcome::not_a_function;
@@ -701,7 +549,6 @@ std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, motion
     facts_.outcome = run.outcome;
     facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
     facts_.period = moves || forced ? period : 0;
-    facts_.stable = true;
     facts_.bodies = bodies_of(run, chart_, reach);
     const std::vector<double> middle = run.left->history->at(run.t_start + period / 2);
     auto whole = std::make_shared<PeriodOfBodies>();
@@ -736,26 +583,10 @@ std::optional<double> settles_after(const SteadyQuestion& question) {
     return waits ? common : -1;
 }
 
-SteadyMotion whole_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
+SteadyMotion motion_by_returns(const SteadyQuestion& question, const motion::Monitor& monitor) {
     const SteadyQuestion asked = for_returns(question);
-    return ReturnSearch(asked, monitor).found();
-}
-
-SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    SteadyMotion motion = whole_motion(question, monitor);
+    const SteadyMotion motion = ReturnSearch(asked, monitor).found();
     return question.is_plain() || question.joint ? seen_from(question, motion) : motion;
-}
-
-bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
-    if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
-    constexpr double periods = 4;
-    const PeriodMap map(question.body, question.drive.M(), question.repeats.start, periods * motion.period, monitor);
-    const Place start = place_of(motion.start, map.omega());
-    const MapStep step = map(start);
-    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});
-    constexpr double alike = 1e-8;
-    return step.finished && length_of(step.to - start) <= alike * size &&
-           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
 }
 
 }  // namespace dinal::analysis

@@ -19,10 +19,6 @@ VectorXd vector_of(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-double size_of_step(const VectorXd& step) {
-    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
-}
-
 namespace {
 
 /// An event function that is zero at the section.
@@ -42,6 +38,16 @@ private:
     bool named_;
 };
 
+/// The mode of the opposite motion.
+HeldMode opposite(HeldMode held) {
+    const auto reverse = [](model::Motion& way) { way = static_cast<model::Motion>(-static_cast<int>(way)); };
+    for (engine::Slipping& contact : held.mode.friction) reverse(contact.way), reverse(contact.creeps);
+    for (model::Motion& slider : held.mode.sliders) reverse(slider);
+    for (int& leans : held.mode.leans) leans = -leans;
+    for (int& presses : held.mode.presses) presses = -presses;
+    return held;
+}
+
 /// Returns whether a shift of the start only shifts the whole run.
 bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
     constexpr double by = 0.73;
@@ -58,6 +64,8 @@ bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
 }  // namespace
 
 Chart chart_of(Runs& runs) {
+    const SteadyQuestion& question = runs.question();
+    if (question.is_plain() && !question.is_timeless() && !question.drive.has_more()) return Chart({-1});
     const double period = runs.question().repeats.period, natural = runs.natural_period();
     const double length = period > 0 ? period : natural > 0 ? natural : 1;
     const model::System& system = runs.system();
@@ -107,6 +115,7 @@ bool operator==(const HeldMode& a, const HeldMode& b) {
         if (x.way != y.way || x.riding != y.riding) return false;
     }
     if (a.mode.leans != b.mode.leans || a.mode.rubs != b.mode.rubs) return false;
+    if (a.mode.sliders != b.mode.sliders || a.mode.presses != b.mode.presses) return false;
     for (std::size_t i = 0; i < a.controllers.size(); ++i) {
         for (std::size_t c = 0; c < a.controllers[i].size(); ++c) {
             if (a.controllers[i][c].on != b.controllers[i][c].on) return false;
@@ -224,6 +233,11 @@ motion::Run Runs::run(const model::Drive& drive, double start, double end, const
                                       .longest = question_.longest,
                                       .keeps_torques = grid.count() > 0});  // only users see those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
+    // A spring may overflow in a diverging motion; a function that fails has been reported.
+    const bool flew_away = result.outcome == model::Outcome::excitation_not_finite && question_.is_plain() &&
+                           !question_.body.spring().none() && !question_.drive.M().has_feedback() &&
+                           question_.drive.states.empty();
+    if (flew_away) result.outcome = model::Outcome::state_not_finite;
     floor_ = result.left->carry->floor;
     return result;
 }
@@ -328,12 +342,13 @@ Returns::Return Returns::arrival(const Moment& from) {
     return sum;
 }
 
-std::optional<Returns::Derivative> Returns::derivative(const VectorXd& at, const HeldMode& mode, int returns,
-                                                       int order) {
+std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std::optional<HeldMode>& mode, int returns,
+                                                   int order) {
     const Index n = at.size();
     Eigen::MatrixXd to_place = Eigen::MatrixXd::Zero(n, units_.size());
     for (Index k = 0; k < units_.size(); ++k) to_place.col(k) = place(VectorXd::Unit(units_.size(), k));
-    const Eigen::MatrixXd allowed = runs_.allowed(mode, units_.size());
+    const Eigen::MatrixXd allowed =
+        mode ? runs_.allowed(*mode, units_.size()) : Eigen::MatrixXd::Identity(units_.size(), units_.size());
     Derivative found{Eigen::MatrixXd::Zero(n, n)};
     if (allowed.cols() == 0) return found;
     // An orthonormal basis, within places, of the allowed directions in the section.
@@ -381,8 +396,8 @@ void Returns::once(const Moment& from, Return& sum) {
         if (e.kind != model::EventKind::user) sum.events.emplace_back(e.kind, e.where);
     }
     Moment at = Runs::at_stop(run);
-    sum.mode = std::move(at.mode);
-    sum.to = place(at.y);
+    sum.mode = sign_ < 0 ? opposite(std::move(*at.mode)) : std::move(at.mode);
+    sum.to = sign_ * place(at.y);
     sum.finished = sum.to.allFinite();
 }
 
@@ -459,8 +474,7 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 }
 
 void note_family(SteadyMotion& motion) {
-    const auto& m = motion.multipliers;
-    if (!m.empty() && std::fabs(std::abs(m.front()) - 1) < neutral_within) motion.unique = false;
+    if (miss_one(motion.multipliers) < neutral_within) motion.unique = false;
 }
 
 }  // namespace dinal::analysis

@@ -9,18 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/map.hpp"
 #include "analysis/steady.hpp"
 #include "motion/engine/left.hpp"
 
 namespace dinal::analysis {
-
-/// The discrete part of a moment, which cannot change continuously.
-struct HeldMode {
-    motion::engine::Mode mode;
-    std::vector<std::vector<motion::engine::Signal::Memory>> controllers;
-
-    friend bool operator==(const HeldMode& a, const HeldMode& b);
-};
 
 /// The complete state: all of y and the mode; without a mode, it follows from y.
 struct Moment {
@@ -83,21 +76,14 @@ private:
     std::vector<Eigen::Index> from_;
 };
 
-/// Measures bodies from each other if they rotate together and nothing depends on their position.
+/// Measures bodies from each other if they rotate together and nothing depends on their position. A plain body under M
+/// alone is measured from the ground: there a drift is growth.
 Chart chart_of(Runs& runs);
 
 /// The map from one return to the next: from period to period, or from passage to passage of a section. A place has the
 /// measured numbers except that of the section, each in its unit.
-class Returns {
+class Returns final : public Map {
 public:
-    struct Return {
-        Eigen::VectorXd to;
-        double time = 0;
-        bool finished = false;
-        model::Outcome outcome = model::Outcome::reached_end;
-        std::optional<HeldMode> mode = {};
-        std::vector<std::pair<model::EventKind, int>> events = {};  ///< on the way: kind and joint
-    };
     /// A value of a measured number, passed upwards (way = 1) or downwards (-1).
     struct Section {
         Eigen::Index measured = 0;
@@ -110,20 +96,16 @@ public:
 
     [[nodiscard]] Eigen::VectorXd place(const Eigen::VectorXd& y) const;
     [[nodiscard]] Moment moment(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
-    /// Makes several returns.
-    [[nodiscard]] Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns = 1);
+    Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     /// The first return from a moment that need not be on the section.
     [[nodiscard]] Return arrival(const Moment& from);
-    struct Derivative {
-        Eigen::MatrixXd by_place;
-        double bend = 0;  ///< greatest deviation of one-sided slopes from their mean
-    };
-    /// The derivative of the map of several returns at a fixed place, by differences of this order within the mode.
     /// Order 4 reduces its step if the motions on both sides have different events; none if that fails and the slopes
     /// differ.
-    [[nodiscard]] std::optional<Derivative> derivative(const Eigen::VectorXd& at, const HeldMode& mode, int returns,
-                                                       int order);
+    std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
+                                         int order) override;
     [[nodiscard]] double start() const { return start_; }
+    /// Makes each return end at the opposite of its last place, as after half a period of a symmetric motion.
+    void take_opposites() { sign_ = -1; }
     /// The indices in y of the numbers of a place.
     [[nodiscard]] const std::vector<Eigen::Index>& own() const { return own_; }
 
@@ -132,7 +114,7 @@ private:
 
     Runs& runs_;
     const Chart& chart_;
-    double start_, length_;
+    double start_, length_, sign_ = 1;
     std::optional<Section> section_;
     Eigen::VectorXd units_, there_;
     std::vector<Eigen::Index> own_;  // indices in y of the numbers of a place
@@ -166,9 +148,6 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 /// Marks a motion as one of a family if neighbouring motions are neutral.
 void note_family(SteadyMotion& motion);
 Eigen::VectorXd vector_of(const std::vector<double>& values);
-/// The greatest magnitude of its numbers.
-double size_of_step(const Eigen::VectorXd& step);
-
 /// The position of a section within the range: off the middle, where many motions have special points.
 inline constexpr double section_at = 0.42;
 
@@ -189,7 +168,8 @@ std::optional<double> settles_after(const SteadyQuestion& question);
 /// The question for a search by returns: for a plain system with the longest stretch that its spring allows.
 SteadyQuestion for_returns(const SteadyQuestion& question);
 
-/// The motion of all bodies that a run from the start of the question leads to.
-SteadyMotion whole_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
+/// The motion that a run from the start of the question leads to: of all bodies, or as seen from the joint of the
+/// question.
+SteadyMotion motion_by_returns(const SteadyQuestion& question, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

@@ -1,5 +1,5 @@
-// Steady motions under a periodic M: fixed points of the period map, found by Newton's method, by waiting if that
-// fails, and by recurrence if subharmonic. docs/theory.md, section 10.
+// Steady motions: fixed points of a map from one return of the motion to the next (map.hpp). docs/theory.md,
+// section 10.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/period_map.hpp"
 #include "analysis/repetition.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
 #include "motion/run.hpp"
+#include "motion/simulate.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::analysis {

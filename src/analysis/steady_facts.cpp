@@ -14,17 +14,15 @@ namespace {
 using model::Motion;
 
 /// Returns whether friction is the same in both directions.
-bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
-    if (law.depends_on_speed()) {
-        for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
-            if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
-        }
-    }
-    return system.braking(Motion::forward) == -system.braking(Motion::backward) &&
-           system.holding(Motion::forward) == system.holding(Motion::backward);
+bool acts_evenly(const model::Friction& law) {
+    const auto is_even = [&law](double speed) {
+        return law.sliding(Motion::forward, speed) == law.sliding(Motion::backward, speed);
+    };
+    return is_even(0) && law.holding(Motion::forward) == law.holding(Motion::backward) &&
+           (!law.depends_on_speed() || (is_even(1e-3) && is_even(0.1) && is_even(1) && is_even(10)));
 }
 
-/// Tolerance of multipliers after a stop: a disturbance is multiplied by factors such as cosines, nearly without error.
+/// Error of multipliers after a stop: a disturbance is multiplied by factors such as cosines, nearly without error.
 constexpr double kept_within = 1e-12;
 
 std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
@@ -114,9 +112,22 @@ double miss_one(const std::vector<std::complex<double>>& multipliers) {
 }
 
 bool is_alike_both_ways(const SteadyQuestion& question) {
-    const model::Oscillator& system = question.body;
-    return acts_evenly(system.friction(), system) && system.spring().is_odd() &&
-           (!system.walls() || system.walls()->alike()) && is_antisymmetric(question.drive.M(), question.repeats);
+    const model::Drive& drive = question.drive;
+    if (question.is_timeless() || !drive.states.empty() || !drive.events.empty()) return false;
+    const bool by_numbers = question.is_plain();  // only then can feedback be asked at the opposite state
+    const auto turns = [&](const model::Excitation& what) {
+        if (what.components().empty()) return true;
+        return !model::has_memory(what) && (by_numbers || !what.has_feedback()) &&
+               is_antisymmetric(what, question.repeats);
+    };
+    const auto& joints = question.system->joints;
+    return turns(drive.base) && std::all_of(drive.belts.begin(), drive.belts.end(), turns) &&
+           std::all_of(joints.begin(), joints.end(),
+                       [](const model::Joint& joint) {
+                           return joint.is_plain() && acts_evenly(joint.friction.law) && joint.spring.is_odd() &&
+                                  (!joint.walls || joint.walls->alike());
+                       }) &&
+           std::all_of(drive.loads.begin(), drive.loads.end(), turns);
 }
 
 std::complex<double> start_around(int i, double farthest, std::size_t body) {
@@ -124,40 +135,50 @@ std::complex<double> start_around(int i, double farthest, std::size_t body) {
     return std::polar(farthest * std::exp2(-0.5 * i), turn);
 }
 
-SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,
-                      int periods, bool half) {
-    const MapStep& step = found.step;
+void judge(const SteadyQuestion& question, std::vector<std::complex<double>> multipliers, const Judged& by,
+           SteadyMotion& motion) {
+    motion.multipliers = std::move(multipliers);
+    motion.differentiable = true;
+    double largest = 0;
+    for (const std::complex<double>& multiplier : motion.multipliers) largest = std::max(largest, std::abs(multiplier));
+    motion.stable = largest <= largest_stable;
+    const double misses = miss_one(motion.multipliers);
+    if (by.alone && contracts(question)) {
+        motion.unique = misses > by.error;
+    } else if (misses < neutral_within) {
+        motion.unique = false;
+    }
+}
+
+SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const MapStep& step, const Place& from,
+                      int periods) {
     SteadyMotion motion;
     motion.status = step.moved ? SteadyStatus::steady : SteadyStatus::adheres;
     motion.outcome = step.outcome;
     motion.periods = periods;
-    motion.period = half ? 2 * map.length() : map.length();
-    motion.start = map.state(found.x);
+    motion.period = map.is_half() ? 2 * map.length() : map.length();
+    motion.start = map.state(from);
     motion.low = step.low;
     motion.high = step.high;
     motion.t_high = step.t_high;
-    if (half) {
+    if (map.is_half()) {
         motion.low = std::min(step.low, -step.high);
         motion.high = -motion.low;
         if (-step.low > step.high) motion.t_high = step.t_low + map.length();
     }
     motion.amplitude = (motion.high - motion.low) / 2 + 0.0;  // + 0.0 turns -0 into 0
-    motion.stops = half ? 2 * step.stops : step.stops;
+    motion.stops = map.is_half() ? 2 * step.stops : step.stops;
     motion.stuck = step.moved ? std::min(1.0, step.stuck / map.length()) : 1;
-    motion.residual = found.residual() / found.size;
-    motion.differentiable = step.differentiable;
-    motion.multipliers = eigenvalues(step.derivative);
-    if (half) {
-        for (std::complex<double>& value : motion.multipliers) value *= value;
+    motion.symmetric = map.is_half();
+    if (!step.moved) motion.stable = true;
+    if (!step.differentiable) return motion;
+    std::vector<std::complex<double>> multipliers = eigenvalues(step.derivative);
+    if (map.is_half()) {
+        for (std::complex<double>& value : multipliers) value *= value;
     }
-    const bool contracting = contracts(question);
-    const double slack = contracting ? neutral_within : 1e-5;
-    const auto& m = motion.multipliers;
-    motion.stable = !step.moved || (step.differentiable && std::max(std::abs(m[0]), std::abs(m[1])) <= 1 + slack);
-    if (contracting && step.moved && step.differentiable && !step.on_edge) {
-        motion.unique = miss_one(m) > (step.stuck > 0 ? kept_within : slack);
-    }
-    motion.symmetric = half;
+    const Judged by{.alone = step.moved && !step.on_edge, .error = step.stuck > 0 ? kept_within : neutral_within};
+    judge(question, std::move(multipliers), by, motion);
+    if (!step.moved) motion.stable = true, motion.unique.reset();
     return motion;
 }
 

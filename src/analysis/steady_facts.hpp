@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "analysis/fixed_point.hpp"
+#include "analysis/period_map.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/steady.hpp"
 
@@ -23,10 +23,6 @@ bool is_alike_both_ways(const SteadyQuestion& question);
 
 /// The tolerance of a multiplier that counts as 1.
 inline constexpr double neutral_within = 1e-6;
-
-inline Place place_of(const model::State& state, double omega) {
-    return {state.theta, state.velocity / omega};
-}
 
 /// Start number i around a motion, at distances from a hundredth of `farthest` up to it: angle, and velocity over a
 /// frequency.
@@ -50,10 +46,19 @@ std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& question
 /// The range of angles around `here` in which friction holds the mass throughout the period.
 std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 
-/// The facts about the motion through a fixed point of the map over `periods` of M, or over half a period (periods = 1)
-/// of a symmetric motion. Does not determine the range of rest, or other motions.
-SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,
-                      int periods, bool half);
+/// How much the multipliers of a motion say.
+struct Judged {
+    bool alone = true;    ///< whether they hold on all sides, and nothing else repeats, such as a rotation
+    double error = 1e-5;  ///< of the multipliers
+};
+/// Concludes from the multipliers whether the motion is stable, and whether there are others.
+void judge(const SteadyQuestion& question, std::vector<std::complex<double>> multipliers, const Judged& by,
+           SteadyMotion& motion);
+
+/// The facts about the motion through this fixed point of the map over `periods` of M, or over half a period (periods =
+/// 1) of a symmetric motion. Does not determine the range of rest, or other motions.
+SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const MapStep& step, const Place& from,
+                      int periods);
 
 /// Fills in what a run of one period shows: extremes, stops, any movement.
 void tell_of_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion);
@@ -66,11 +71,5 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
                        std::shared_ptr<const motion::Run> run);
 /// The same for a motion with a stored period.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& motion);
-
-/// The motion that a run from `initial` leads to, for drives beyond M, an M with a memory, or a limit cycle.
-SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);
-
-/// Returns whether a motion found from theta and velocity alone persists in a run of several periods.
-bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

@@ -6,7 +6,7 @@
 #include "analysis/friction_wave.hpp"
 #include "analysis/prose.hpp"
 #include "analysis/returns.hpp"
-#include "analysis/sine/short_slides.hpp"
+#include "analysis/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
 #include "model/controller.hpp"
@@ -48,13 +48,27 @@ double in_one_turn(double angle) {
 
 namespace {
 
+/// A run from the beginning of M's period.
+motion::Run run_from(const SteadyQuestion& question, const model::State& start, double length, bool dense,
+                     const motion::Monitor& monitor) {
+    motion::Limits limits;
+    limits.dense = dense;  // a stored series is faster to evaluate than a closed form
+    const model::Drive drive{question.drive.M(), start};
+    const double begin = question.repeats.start;
+    auto run = motion::simulate(
+        question.body, drive, {begin, begin + length}, motion::Grid::none(),
+        dense ? motion::Integrator(motion::Spectral{}) : motion::integrator_for(question.body, drive), monitor, limits);
+    if (run) return std::move(run).value();
+    motion::Run none;
+    none.outcome = model::Outcome::state_not_finite;
+    return none;
+}
+
 /// Computes mean and fundamental from the motion itself.
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repetition& repeats,
-                                     const SteadyMotion& motion, const PeriodMap& map, double length) {
-    const motion::Run run = motion.by_returns.run
-                                ? *motion.by_returns.run
-                                : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
+                                     const SteadyMotion& motion, const motion::Run& run) {
     if (!model::is_whole(run.outcome)) return {};
+    const double length = run.t_stop - run.t_start;
     const double omega = 2 * std::numbers::pi / repeats.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.body.stiffness() > 0 ? question.body.natural_period() : repeats.period;
@@ -92,19 +106,22 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         question.is_timeless() ? Repetition{question.repeats.start, motion.period} : question.repeats;
     // Half a period of a symmetric motion is enough.
     const double length = motion.symmetric && !motion.by_returns.run ? motion.period / 2 : motion.period;
-    const PeriodMap map(question.body, question.load(), repeats.start, length, monitor);
     const bool feedback = question.load().has_feedback() || question.is_timeless();
     const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.load(), repeats, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
-    if (const auto slides = drives && !motion.by_returns.run ? sine::ShortSlides::of(question) : std::nullopt) {
+    if (const auto slides = drives && !motion.by_returns.run ? ShortSlides::closed(question) : std::nullopt) {
         found = Fundamental{0, slides->fundamental()};
     } else if (drives && !motion.by_returns.run && is_linear_but_for_friction(question)) {
-        const motion::Run run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
+        const motion::Run run = run_from(question, motion.start, length, false, monitor);
         if (!model::is_whole(run.outcome)) return shape;
         found = by_friction(question, motion, run, M_wave);
     }
-    if (!found) found = by_motion(question, repeats, motion, map, length);
+    if (!found) {
+        found = by_motion(
+            question, repeats, motion,
+            motion.by_returns.run ? *motion.by_returns.run : run_from(question, motion.start, length, true, monitor));
+    }
     if (!found) return shape;
     shape.mean = found->mean;
     shape.fundamental = std::abs(found->wave);

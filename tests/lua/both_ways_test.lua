@@ -331,7 +331,6 @@ local different = {
         "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
-    ["response with folds: lag"] = "one body has its phase from its arcs, one with a name from the period that was run",
 }
 
 -- What has no answer either way, as the sentence of both is the same.

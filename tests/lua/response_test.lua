@@ -122,7 +122,7 @@ test("a response is drawn up to its folds, and its rows stay those of the values
         c:plot(merged({ file = file }, options))
         return io.open(file):read("a"):match "<desc>(.-)</desc>"
     end
-    has(description {}, "unstable: a path from (2.5, 2.662) to (1.438,")
+    has(description {}, "unstable: a path from (2.5, 2.662) to (1.44")
     has(description { style = "points" }, #c .. " points")
 end)
 
@@ -290,6 +290,10 @@ test("at a pitchfork the motion ceases to be symmetric", function()
     -- Newton's method on the half period's map and the determinant of its derivative + 1, by Runge and Kutta's method.
     near(at[1], 0.526373272182, 1e-8)
     near(at[#at], 0.902505230367, 1e-8)
+    local one = system{ bodies = { a = { I = 1, k = 1, C = 0.1, spring = spring.polynomial{ [3] = 1 } } } }
+    c = one:response{ over = { omega = vector.linspace(0.85, 1, 8) },
+        at = function(p) return { M = { a = excitation.harmonic{ amplitude = 5, omega = p.omega } } } end }
+    near(c.points:filter(function(p) return p.kind == "pitchfork" end).omega[1], 0.902505230367, 1e-8)
 end)
 
 test("at a torus point the forced oscillator of van der Pol neither damps nor feeds disturbances, by Liouville's formula", function()

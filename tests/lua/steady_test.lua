@@ -245,6 +245,25 @@ test("the peak of a motion that stands at its top is where it came to stand, whe
     end
 end)
 
+test("a mass that friction can hold in many places rests where a run leaves it", function()
+    local sys = system{ I = 1, k = 2, C = 0.1, Rd = 1.2 }
+    local M = excitation.square{ period = 5 } + 0.1
+    for _, theta0 in ipairs{ 0, 0.4, -2 } do
+        local s = sys:steady{ M = M, theta0 = theta0 }
+        equal(s.status, "adheres")
+        near(s.mean, sys:simulate{ M = M, theta0 = theta0, t_end = 100, dt = 100 }.theta[2], 1e-12)
+    end
+end)
+
+test("a motion on which no run stays is found if the number of its periods is given", function()
+    local well = system{ I = 1, k = 0, C = 0.3, spring = function(x) return x ^ 3 - x end }
+    local M = excitation.harmonic{ amplitude = 0.5, omega = 1.2 }
+    equal(well:steady{ M = M, theta0 = 0.5 }.status, "none") -- it is chaotic
+    local s = well:steady{ M = M, theta0 = 0.5, periods = 1 }
+    assert(s.status == "steady" and not s.stable and s.multipliers[1].abs > 1.1, s)
+    near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
+end)
+
 test("a motion of any size is as it is in other units", function()
     local function amplitude(u, task) return system{ I = 1, k = 40, C = 0.1, Rd = 0.3 * u, Re = 0.35 * u }:steady(task).amplitude / u end
     local sine, square = excitation.harmonic{ frequency = 0.7 }, excitation.square{ frequency = 0.7 }

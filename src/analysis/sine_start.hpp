@@ -1,5 +1,5 @@
-// A linear spring and symmetric Coulomb friction under one sine, with closed forms between events: they provide starts
-// for a search of the steady motion, and small motions completely (short_slides.hpp).
+// A linear spring and symmetric Coulomb friction under one sine, with closed forms between events: they provide the
+// start of a search, which is then one return from its end.
 //
 // Dimensionless: y = theta k/M0, x = w0 t, so that y'' + 2 zeta y' + y = sin p - friction; the phase p of the load
 // advances by r for each x.
@@ -11,7 +11,7 @@
 #include "analysis/steady.hpp"
 #include "theory/theory_modes.hpp"
 
-namespace dinal::analysis::sine {
+namespace dinal::analysis {
 
 inline constexpr double half_load = std::numbers::pi;  ///< half a period of the load, as a phase
 
@@ -33,4 +33,4 @@ std::optional<SingleSine> single_sine(const SteadyQuestion& question);
 /// are not opposite.
 std::optional<model::State> sine_start(const SingleSine& sine);
 
-}  // namespace dinal::analysis::sine
+}  // namespace dinal::analysis

@@ -1,4 +1,4 @@
-#include "analysis/sine/sine.hpp"
+#include "analysis/sine_start.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "theory/den_hartog.hpp"
 #include "theory/theory_forced.hpp"
 
-namespace dinal::analysis::sine {
+namespace dinal::analysis {
 
 std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
     const auto components = question.drive.M().components();
@@ -294,4 +294,4 @@ std::optional<model::State> sine_start(const SingleSine& sine) {
     return StoppingSearch(sine).found();
 }
 
-}  // namespace dinal::analysis::sine
+}  // namespace dinal::analysis

@@ -1,42 +1,54 @@
-#include "analysis/sine/short_slides.hpp"
+#include "analysis/short_slides.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace dinal::analysis::sine {
+#include "analysis/closed_search.hpp"
+
+namespace dinal::analysis {
 namespace {
 
-constexpr double longest = 3;  // longest slide, in the shortest time scale: costs e^3 of the accuracy
+constexpr double longest_slide = 3;  // in the shortest time scale: costs e^3 of the accuracy
 
 }  // namespace
 
-std::optional<ShortSlides> ShortSlides::of(const SteadyQuestion& question) {
+std::optional<ShortSlides> ShortSlides::closed(const SteadyQuestion& question) {
     const auto sine = single_sine(question);
     if (!sine || sine->holding != sine->sliding || !(sine->spare > 0)) return {};
     const double turns = sine->r * sine->omega0 * question.repeats.period / (2 * half_load);
     constexpr double once = 1e-12;
     if (std::fabs(turns - 1) > once) return {};
     ShortSlides slides(*sine);
-    return slides.solve() ? std::optional(slides) : std::nullopt;
+    if (!slides.slide(0)) return {};
+    slides.unit_ = slides.way(slides.end_) / 2;
+    int maps = 0;
+    const Return first{.to = Eigen::VectorXd::Ones(1), .finished = true};
+    const auto found = ClosedSearch(slides, maps, 1).at_once(first, 1, true);
+    if (!found || !slides.slide(slides.unit_ * found->x[0]) || !(slides.rest_ > 0)) return {};
+    const double pull = std::sin(slides.release_ + sine->r * slides.end_) - slides.rest_;
+    return std::fabs(pull) <= sine->holding ? std::optional(slides) : std::nullopt;
 }
 
-/// Released from -y, the mass must advance by 2 y. The residual's derivative is 2 minus the part of a shift that is
-/// forgotten.
-bool ShortSlides::solve() {
-    constexpr int most_steps = 30;
-    constexpr double nearly = 1e-7;  // the next Newton step leaves only rounding
-    for (int i = 0; i < most_steps; ++i) {
-        if (!start(sine_.spare + rest_) || !find_end()) return false;
-        const double left = way(end_) - 2 * rest_;
-        const double step = left / (2 - forgets(end_));
-        rest_ += step;
-        if (!(rest_ > 0)) return false;
-        if (std::fabs(step) > nearly * rest_) continue;
-        if (!start(sine_.spare + rest_)) return false;
-        const double pull = std::sin(release_ + sine_.r * end_) - rest_;
-        return find_end() && std::fabs(pull) <= sine_.holding;
-    }
-    return false;
+bool ShortSlides::slide(double rest) {
+    rest_ = rest;
+    return rest >= 0 && start(sine_.spare + rest) && find_end();
+}
+
+/// Released from -y, the mass advances beyond 0. The derivative is the part of a shift that is left, with the sign of
+/// the opposite place.
+Map::Return ShortSlides::operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& /*mode*/,
+                                    int /*returns*/) {
+    Return back{.to = from};
+    back.finished = slide(unit_ * from[0]);
+    if (!back.finished) return back;
+    back.to[0] = way(end_) / unit_ - from[0];
+    back.derivative = Eigen::MatrixXd::Constant(1, 1, forgets(end_) - 1);
+    return back;
+}
+
+std::vector<std::complex<double>> ShortSlides::multipliers() const {
+    const double kept = 1 - forgets(end_);
+    return {kept * kept, 0};
 }
 
 /// Begins a slide from a place where the crest of the load exceeds the holding torque by `spare`. The release is d of
@@ -62,7 +74,7 @@ bool ShortSlides::start(double spare) {
 }
 
 bool ShortSlides::is_short() const {
-    return end_ > 0 && end_ * std::max({1.0, sine_.r, 2 * sine_.zeta}) <= longest;
+    return end_ > 0 && end_ * std::max({1.0, sine_.r, 2 * sine_.zeta}) <= longest_slide;
 }
 
 /// Finds the end of the slide. The speed begins with x squared, so it is divided by that.
@@ -123,10 +135,7 @@ SteadyMotion ShortSlides::motion(const SteadyQuestion& question) const {
     motion.t_high = question.repeats.start + (stop - sine_.phase) / (sine_.r * sine_.omega0);
     motion.stops = 2;
     motion.stuck = 1 - sine_.r * end_ / half_load;
-    const double kept = 1 - forgets(end_);
-    motion.multipliers = {kept * kept, 0};
-    motion.differentiable = motion.stable = motion.symmetric = true;
-    motion.unique = true;  // over a period any two motions never move apart
+    motion.symmetric = true;
     return motion;
 }
 
@@ -147,4 +156,4 @@ std::complex<double> ShortSlides::fundamental() const {
     return sine_.unit * std::complex<double>(0, -2 / half_load) * std::polar(1.0, sine_.phase - release_) * sum;
 }
 
-}  // namespace dinal::analysis::sine
+}  // namespace dinal::analysis
