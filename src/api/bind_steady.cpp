@@ -222,9 +222,6 @@ std::string steady_summary(lua_State*, const SteadyHandle& handle) {
     const auto number = [](double x, const std::string& unit) {
         return model::with_unit(fmt::format("{:.6g}", x), unit);
     };
-    if (s.of_all() && is_found(s) && s.question.system->bodies.size() == 1) {
-        return steady_summary(*seen_from(std::make_shared<Steady>(s), 0));
-    }
     if (s.of_all() && is_found(s)) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";
