@@ -64,8 +64,8 @@ amplitude   a stable   b unstable   c jumps
 2 +                      aaaaaabbbbb                      c
   |                aaaaaa   bbb                           c
   |          aaaaaa   c bbbb                              c
-  |   aaaaaaa         bbb                                 c
-1 +aaa                a                                   c          b
+  |   aaaaaaa         abb                                 c          b
+1 +aaa                a                                   c
   |                   aaaaa                               c
   |                        aaaaaaaaaaaaaaaaaaaaaaaaa      c
 0 +- - - - - - - - - - - - - - - - - - - - - - - - -aaaaaaaaaaaaaaaaaac

@@ -100,4 +100,8 @@ private:
     mutable std::optional<std::pair<Place, MapStep>> last_;
 };
 
+/// The motion that a run from the start of the question leads to, by the period map. `near`: the start is near the
+/// answer, and the motion there is wanted if it is stable. Requires PeriodMap::applies_to().
+SteadyMotion motion_by_periods(const SteadyQuestion& question, bool near, const motion::Monitor& monitor);
+
 }  // namespace dinal::analysis

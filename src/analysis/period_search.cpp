@@ -1,11 +1,11 @@
-#include "analysis/period_search.hpp"
+// The search on the period map of one plain body that is linear between events.
+#include "analysis/period_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "analysis/forced_search.hpp"
-#include "analysis/period_map.hpp"
 #include "analysis/short_slides.hpp"
 #include "analysis/sine_start.hpp"
 #include "analysis/steady_facts.hpp"

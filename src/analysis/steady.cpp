@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/period_search.hpp"
+#include "analysis/period_map.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 

@@ -2,18 +2,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <memory>
+#include <utility>
 
+#include "model/drive.hpp"
 #include "motion/engine/modes.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/engine/run.hpp"
-#include "motion/only_body.hpp"
 #include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion {
 
 namespace {
+
+/// A function of the motion of bodies with names, asked as that of one body without a name.
+class OnlyBody final : public model::UserFunction {
+public:
+    explicit OnlyBody(std::shared_ptr<model::UserFunction> function) : function_(std::move(function)) {}
+
+    double value(double t, const model::State& state) override {
+        const std::array<double, 2> motion{state.theta, state.velocity};
+        return function_->value_with(t, state, motion);
+    }
+    double next_break(double t) override { return function_->next_break(t); }
+    bool may_go_on() override { return function_->may_go_on(); }
+    void forget_failure() override { function_->forget_failure(); }
+
+    /// The drive with the functions of M asked so. Controllers stay: no such method takes them.
+    [[nodiscard]] static model::Drive drive(model::Drive drive) {
+        const auto asked = [](const std::shared_ptr<model::UserFunction>& function) {
+            const bool controls = dynamic_cast<const model::Controller*>(function.get()) != nullptr;
+            return controls ? function : std::make_shared<OnlyBody>(function);
+        };
+        if (drive.M().has_feedback()) drive.loads.front() = drive.M().with_functions(asked);
+        return drive;
+    }
+
+private:
+    std::shared_ptr<model::UserFunction> function_;
+};
 
 /// An error if the method does not support such systems, or suits not every mode of the bodies. Holding contacts slow
 /// no mode down, so they are left out.
@@ -63,9 +93,11 @@ std::optional<model::Oscillator> oscillator_if_dense(const model::System& system
     return made ? std::optional(std::move(made).value()) : std::nullopt;
 }
 
-/// Returns whether the run is that of an oscillator: of a plain system, or by a method that knows nothing else.
-bool runs_alone(const model::System& system, MethodView method) {
-    return system.is_plain() || (system.is_alone() && !method.cut());
+/// Returns whether the run is that of an oscillator: of a plain system, or by a method with a loop of its own for one.
+bool runs_alone(const model::System& system, const model::Drive& drive, MethodView method) {
+    const auto cut = method.cut();
+    const bool more = drive.has_more() || system.joints.front().walls || model::has_memory(drive.M());
+    return system.is_plain() || (system.is_alone() && (!cut || (cut->step > 0 && !more)));
 }
 
 /// Makes a run of the only body of a system, as an oscillator without a name.
@@ -110,7 +142,7 @@ Run part_of(const model::System& system, const model::Drive& drive, const Run& r
 
 text::Expected<Run> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                              const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
-    if (runs_alone(system, method)) {
+    if (runs_alone(system, drive, method)) {
         return run_alone(system, drive, [&](const model::Oscillator& body, const model::Drive& its) {
             return simulate(body, its, window, rows, method, monitor, limits);
         });
@@ -122,7 +154,7 @@ text::Expected<Run> simulate(const model::System& system, const model::Drive& dr
 
 text::Expected<Run> resume(const model::System& system, const model::Drive& drive, const Run& so_far, double t_end,
                            const Grid& rows, MethodView method, const Monitor& monitor, const Limits& limits) {
-    if (runs_alone(system, method)) {
+    if (runs_alone(system, drive, method)) {
         return run_alone(system, drive, [&](const model::Oscillator& body, const model::Drive& its) {
             return resume(body, its, so_far, t_end, rows, method, monitor, limits);
         });

@@ -321,14 +321,9 @@ for _, slow in ipairs { "LuGre", "Dahl" } do only.steady[slow], only.response[sl
 only.response["elastic walls"] = nil
 local function asked(question) return only[question] or kinds end
 
-local groups = { springs = { "spring.polynomial", "a spring in Lua" },
-    ["smooth laws"] = { "M that is not read", "M that is read", "Stribeck", "a law in Lua", "friction.table", "feedback" } }
-
 local written_by_body = "an act returns the angle and velocity of one body, and assigns to those of several"
--- What differs today, and why: "QUESTION: FIELDS, KINDS OR GROUPS OF THEM", for all kinds where none is named.
+-- What differs today, and why: "QUESTION: FIELDS, KINDS", for all kinds where none is named.
 local different = {
-    ["integrators: rk4, uneven, Coulomb with Re = Rd, Coulomb with Re above Rd, smooth laws, springs"] =
-        "one body without a name has an rk4 of its own, unless it has states, events, belts, walls or memory",
     ["save: header, event that acts, event that bounces endlessly"] = written_by_body,
     ["save of the body: header, event that acts, event that bounces endlessly"] = written_by_body,
 }
@@ -348,8 +343,8 @@ local function spread(list)
         assert(questions[question] and #reason > 10, key)
         local wanted = {}
         for name in where:gmatch ", ([^,]+)" do
-            assert(groups[name] or kinds[name], key)
-            for _, kind in ipairs(groups[name] or { name }) do wanted[kind] = asked(question)[kind] end
+            assert(kinds[name], key)
+            wanted[name] = asked(question)[name]
         end
         for name in names:gmatch "%S+" do
             for kind in pairs(where == "" and asked(question) or wanted) do

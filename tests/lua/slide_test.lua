@@ -179,7 +179,8 @@ test("a mass that its feedback holds, or that nothing moves, is not called movin
 end)
 
 -- A and dry friction are told apart by nothing: -A sgn v beside Rd and Re is dry friction Rd + A that breaks away at
--- Re + A, whatever the function gives at velocity 0.
+-- Re + A. A value of its own at velocity 0 is that of a standstill: the body breaks away at Re if it can leave then.
+-- Where Re is between Rd and Rd + A, such a value and the sides differ in where it breaks away.
 local relays = {
     read = function(A) return function(v) return v > 0 and -A or A end end,
     ["with a value at 0"] = function(A) return function(v) return v > 0 and -A or v < 0 and A or 0 end end,
@@ -199,17 +200,31 @@ test("a feedback -A sgn v beside dry friction adds to it", function()
     for name, relay in pairs(relays) do
         for _, case in ipairs { { 0.7, 0.3, 0.4 }, { 0.05, 0.3, 0.9 }, { 1.5, 0.2, 0.2 } } do
             local A, Rd, Re = table.unpack(case)
+            local own_value = name == "with a value at 0"
+            if own_value and Re < Rd + A then Re = Rd end
             local g = relay(A)
             local task = { M = function(t, _, v) return g(v) + f(t) end, theta0 = 3.3, t_end = 40 }
             local run = system { I = 1, k = 1.3, C = 0.05, Rd = Rd, Re = Re }:simulate(task)
             task.M = f
-            local dry = system { I = 1, k = 1.3, C = 0.05, Rd = Rd + A, Re = Re + A }:simulate(task)
+            local away = own_value and math.max(Re, Rd + A) or Re + A
+            local dry = system { I = 1, k = 1.3, C = 0.05, Rd = Rd + A, Re = away }:simulate(task)
             near(run.theta, dry.theta, 1e-11)
             equal(kinds_of(run), kinds_of(dry), name)
             ends = ends + #dry.events
         end
     end
     assert(ends > 40)
+end)
+
+test("a feedback that falls with speed makes Coulomb's friction Stribeck's", function()
+    local function drive(t) return 1.2 * math.sin(t) end
+    local function falls(v) return v > 0 and 0.3 * math.exp(-v / 0.1) or v < 0 and -0.3 * math.exp(v / 0.1) or 0 end
+    local function go(M, more) return system(merged({ I = 1, k = 1, C = 0.1 }, more)):simulate { M = M, theta0 = 0.3, velocity0 = 0.2, t_end = 20 } end
+    local run = go(function(t, _, v) return drive(t) - falls(v) end, { Rd = 0.3 })
+    local dry = go(drive, { friction = friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.1, shape = 1 } })
+    near(run.theta, dry.theta, 1e-9)
+    equal(kinds_of(run), kinds_of(dry))
+    assert(#dry.events > 5, #dry.events)
 end)
 
 test("such a feedback also adds to the friction of belts and links", function()

@@ -13,8 +13,9 @@ using model::EventKind;
 using model::Joint;
 using model::Motion;
 
-constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
-constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
+constexpr double no_motion = 1e-9;      // of the acceleration that the torques at a joint could give
+constexpr double clearly_jumps = 1e-9;  // of the torques
+constexpr double little_more = 1e-7;    // of the torques: what a joint that comes to its limit will be short of next
 
 /// One decision in progress.
 class Decider {
@@ -40,6 +41,7 @@ private:
     enum class Ways { right, changed, round };
     /// What the loads on either side of slip 0 do to a joint that holds.
     struct BothSides {
+        double backward = 0, forward = 0;  ///< their pull
         bool drive_back = false;
         double beyond = -model::never;  ///< the limit of that side
         Motion towards = Motion::forward;
@@ -50,7 +52,8 @@ private:
     bool settle(bool all_used);
     bool ride_along(const Frame& frame);
     std::optional<Worst> farthest_beyond();
-    double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards);
+    double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, Motion let_go);
+    [[nodiscard]] bool leaves(std::size_t joint, Motion way, const BothSides& both) const;
     std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
@@ -202,7 +205,10 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
         double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
         const bool own = released_ && released_->joint == j, may_go = own || asked_[j].let_go != Motion::stuck;
         if (by_.balances.has_feedback() && (beyond > 0 || may_go || mode().friction[j].beside > 0))
-            beyond = excess_on_both_sides(j, beyond, towards);
+            beyond = excess_on_both_sides(j, beyond, towards,
+                                          beyond > 0 ? towards
+                                          : own      ? released_->way
+                                                     : asked_[j].let_go);
         if (std::isnan(beyond)) {
             made_.good = false;
             return {};
@@ -221,8 +227,9 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
 
 /// The same for a joint that holds where loads may jump at slip 0, or at a slip that is rounding and stays so. If they
 /// drive it back from both sides, it holds while some value between both would let it (Filippov): it must be pulled
-/// beyond its limit by the loads of the side to which it goes. Otherwise their value at slip 0 counts.
-double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards) {
+/// beyond its limit by the loads of the side to which it goes. Otherwise their value at slip 0 counts; so it does if it
+/// is one of its own, between both, and lets the joint leave the way in which it is let go.
+double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, Motion let_go) {
     Slipping& how = mode().friction[j];
     how.beside = 0;
     if (!now().rubs(j) || mode().keeps_place(j) || how.way != Motion::stuck) return otherwise;
@@ -237,28 +244,36 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
             const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
             if (!then || !then->drive_back) continue;
         }
+        if (let_go != Motion::stuck && leaves(j, let_go, *both)) return otherwise;
         how.beside = speed, towards = both->towards;
         return both->beyond;
     }
     return otherwise;
 }
 
+/// Returns whether the loads at slip 0, which are not those of a side, let a joint go this way, and sliding friction
+/// does not hold it back there.
+bool Decider::leaves(std::size_t j, Motion way, const BothSides& both) const {
+    const double pull = -found_.holding[j], nothing = clearly_jumps * size(j);
+    const bool is_own = both.backward - pull > nothing && pull - both.forward > nothing;
+    const double moved = model::sign_of(way) * (way == Motion::forward ? both.forward : both.backward);
+    return is_own && moved >= mechanics_.sliding(j, {.way = way}, 0, now().here()) - nothing;
+}
+
 /// Returns none if something is not finite.
 std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, double speed, const Moment& here) {
-    constexpr double clearly = 1e-9;  // of the torques
     BothSides both;
-    double pull_backward = 0, pull_forward = 0;
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
         const Moment at = just_beside(mechanics_, here, j, side, speed, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
-        (side == Motion::forward ? pull_forward : pull_backward) = -beside.holding[j];
+        (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
         Motion way = Motion::stuck;
         const double beyond = excess(mechanics_, j, beside, mode(), now().here(), way);
         if (way == side && beyond > both.beyond) both.beyond = beyond, both.towards = side;
     }
-    both.drive_back = pull_backward - pull_forward > clearly * size(j);
+    both.drive_back = both.backward - both.forward > clearly_jumps * size(j);
     return both;
 }
 
