@@ -54,7 +54,7 @@ animation::Track asked_track(lua_State* L, const lua::Options& options, const Ru
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
     const plots::RunData data{run, &run->result, alone(*run), units};
-    lua::CallState call(L);  // between rows the integrator evaluates the excitation
+    RunCall call(L, *run);  // between rows the integrator evaluates the excitation
     auto track = animation::track_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
     if (lua::interrupt_requested()) {

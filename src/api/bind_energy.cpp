@@ -45,7 +45,7 @@ analysis::Whose whose_of(const LuaRun& run) {
 /// Computes the columns; for several bodies the sum, in which the work between them cancels.
 void make_columns(lua_State* L, RunEnergy& energy) {
     if (energy.columns.size() > 0) return;
-    lua::CallState call(L);  // a friction law may be a user's function
+    RunCall call(L, *energy.run);  // a friction law may be a user's function
     for (const RunHandle& part : parts_of(energy.run)) {
         const Eigen::MatrixXd own = analysis::energy_columns(part->result, whose_of(*part));
         call.check();
@@ -294,7 +294,7 @@ namespace {
 
 /// The energies of the parts of a run; fails with the first error.
 text::Expected<std::vector<analysis::Energy>> energies_of(lua_State* L, const std::vector<RunHandle>& parts) {
-    lua::CallState call(L);  // a friction law may be a user's function
+    RunCall call(L, *parts.front());  // a friction law may be a user's function
     std::vector<analysis::Energy> energies;
     for (const RunHandle& part : parts) {
         auto energy = analysis::energy_of(part->result, whose_of(*part));

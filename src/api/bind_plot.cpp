@@ -324,7 +324,7 @@ motion::BetweenRows between_rows(const LuaRun& run) {
 }
 
 std::shared_ptr<const motion::Run> drawn_run(lua_State* L, const RunHandle& run, const std::vector<double>& window) {
-    lua::CallState call(L);  // M may be a function
+    RunCall call(L, *run);  // M may be a function
     const motion::Run& whole = run->result;
     const motion::BetweenRows between = between_rows(*run);
     if (!between.any()) return {run, &whole};

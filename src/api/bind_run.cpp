@@ -53,6 +53,10 @@
 
 namespace dinal::api {
 
+RunCall::RunCall(lua_State* L, const LuaRun& run) : CallState(L) {
+    if (run.origin) name_functions(*this, run.system(), run.origin->drive);
+}
+
 std::string line_of(const LuaRun& run) {
     if (!run.of_all()) return motion::summary(run.result);
     const model::System& system = run.system();
@@ -64,7 +68,7 @@ std::string line_of(const LuaRun& run) {
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const LuaRun& run = *handle;
-    lua::CallState call(L);  // spring, belt and base may be user functions
+    RunCall call(L, run);  // spring, belt and base may be user functions
     const std::string text = run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.result, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
@@ -225,7 +229,7 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
             options.fail("from", fmt::format("from = {:.6g} must be before the end of the run, t = {:.6g}", begin,
                                              result.t_stop));
         }
-        lua::CallState call(L);
+        RunCall call(L, run);
         EvenSamples samples =
             samples_of_motion(run, between, static_cast<std::size_t>(place - between.columns().begin()), begin);
         if (lua::interrupt_requested()) lua::raise_interrupted(L);
@@ -332,7 +336,7 @@ int poincare_of_run(lua_State* L) {
     constexpr double most = 1e7;
     if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
     std::vector<std::pair<double, model::State>> samples;
-    lua::CallState call(L);
+    RunCall call(L, *run);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
         const double at = std::min(from + static_cast<double>(i) * period, result.t_stop);
         const auto state = result.at(at);
@@ -533,7 +537,7 @@ namespace {
 lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     check_one(L, *run, ":cycle");
     const motion::Run& result = run->result;
-    lua::CallState call(L);
+    RunCall call(L, *run);
     std::vector<model::WantedEvent> wanted;
     if (run->origin) wanted = run->origin->drive.events;
     std::vector<model::Event> events = analysis::events_of_motion(result, wanted);
@@ -831,7 +835,7 @@ int at_one_time(lua_State* L) {
     const RunHandle run =
         lua::self<RunHandle>(L, 1, "run:at(t)");  // a copy: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
-    lua::CallState call(L);  // between rows the integrator evaluates the excitation
+    RunCall call(L, *run);  // between rows the integrator evaluates the excitation
     const bool of_all = run->of_all();
     const auto state = part_of(run, 0)->result.at(t);
     call.check();
@@ -922,7 +926,7 @@ lua::Pushed run_acceleration(lua_State* L, const RunHandle& run) {
                velocity = result.column(Column::velocity), M = result.column(Column::M),
                friction = result.column(Column::friction), damping = result.column(Column::damping);
     std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(result.size()));
-    lua::CallState call(L);  // spring and base may be functions
+    RunCall call(L, *run);  // spring and base may be functions
     for (Eigen::Index i = 0; i < result.size(); ++i) {
         const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
         const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];

@@ -9,6 +9,7 @@
 
 #include "lua/memory_limit.hpp"
 #include "lua/options.hpp"
+#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "model/units.hpp"
 #include "motion/between_rows.hpp"
@@ -40,6 +41,12 @@ struct LuaRun {
     [[nodiscard]] std::size_t place() const { return joint.value_or(0); }
     /// Returns whether it was simulated and is the run of a body.
     [[nodiscard]] bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
+};
+
+/// A call of Lua for the functions of a run: they get the motion by the names of its bodies and states.
+class RunCall : public lua::CallState {
+public:
+    RunCall(lua_State* L, const LuaRun& run);
 };
 
 // Shared: every column in Lua is a view that keeps the whole run alive.

@@ -60,7 +60,7 @@ public:
     Decision decide() {
         Now begin = now;
         Contacts memory = contacts;
-        return dinal::motion::engine::decide({mechanics_, frames_, balances_, projection_, last_, room_},
+        return dinal::motion::engine::decide({mechanics_, frames_, balances_, projection_, last_, room_, 1},
                                              std::move(begin), std::move(memory), {});
     }
 

@@ -446,4 +446,17 @@ test("a body or link may be called like a field of one body, but not like a meth
     raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
 end)
 
+test("between the rows of the only body its functions get the motion by its name", function()
+    for _, method in ipairs { integrator.rk4 { h = 0.01 }, integrator.dinal1989 { h = 0.01 } } do
+        local more = { t_end = 10, integrator = method }
+        local run = system { bodies = { a = { I = 1, k = 4, Rd = 0.3 } } }
+            :simulate(merged(more, { theta0 = { a = 2 }, M = { a = function(_, _, v) return -0.1 * v.a end } }))
+        local alone = system { I = 1, k = 4, Rd = 0.3 }
+            :simulate(merged(more, { theta0 = 2, M = function(_, _, v) return -0.1 * v end }))
+        near(run.a:at(3.333), alone:at(3.333), 1e-14)
+        near(run:at(3.333).a, alone:at(3.333), 1e-14)
+        equal(#run.a:spectrum(), #alone:spectrum())
+    end
+end)
+
 finish()

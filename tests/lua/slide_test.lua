@@ -178,9 +178,13 @@ test("a mass that its feedback holds, or that nothing moves, is not called movin
     has(system { I = 1, k = 1 }:simulate { theta0 = 1, t_end = 5 }, "moving at the end")
 end)
 
--- A and dry friction are told apart by nothing: -A sgn v beside Rd and Re is dry friction Rd + A that breaks away at
--- Re + A. A value of its own at velocity 0 is that of a standstill: the body breaks away at Re if it can leave then.
--- Where Re is between Rd and Rd + A, such a value and the sides differ in where it breaks away.
+-- -A sgn v beside Rd and Re is dry friction Rd + A. At a standstill the value at velocity 0 counts: the body breaks
+-- away where that is beyond Re and the motion is not driven back, at Rd + A. Where it moves with a belt or another body,
+-- rounding says what the value is: there it breaks away at Re + A.
+local function together(Rd, Re, A, at_0)
+    local function side(value) return { Rd = Rd + A, Re = math.max(Rd + A, Re + value) } end
+    return friction.asymmetric { forward = side(-at_0), backward = side(at_0) }
+end
 local relays = {
     read = function(A) return function(v) return v > 0 and -A or A end end,
     ["with a value at 0"] = function(A) return function(v) return v > 0 and -A or v < 0 and A or 0 end end,
@@ -200,20 +204,25 @@ test("a feedback -A sgn v beside dry friction adds to it", function()
     for name, relay in pairs(relays) do
         for _, case in ipairs { { 0.7, 0.3, 0.4 }, { 0.05, 0.3, 0.9 }, { 1.5, 0.2, 0.2 } } do
             local A, Rd, Re = table.unpack(case)
-            local own_value = name == "with a value at 0"
-            if own_value and Re < Rd + A then Re = Rd end
             local g = relay(A)
             local task = { M = function(t, _, v) return g(v) + f(t) end, theta0 = 3.3, t_end = 40 }
             local run = system { I = 1, k = 1.3, C = 0.05, Rd = Rd, Re = Re }:simulate(task)
             task.M = f
-            local away = own_value and math.max(Re, Rd + A) or Re + A
-            local dry = system { I = 1, k = 1.3, C = 0.05, Rd = Rd + A, Re = away }:simulate(task)
+            local dry = system { I = 1, k = 1.3, C = 0.05, friction = together(Rd, Re, A, g(0)) }:simulate(task)
             near(run.theta, dry.theta, 1e-11)
             equal(kinds_of(run), kinds_of(dry), name)
             ends = ends + #dry.events
         end
     end
     assert(ends > 40)
+end)
+
+test("a body that comes to rest right at the limit of both holds", function()
+    local M = function(_, _, v) return v > 0 and -0.4 or v < 0 and 0.4 or 0 end
+    local run = system { I = 1, k = 1, Rd = 0.2, Re = 0.3 }:simulate { M = M, theta0 = 3, t_end = 20 }
+    equal(run.status, "stuck")
+    equal(kinds_of(run), "stick")
+    near(run.theta[#run], 0.6, 1e-14)
 end)
 
 test("a feedback that falls with speed makes Coulomb's friction Stribeck's", function()
@@ -229,20 +238,20 @@ end)
 
 test("such a feedback also adds to the friction of belts and links", function()
     local A = 0.4
-    local function on_belt(M, more)
-        return system { I = 1, k = 1.3, C = 0.05, Rd = 0.3 + more, Re = 0.6 + more }:simulate { M = M, belt = 0.3, t_end = 30 }
+    local function on_belt(M, law)
+        return system { I = 1, k = 1.3, C = 0.05, friction = law }:simulate { M = M, belt = 0.3, t_end = 30 }
     end
-    local run = on_belt(function(t, _, v) return (v > 0.3 and -A or A) + 0.8 * math.sin(1.7 * t) end, 0)
-    local dry = on_belt(function(t) return 0.8 * math.sin(1.7 * t) end, A)
+    local run = on_belt(function(t, _, v) return (v > 0.3 and -A or A) + 0.8 * math.sin(1.7 * t) end, friction.coulomb { Rd = 0.3, Re = 0.6 })
+    local dry = on_belt(function(t) return 0.8 * math.sin(1.7 * t) end, friction.coulomb { Rd = 0.3 + A, Re = 0.6 + A })
     near(run.theta, dry.theta, 1e-11)
     equal(kinds_of(run), kinds_of(dry))
-    local function of_link(M, more)
-        local links = { c = { "a", "b", Rd = 0.2 + more, Re = 0.3 + more } }
+    local function of_link(M, law)
+        local links = { c = { "a", "b", friction = law } }
         return system { bodies = { a = { I = 1, k = 2 }, b = { I = 2, k = 1 } }, links = links }
             :simulate { M = M, theta0 = { a = 2 }, t_end = 30 }
     end
-    run = of_link({ c = function(_, _, v) return v.a - v.b > 0 and -A or A end }, 0)
-    dry = of_link(nil, A)
+    run = of_link({ c = function(_, _, v) return v.a - v.b > 0 and -A or A end }, friction.coulomb { Rd = 0.2, Re = 0.3 })
+    dry = of_link(nil, friction.coulomb { Rd = 0.2 + A, Re = 0.3 + A })
     near(run.a.theta, dry.a.theta, 1e-11)
     equal(kinds_of(run), kinds_of(dry))
 end)

@@ -9,7 +9,8 @@ using model::Motion;
 
 void Contacts::slide(const Mechanics& mechanics, Now& now, std::size_t joint, Motion way, bool leaving) {
     Slipping& how = now.mode.friction[joint];
-    how.way = way, how.leaving = leaving, how.riding = false, how.beside = 0, how.creeps = Motion::stuck;
+    how.way = way, how.leaving = leaving, how.riding = false, how.beside = 0, how.driven_back = false,
+    how.creeps = Motion::stuck;
     of[joint].edge = 0;
     const model::Friction& law = mechanics.system().joints[joint].friction.law;
     if (law.ranges() > 0) {

@@ -14,6 +14,7 @@ using model::Joint;
 using model::Motion;
 
 constexpr double no_motion = 1e-9;      // of the acceleration that the torques at a joint could give
+constexpr double at_limit = 1e-10;      // of the torques: what differences tell of a belt is known no better
 constexpr double clearly_jumps = 1e-9;  // of the torques
 constexpr double little_more = 1e-7;    // of the torques: what a joint that comes to its limit will be short of next
 
@@ -52,8 +53,7 @@ private:
     bool settle(bool all_used);
     bool ride_along(const Frame& frame);
     std::optional<Worst> farthest_beyond();
-    double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, Motion let_go);
-    [[nodiscard]] bool leaves(std::size_t joint, Motion way, const BothSides& both) const;
+    double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
@@ -196,25 +196,22 @@ bool Decider::ride_along(const Frame& frame) {
 
 /// Returns the joint that is farthest beyond its limit; what came to its limit right now is.
 std::optional<Decider::Worst> Decider::farthest_beyond() {
-    constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
     std::optional<Worst> worst;
     double most_beyond = 0;
     for (std::size_t j = 0; j < joints(); ++j) {
         if (!mode().holds(j)) continue;
         Motion towards = Motion::stuck;
+        mode().friction[j].driven_back = false;
         double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
         const bool own = released_ && released_->joint == j, may_go = own || asked_[j].let_go != Motion::stuck;
         if (by_.balances.has_feedback() && (beyond > 0 || may_go || mode().friction[j].beside > 0))
-            beyond = excess_on_both_sides(j, beyond, towards,
-                                          beyond > 0 ? towards
-                                          : own      ? released_->way
-                                                     : asked_[j].let_go);
+            beyond = excess_on_both_sides(j, beyond, towards, may_go);
         if (std::isnan(beyond)) {
             made_.good = false;
             return {};
         }
         const double rounded = mechanics_.bodies() > 1 ? 8 * rounding * size(j) : 0;
-        if (may_go && std::fabs(beyond) <= nearly * size(j) + 2 * found_.blurred + between_) {
+        if (may_go && std::fabs(beyond) <= at_limit * size(j) + 2 * found_.blurred + between_) {
             worst = {j, own ? released_->way : asked_[j].let_go}, most_beyond = model::never;
             continue;
         }
@@ -226,38 +223,36 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
 }
 
 /// The same for a joint that holds where loads may jump at slip 0, or at a slip that is rounding and stays so. If they
-/// drive it back from both sides, it holds while some value between both would let it (Filippov): it must be pulled
-/// beyond its limit by the loads of the side to which it goes. Otherwise their value at slip 0 counts; so it does if it
-/// is one of its own, between both, and lets the joint leave the way in which it is let go.
-double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, Motion let_go) {
+/// drive it back from both sides, some value between both holds it (Filippov). But the loads at slip 0 count at a
+/// standstill: where they hold it, their limit is the only one, and where they do not, it leaves as soon as sliding
+/// friction does not drive it back. `may_go`: it was seen to come to its limit.
+double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, bool may_go) {
     Slipping& how = mode().friction[j];
-    how.beside = 0;
+    how.beside = 0, how.driven_back = false;
     if (!now().rubs(j) || mode().keeps_place(j) || how.way != Motion::stuck) return otherwise;
     constexpr double later = 1e-9;  // of the unit of time
     const double rounded = 64 * rounding * size(j) * by_.unit * joint_at(j).lightness(mechanics_.system().bodies);
     std::vector<double> soon = now().y;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
-        const auto both = both_sides(j, speed, now().here());
+        auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
         if (speed == rounded) {
             const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
             if (!then || !then->drive_back) continue;
+        } else if (joint_at(j).of.size() == 1 && !mechanics_.has_belt(j)) {
+            // Elsewhere rounding says of which side the loads at slip 0 are.
+            if (!(otherwise > (may_go ? -at_limit * size(j) : 0))) return otherwise;
+            how.driven_back = true;
+            both = both_sides(j, speed, now().here());
+            const double nothing = may_go ? 0 : 64 * rounding * size(j);
+            if (both) both->beyond = std::min(may_go ? model::never : otherwise, both->beyond - nothing);
+            if (!both) continue;
         }
-        if (let_go != Motion::stuck && leaves(j, let_go, *both)) return otherwise;
         how.beside = speed, towards = both->towards;
         return both->beyond;
     }
     return otherwise;
-}
-
-/// Returns whether the loads at slip 0, which are not those of a side, let a joint go this way, and sliding friction
-/// does not hold it back there.
-bool Decider::leaves(std::size_t j, Motion way, const BothSides& both) const {
-    const double pull = -found_.holding[j], nothing = clearly_jumps * size(j);
-    const bool is_own = both.backward - pull > nothing && pull - both.forward > nothing;
-    const double moved = model::sign_of(way) * (way == Motion::forward ? both.forward : both.backward);
-    return is_own && moved >= mechanics_.sliding(j, {.way = way}, 0, now().here()) - nothing;
 }
 
 /// Returns none if something is not finite.

@@ -39,6 +39,9 @@ struct Slipping {
     /// Not 0 if loads jump at slip 0 and drive the joint back from both sides: then the limit forward counts for the
     /// loads at this slip forward, and the limit backward for those backward.
     double beside = 0;
+    /// Whether the loads at slip 0 would let it go, so that it leaves where those of a side overcome the friction of
+    /// sliding.
+    bool driven_back = false;
     /// The direction of a creep slower than rounding, or `stuck`. During a creep `way` is stuck, and the joint holds
     /// while its pull stays within `apart` of its balance with sliding friction.
     model::Motion creeps = model::Motion::stuck;
