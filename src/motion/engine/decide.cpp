@@ -14,7 +14,7 @@ using model::Joint;
 using model::Motion;
 
 constexpr double no_motion = 1e-9;      // of the acceleration that the torques at a joint could give
-constexpr double at_limit = 1e-10;      // of the torques: what differences tell of a belt is known no better
+constexpr double near_limit = 1e-10;    // of the torques: what differences tell of a belt is known no better
 constexpr double clearly_jumps = 1e-9;  // of the torques
 constexpr double little_more = 1e-7;    // of the torques: what a joint that comes to its limit will be short of next
 
@@ -54,6 +54,7 @@ private:
     bool ride_along(const Frame& frame);
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
+    [[nodiscard]] bool stands(std::size_t joint) const;
     std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
@@ -211,7 +212,7 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
             return {};
         }
         const double rounded = mechanics_.bodies() > 1 ? 8 * rounding * size(j) : 0;
-        if (may_go && std::fabs(beyond) <= at_limit * size(j) + 2 * found_.blurred + between_) {
+        if (may_go && std::fabs(beyond) <= near_limit * size(j) + 2 * found_.blurred + between_) {
             worst = {j, own ? released_->way : asked_[j].let_go}, most_beyond = model::never;
             continue;
         }
@@ -240,9 +241,8 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         if (speed == rounded) {
             const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
             if (!then || !then->drive_back) continue;
-        } else if (joint_at(j).of.size() == 1 && !mechanics_.has_belt(j)) {
-            // Elsewhere rounding says of which side the loads at slip 0 are.
-            if (!(otherwise > (may_go ? -at_limit * size(j) : 0))) return otherwise;
+        } else if (stands(j)) {  // in motion, rounding says of which side the loads at slip 0 are
+            if (!(otherwise > (may_go ? -near_limit * size(j) : 0))) return otherwise;
             how.driven_back = true;
             both = both_sides(j, speed, now().here());
             const double nothing = may_go ? 0 : 64 * rounding * size(j);
@@ -253,6 +253,13 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         return both->beyond;
     }
     return otherwise;
+}
+
+bool Decider::stands(std::size_t j) const {
+    const auto& of = joint_at(j).of;
+    return !mechanics_.has_belt(j) && std::all_of(of.begin(), of.end(), [&](const model::Weight& weight) {
+        return now().y[mechanics_.bodies() + weight.body] == 0;
+    });
 }
 
 /// Returns none if something is not finite.
