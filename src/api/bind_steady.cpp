@@ -216,7 +216,8 @@ std::string steady_story(lua_State* L, const SteadyHandle& s) {
 }
 
 std::string steady_summary(lua_State*, const SteadyHandle& handle) {
-    const Steady& s = *of_only(handle);
+    const SteadyHandle own = of_only(handle);
+    const Steady& s = *own;
     const analysis::SteadyMotion& m = s.motion;
     const ColumnUnits in(s.question.system->units);
     const auto number = [](double x, const std::string& unit) {

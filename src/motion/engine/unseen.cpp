@@ -121,7 +121,8 @@ double Unseen::deviation_on(const Part& part, double allowed, std::optional<doub
         }
         return 0;
     }
-    const double most = std::min(off, enclosure.apart + decay_of_error(cheb::degree) * r);
+    const double apart = enclosure.apart + decay_of_error(cheb::degree) * r;
+    const double most = apart < off ? apart : off;
     return std::isnan(most) ? model::never : most;
 }
 
@@ -301,6 +302,7 @@ void StretchProof::look_at_past(const Signal& signal, double size, double noise)
             for (std::size_t k = 0; k < y.size(); ++k) values[k][j] = y[k];
         }
         std::vector<Series> past;
+        past.reserve(values.size());
         for (const Nodes& each : values) past.push_back(cheb::fit(each));
         unseen_.begin(formula, nullptr);
         unseen_.give(0, time(0));
