@@ -151,7 +151,7 @@ private:
     }
 
     /// Completes the answer for the motion through a fixed point of a map over this number of periods.
-    bool settle(PeriodMap& map, Place x, int periods, double residual, bool any) {
+    bool settle(PeriodMap& map, const Place& x, int periods, double residual, bool any) {
         MapStep step = map.step(x);
         if (const auto rest = step.moved ? rest_beside(x, step) : std::nullopt) {
             if (!whole().step(*rest).moved) return stand(rest_of_run().value_or(*rest));

@@ -37,7 +37,7 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
         options.fail("speed",
                      fmt::format("speed = {:.6g} makes an animation of {:.4g} s, {:.0f} s are the most: give a greater "
                                  "speed, or a part of the run by from and to",
-                                 *asked.speed, take.seconds, most_frames / take.frames_per_second));
+                                 *asked.speed, take.seconds, most_frames / animation::Take::frames_per_second));
     }
     return take;
 }

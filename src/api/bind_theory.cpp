@@ -158,7 +158,7 @@ private:
 
 /// The option `system`. Raises an error if no closed form applies to it.
 model::Oscillator asked_system(const lua::Options& options) {
-    const model::Oscillator system = options.value_or_fail(oscillator_of(**options.object<SystemHandle>("system")));
+    model::Oscillator system = options.value_or_fail(oscillator_of(**options.object<SystemHandle>("system")));
     const model::Friction& friction = system.friction();
     const char* lacks = !system.has_spring() ? "need a spring, and this system has k = 0"
                         : system.walls()     ? "do not include walls; simulate this system"

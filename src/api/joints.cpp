@@ -523,21 +523,21 @@ void push_acting(lua_State* L, const model::Excitation& value) {
 struct OptionTable {
     lua_State* L;
 
-    void body(const std::string& name) {
+    void body(const std::string& name) const {
         lua::push_text(L, name);
         lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
     }
-    void unless_0(const char* name, double x) { (*this)(name, x); }
+    void unless_0(const char* name, double x) const { (*this)(name, x); }
     template <class Value>
-    void operator()(const char* name, const Value& value) {
+    void operator()(const char* name, const Value& value) const {
         lua::set_value(L, name, value);
     }
-    void operator()(const char* name, const model::Walls& walls) { (*this)(name, walls_by_name(walls)); }
-    void operator()(const char* name, const model::Excitation& value) {
+    void operator()(const char* name, const model::Walls& walls) const { (*this)(name, walls_by_name(walls)); }
+    void operator()(const char* name, const model::Excitation& value) const {
         push_acting(L, value);
         lua_setfield(L, -2, name);
     }
-    void operator()(const char* name, const model::UserFunction& function) {
+    void operator()(const char* name, const model::UserFunction& function) const {
         const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
         if (own == nullptr) return;
         own->push(L);

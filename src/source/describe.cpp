@@ -60,6 +60,7 @@ struct OptionTexts {
     void operator()(const char* name, const model::Walls& value) { add(name, value.lua_text()); }
     void operator()(const char* name, const std::vector<model::Friction>& laws) {
         std::vector<std::string> texts;
+        texts.reserve(laws.size());
         for (const model::Friction& law : laws) texts.push_back(lua_text(L, law, whole));
         add(name, fmt::format("{{ {} }}", fmt::join(texts, ", ")));
     }
