@@ -236,6 +236,19 @@ test("a feedback that falls with speed makes Coulomb's friction Stribeck's", fun
     assert(#dry.events > 5, #dry.events)
 end)
 
+test("such a feedback adds to limits that vary, too", function()
+    local A = 0.7
+    local function f(t) return 1.1 * math.sin(0.8 * t) + 0.5 * math.sin(2.1 * t) end
+    local function Rd(t) return 0.3 + 0.15 * math.sin(0.3 * t) end
+    local function g(v) return v > 0 and -A or v < 0 and A or 0 end
+    local function go(M, slides, holds) return system { I = 1, k = 1.3, C = 0.05, Rd = slides, Re = holds }:simulate { M = M, theta0 = 3.3, t_end = 40 } end
+    local run = go(function(t, _, v) return g(v) + f(t) end, Rd, function(t) return 2 * Rd(t) end)
+    local sum = function(t) return Rd(t) + A end
+    local dry = go(f, sum, sum)  -- 2 Rd < Rd + A
+    near(run.theta, dry.theta, 1e-11)
+    equal(kinds_of(run), kinds_of(dry))
+end)
+
 test("such a feedback also adds to the friction of belts and links", function()
     local A = 0.4
     local function on_belt(M, law)

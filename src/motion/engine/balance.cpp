@@ -87,12 +87,6 @@ Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joi
     return {at.t, at.side, y, true};
 }
 
-double limit_at_rest(const Mechanics& mechanics, std::size_t joint, const Mode& mode, Motion towards,
-                     const Moment& at) {
-    return mode.friction[joint].driven_back ? mechanics.sliding(joint, {.way = towards}, 0, at)
-                                            : mechanics.holding(joint, towards, at);
-}
-
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,
               Motion& towards) {
     if (mode.rigid[joint] != 0) return -model::never;
@@ -109,7 +103,7 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
         return off.beyond;
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
-    const double holding = limit_at_rest(mechanics, joint, mode, towards, at) + mode.friction[joint].blunt;
+    const double holding = mechanics.limit_at_rest(joint, mode, towards, at) + mode.friction[joint].blunt;
     if (std::isinf(holding)) return -model::never;  // a freewheel, backward
     if (mechanics.bodies() > 1 || !mechanics.is_native(joint) || mechanics.has_belts() || mechanics.states() > 0 ||
         mode.presses[joint] != 0) {

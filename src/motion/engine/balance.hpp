@@ -69,10 +69,6 @@ private:
 Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, model::Motion way, double speed,
                    std::vector<double>& y);
 
-/// Returns the torque that a contact holds at slip 0 against a pull this way.
-double limit_at_rest(const Mechanics& mechanics, std::size_t joint, const Mode& mode, model::Motion towards,
-                     const Moment& at);
-
 /// Returns how far the torque that holds a joint is beyond what the joint can hold, and which way it would go. Only the
 /// part of a pull counts that is right whatever users' states are wrong by: what only touches a limit holds.
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,

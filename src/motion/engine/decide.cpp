@@ -236,22 +236,20 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     std::vector<double> soon = now().y;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
+        const bool exact = speed != rounded;
+        how.driven_back = exact && stands(j);  // in motion, rounding says of which side the loads at slip 0 are
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
-        if (speed == rounded) {
+        if (!exact) {
             const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
             if (!then || !then->drive_back) continue;
-        } else if (stands(j)) {  // in motion, rounding says of which side the loads at slip 0 are
-            if (!(otherwise > (may_go ? -near_limit * size(j) : 0))) return otherwise;
-            how.driven_back = true;
-            both = both_sides(j, speed, now().here());
-            const double nothing = may_go ? 0 : 64 * rounding * size(j);
-            if (both) both->beyond = std::min(may_go ? model::never : otherwise, both->beyond - nothing);
-            if (!both) continue;
         }
+        if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
+        if (how.driven_back && !may_go) both->beyond = std::min(otherwise, both->beyond - 64 * rounding * size(j));
         how.beside = speed, towards = both->towards;
         return both->beyond;
     }
+    how.driven_back = false;
     return otherwise;
 }
 

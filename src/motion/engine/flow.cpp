@@ -442,8 +442,8 @@ void Flow::find_limits(Segment& s, const Mode& mode) const {
         if (!mechanics_.limits_change(joint, mode)) continue;
         for (std::size_t j = 0; j < node_count; ++j) {
             const Moment at = s.moment(j, y);
-            s.limits[joint][0][j] = mechanics_.holding(joint, model::Motion::backward, at);
-            s.limits[joint][1][j] = mechanics_.holding(joint, model::Motion::forward, at);
+            s.limits[joint][0][j] = mechanics_.limit_at_rest(joint, mode, model::Motion::backward, at);
+            s.limits[joint][1][j] = mechanics_.limit_at_rest(joint, mode, model::Motion::forward, at);
         }
     }
 }

@@ -192,7 +192,7 @@ Nodes Guards::limit(std::size_t joint, Motion side) const {
         if (!good) return most;
     } else {
         const bool sticks = now_.rubs(joint) && how.way == Motion::stuck;
-        most.fill(sticks ? limit_at_rest(mechanics_, joint, now_.mode, side, now_.here()) : 0);
+        most.fill(sticks ? mechanics_.limit_at_rest(joint, now_.mode, side, now_.here()) : 0);
         if (std::isinf(most[0])) return most;
     }
     if (how.creeps != Motion::stuck) {

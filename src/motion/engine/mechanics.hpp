@@ -216,6 +216,11 @@ public:
     [[nodiscard]] std::size_t range_of(std::size_t joint, double speed) const;
     /// The largest pull this way that sticking can hold.
     [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
+    /// The pull this way at which a joint leaves slip 0 in this mode.
+    [[nodiscard]] double limit_at_rest(std::size_t joint, const Mode& mode, model::Motion way, const Moment& at) const {
+        const double most = holding(joint, way, at);
+        return mode.friction[joint].driven_back && std::isfinite(most) ? sliding(joint, {.way = way}, 0, at) : most;
+    }
     /// Returns whether the holding limit depends on more than the direction.
     [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
     /// Returns whether the joint sticks with limits that may change along a stretch.

@@ -123,7 +123,8 @@ double Unseen::deviation_on(const Part& part, double allowed, std::optional<doub
     }
     const double apart = enclosure.apart + decay_of_error(cheb::degree) * r;
     const double most = apart < off ? apart : off;
-    return std::isnan(most) ? model::never : most;
+    if (std::isnan(most)) return model::never;
+    return most;
 }
 
 Unseen::Found Unseen::search(double allowed, int budget) {
