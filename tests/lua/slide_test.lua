@@ -160,6 +160,31 @@ test("another condition of the load changes during a slide", function()
     end
 end)
 
+test("a load takes a standing mass along its surface, against dry friction", function()
+    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
+    for _, theta0 in ipairs { 0, 0.4, -0.8 } do  -- the last one is let go by its spring
+        local run = sys:simulate {
+            M = function(t, _, v) return v - math.sin(t) > 0 and -3 or v - math.sin(t) < 0 and 3 or 0 end,
+            theta0 = theta0, t_end = 9,
+        }
+        equal(run.status, "end")
+        for i, t in ipairs(run.t) do
+            near(run.velocity[i], math.sin(t), 1e-13)
+            near(run.theta[i], theta0 + 1 - math.cos(t), 1e-12)
+        end
+    end
+    -- The surface passes the mass, which stands at -0.2 from the start, at t = 1.
+    local late = sys:simulate {
+        M = function(t, _, v) return v - math.sin(t - 1) > 0 and -0.25 or 3 end, theta0 = -0.2, t_end = 4,
+    }
+    local first = late.events[1]
+    near(first.t, 1, 1e-13)
+    for i, t in ipairs(late.t) do near(late.velocity[i], t > 1 and math.sin(t - 1) or 0, 1e-13) end
+    -- One that is too weak to keep the mass on it only lets it go.
+    local weak = sys:simulate { M = function(t, _, v) return v - 2 * math.sin(t) > 0 and -1 or 1 end, t_end = 1 }
+    near(weak.theta, sys:simulate { M = 1, t_end = 1 }.theta, 1e-13)
+end)
+
 test("a run that goes on slides on, without an event", function()
     local task = { M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.5 * math.sin(t) end, theta0 = 3, t_end = 8 }
     local whole = system { I = 1, k = 1 }:simulate(task)

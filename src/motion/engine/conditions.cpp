@@ -125,19 +125,21 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         if (forgotten_) cease();
         slides_.follow(mode);
     }
-    // A velocity that leaves 0 is taken a little later: a condition may lose the first digits, as floor(10 + velocity).
+    // A velocity that leaves 0 is taken a little later, as is the time: a condition may lose the first digits, as
+    // floor(10 + velocity).
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
+    double t = at.t;
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
-    std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0;
+    std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
     standing_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Slipping& how = mode.friction[i];
         const bool leaves = mode.rubs[i] != 0 && how.leaving && mode.leans[i] == 0;
         const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
         const std::size_t bit = mechanics_.system().named ? n + i : 1;
-        if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
+        if (now != 0 && now != standing_[i] && bit < 64) (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
         standing_[i] = now;
         double& v = y[n + i];
         if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
@@ -145,10 +147,16 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
             const double size = sizes_.on(mechanics_.system().joints[i]);
             const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
             v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
+            t = at.t + little_later * unit_;
         }
     }
+    if (mechanics_.next_break(at.t) <= t) t = at.t;
     mechanics_.let_laws_act(mode);
-    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide({at.t, at.side, y}, again); });
+    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
+        // What has passed zero at a standstill and lets the velocity leave does not wait for that speed to decide it.
+        const bool just_crossed = last_.function == &function && last_.t == at.t;
+        function.decide({t, at.side, y}, just_crossed ? again : again | of_leaving);
+    });
     forgotten_ = false;
 }
 
@@ -163,18 +171,23 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             function.margins(segment.moment(j, y), margins);
             for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
         }
-        // Their change by some ulps of the motion is rounding.
+        // Their change by some ulps of the motion or of the time is rounding.
+        constexpr double ulps = 1 + 4 * rounding;
         std::vector<double> rounded(count, 0);
         y = begin;
-        for (std::size_t k = 0; k < told_; ++k) {
-            y[k] = begin[k] * (1 + 4 * rounding);
-            function.margins({segment.times[0], segment.side(0), y}, margins);
+        const auto round = [&](double t) {
+            function.margins({t, segment.side(0), y}, margins);
             for (std::size_t c = 0; c < count; ++c) {
                 const double change = std::fabs(margins[c] - values[c][0]);
                 if (is_known(change)) rounded[c] += change;
             }
+        };
+        for (std::size_t k = 0; k < told_; ++k) {
+            y[k] = begin[k] * ulps;
+            round(segment.times[0]);
             y[k] = begin[k];
         }
+        round(segment.times[0] * ulps);
         // A condition that was just crossed is as near to zero as it was then, also in a stretch that is shorter.
         for (std::size_t c = 0; c < count && last_.function == &function && last_.t == now; ++c) {
             if (function.conditions()[c].step == last_.step) rounded[c] = std::max(rounded[c], last_.within);
@@ -227,7 +240,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         crossed.jumps = crossed.jumps || clear;
         if (clear && !function->is_law()) ++crossed.count;
         all_small = all_small && clear && jump < small * greatest_;
-        if (!soon_again || !clear || ending.conditions.size() > 1) continue;
+        const bool driven_back = soon_again || slides_.stands(*function, now);
+        if (!driven_back || !clear || ending.conditions.size() > 1) continue;
         if (const auto begun = slides_.begin(*function, jump, now)) {
             crossed.slides.push_back({begun->joint, true}), crossed.work = begun->work, chatter.crossed(false);
         }

@@ -22,6 +22,11 @@ public:
     [[nodiscard]] bool any() const { return any_; }
     /// Returns whether a function of the motion has no pieces that are known: it may jump anywhere.
     [[nodiscard]] bool samples() const { return samples_; }
+    /// Loads slide from the start where it is a standstill on a surface on which they jump.
+    void start(Now& now) {
+        mechanics_.for_each_piecewise(now.t.hi, [&](Piecewise& function) { slides_.start(function, now); });
+        forgotten_ = forgotten_ && !slides_.any();
+    }
     /// All are decided anew the next time: the state has jumped.
     void forget() { forgotten_ = true; }
     /// The same at a break, unless that is where one of them passes zero and is not decided by rounding.

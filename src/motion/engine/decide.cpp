@@ -240,10 +240,8 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         how.driven_back = exact && stands(j);  // in motion, rounding says of which side the loads at slip 0 are
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
-        if (!exact) {
-            const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
-            if (!then || !then->drive_back) continue;
-        }
+        const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
+        if (!then || !then->drive_back) continue;
         if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
         if (how.driven_back && !may_go) both->beyond = std::min(otherwise, both->beyond - 64 * rounding * size(j));
         how.beside = speed, towards = both->towards;

@@ -113,6 +113,7 @@ void Engine::begin() {
             }
         }
         touch_walls();
+        if (conditions_->any()) conditions_->start(now_);
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) contacts_.of[j].leaned = now_.mode.leans[j] != 0;
     } else {

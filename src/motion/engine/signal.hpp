@@ -99,7 +99,7 @@ public:
     }
     [[nodiscard]] double value(const Moment& at) const {
         if (law_) return value(at, law_->way * law_->slip(at));
-        if (slide_ && !at.freely) return sliding(at);
+        if (slide_) return sliding(at);
         if (piece_.conditions.empty() || at.freely) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }

@@ -11,17 +11,21 @@ using Which = Piecewise::Slide::Side;
 
 namespace {
 
-constexpr double near = 1e-9;  // part of a time unit: so far from the surface both sides are asked
+constexpr double near = 1e-9;            // part of a time unit: so far from the surface both sides are asked
+constexpr double clearly_apart = 1e-12;  // of the difference between both sides
 
+bool sticks(std::size_t joint, const Now& now) {
+    return now.rubs(joint) && now.mode.friction[joint].way == model::Motion::stuck && !now.mode.keeps_place(joint);
 }
+
+}  // namespace
 
 bool Slides::Sides::differ() const {
     return beyond.rate - own.rate > 1e-9 * (std::fabs(own.rate) + std::fabs(beyond.rate));
 }
 
 bool Slides::Sides::drive_back() const {
-    constexpr double clearly = 1e-12;  // of the difference between both sides
-    const double least = clearly * (std::fabs(own.rate) + std::fabs(beyond.rate));
+    const double least = clearly_apart * (std::fabs(own.rate) + std::fabs(beyond.rate));
     return own.rate < -least && beyond.rate > least;
 }
 
@@ -119,6 +123,31 @@ std::optional<Slides::Sides> Slides::decide(const Sliding& of, const Now& now, c
     return sides;
 }
 
+bool Slides::stands(Piecewise& function, const Now& now) const {
+    const auto owner = owner_of(function, now.t.hi);
+    return owner && owner->joint && sticks(*owner->joint, now);
+}
+
+/// A contact that holds the velocities of the surface is about to slip along it, in one direction.
+std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, const std::vector<double>& rates) {
+    mode_ = now.mode;
+    const bool holds = of.joint && sticks(*of.joint, now);
+    for (const model::Motion way : {model::Motion::forward, model::Motion::backward}) {
+        if (holds) mode_.friction[*of.joint].way = way;
+        const auto sides = decide(of, now, rates);
+        if (!sides || !sides->drive_back()) continue;
+        if (!holds) return sides;
+        const std::vector<double> mixed = sides->mixed();
+        double slip = 0, across = 0;
+        for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
+            const std::size_t v = mechanics_.bodies() + body;
+            slip += by * mixed[v], across += std::fabs(by * (sides->own.rates[v] - sides->beyond.rates[v]));
+        }
+        if (slip * model::sign_of(way) > clearly_apart * across) return sides;
+    }
+    return {};
+}
+
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now,
                                            const std::vector<double>& rates) {
     constexpr std::size_t most = 2;  // each asks the others
@@ -132,15 +161,24 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now
         function = before, now.y = y;
         return std::nullopt;
     };
-    mode_ = now.mode;
-    const auto first = decide(*owner, now, rates);
-    if (!first || !first->drive_back()) return no();
+    const auto first = meet(*owner, now, rates);
+    if (!first) return no();
     Begun begun{owner->joint, 0};
     put_on_surface(*first, now, begun.work);
     const auto sides = decide(*owner, now, first->mixed());
     if (!sides || !sides->drive_back()) return no();
     sliding_.push_back(*owner);
     return begun;
+}
+
+void Slides::start(Piecewise& function, Now& now) {
+    if (!stands(function, now)) return;
+    const Piecewise before = function;
+    Sliding of = *owner_of(function, now.t.hi);
+    of.jump = mechanics_.size_of(*of.joint, now.here());
+    const auto sides = meet(of, now, {});
+    function = before;
+    if (sides && sides->own.margin == 0) begin(function, of.jump, now);
 }
 
 bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes) {

@@ -23,6 +23,8 @@ public:
     Slides(Mechanics& mechanics, Frames& frames, double unit) : mechanics_(mechanics), frames_(frames), unit_(unit) {}
 
     [[nodiscard]] bool any() const { return !sliding_.empty(); }
+    /// Returns whether a contact holds the joint that the function loads.
+    [[nodiscard]] bool stands(Piecewise& function, const Now& now) const;
     struct Begun {
         std::optional<std::size_t> joint;  ///< of the load; none: a rate
         double work;                       ///< of the load on the velocities, which are put on the surface
@@ -35,6 +37,8 @@ public:
     void follow(const Mode& mode) { mode_ = mode; }
     /// Returns whether contacts now hold the velocities of a surface, so that the load does not move them.
     [[nodiscard]] bool lost(const Moment& here) const;
+    /// The same where a motion starts at a standstill on the very surface, which a load is about to let it leave.
+    void start(Piecewise& function, Now& now);
     /// One of the conditions of a slide has changed: it ends, or goes on if another one than its own has. Returns false
     /// if this function does not slide.
     bool leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes);
@@ -71,6 +75,8 @@ private:
     /// Lets the function slide along the condition that differs between both sides, on the pieces that it has a little
     /// later in a motion with these rates of y, or here if there are none. Returns none if no condition differs.
     [[nodiscard]] std::optional<Sides> decide(const Sliding& of, const Now& now, const std::vector<double>& rates);
+    /// Decides whether it may slide now: both sides drive it back.
+    [[nodiscard]] std::optional<Sides> meet(const Sliding& of, const Now& now, const std::vector<double>& rates);
     void put_on_surface(const Sides& sides, Now& now, double& work) const;
     std::vector<Sliding> sliding_;
 };
