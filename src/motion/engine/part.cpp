@@ -93,12 +93,9 @@ bool turns_are_events(const model::System& system, const model::Drive& drive, st
 
 /// The columns of a joint, without its name before them.
 std::vector<std::string> names_at(const model::System& system, const model::Drive& drive, std::size_t joint) {
-    std::vector<std::string> names = column_names();
-    if (system.is_link(joint)) {
-        names = {"t", "theta", "velocity", "torque", "friction"};
-    } else if (system.bodies[joint].moved) {
-        names.emplace_back("torque");
-    }
+    std::vector<std::string> names;
+    for (const ColumnKind& kind : columns_of(system.is_link(joint))) names.emplace_back(kind.name);
+    if (!system.is_link(joint) && system.bodies[joint].moved) names.emplace_back(column::torque.name);
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     return names;
 }
