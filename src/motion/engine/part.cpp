@@ -76,7 +76,7 @@ model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
 }
 
 bool rubs(const model::Joint& joint) {
-    return !joint.friction.none() && joint.friction.bristle() == nullptr;
+    return !joint.friction.none() && joint.friction.bending() == nullptr;
 }
 
 /// Returns whether every turn of the joint's angle is an event. Not on a belt, nor without own dry friction if its
