@@ -153,15 +153,7 @@ std::optional<std::string> whole_chunk(std::string_view source) {
 
 /// Pushes the weak table of texts by function; false for one whose text is not at hand.
 void push_known(lua_State* L) {
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &known_key) == LUA_TTABLE) return;
-    lua_pop(L, 1);
-    lua_newtable(L);
-    lua_createtable(L, 0, 1);
-    lua_pushstring(L, "k");
-    lua_setfield(L, -2, "__mode");
-    lua_setmetatable(L, -2);
-    lua_pushvalue(L, -1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &known_key);
+    lua::push_weak_table(L, &known_key);
 }
 
 }  // namespace
