@@ -136,10 +136,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
 Reading take_copied(Session& session, std::string_view text) {
     std::string open;
     bool is_open = false;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line = text.substr(begin, end - begin);
-        begin = end + 1;
+    for (const std::string_view line : text::split(text, '\n')) {
         const auto code = behind_prompt(line);
         if (!code && !is_open) {
             continue;
