@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "algebra/decompositions.hpp"
 #include "analysis/steady_facts.hpp"

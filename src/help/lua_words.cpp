@@ -1,6 +1,5 @@
 #include "help/lua_words.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "text/characters.hpp"

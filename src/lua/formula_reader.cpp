@@ -8,7 +8,6 @@
 #include <cstring>
 #include <map>
 #include <memory>
-#include <span>
 #include <tuple>
 
 #include "lua/bind.hpp"
