@@ -18,6 +18,7 @@ namespace dinal::motion {
 const std::vector<std::string>& column_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
+        all.reserve(body_columns.size());
         for (const ColumnKind& kind : body_columns) all.emplace_back(kind.name);
         return all;
     }();

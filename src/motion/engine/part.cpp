@@ -93,8 +93,10 @@ bool turns_are_events(const model::System& system, const model::Drive& drive, st
 
 /// The columns of a joint, without its name before them.
 std::vector<std::string> names_at(const model::System& system, const model::Drive& drive, std::size_t joint) {
+    const auto columns = columns_of(system.is_link(joint));
     std::vector<std::string> names;
-    for (const ColumnKind& kind : columns_of(system.is_link(joint))) names.emplace_back(kind.name);
+    names.reserve(columns.size() + 1 + drive.states.size());
+    for (const ColumnKind& kind : columns) names.emplace_back(kind.name);
     if (!system.is_link(joint) && system.bodies[joint].moved) names.emplace_back(column::torque.name);
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     return names;
