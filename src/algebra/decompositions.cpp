@@ -63,10 +63,6 @@ Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::Vecto
     return A.colPivHouseholderQr().solve(b);
 }
 
-Eigen::VectorXd solve_shortest(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-    return A.completeOrthogonalDecomposition().solve(b);
-}
-
 Eigen::VectorXd solve_by_singular_values(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double threshold) {
     SingularValues parts(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
     parts.setThreshold(threshold);

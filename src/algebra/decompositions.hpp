@@ -34,9 +34,8 @@ Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd&
 
 /// Least squares by QR with column pivoting: components that A does not determine are 0.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
-/// The shortest x with the least |A x - b|, by a complete orthogonal decomposition.
-Eigen::VectorXd solve_shortest(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
-/// The same for a square A, by its singular values; those below `threshold` times the largest one count as 0.
+/// The shortest x with the least |A x - b| for a square A, by its singular values; those below `threshold` times the
+/// largest one count as 0.
 Eigen::VectorXd solve_by_singular_values(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double threshold);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 

@@ -309,7 +309,7 @@ private:
         const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
         const auto Re = [&](model::Motion way) { return law.holding(way); };
         using enum model::Motion;
-        if (joint_.friction.bristle() != nullptr) return "friction of bristles, which neither stick nor slip";
+        if (joint_.friction.bending() != nullptr) return "friction of bristles, which neither stick nor slip";
         if (law.is_one_way()) return fmt::format("a freewheel with Rd = {:.5g}", Rd(forward));
         if (!joint_.friction.sliders.empty()) {
             return fmt::format("{} behind springs{}", text::counted(joint_.friction.sliders.size(), "dry slider"),

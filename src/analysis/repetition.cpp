@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analysis/returns.hpp"
@@ -89,17 +88,19 @@ std::optional<TorqueRange> extremes_of_sine(const model::Excitation& excitation,
 }  // namespace
 
 std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise) {
+    const auto repeats_from = [&](double from) -> std::optional<Repetition> {
+        if (excitation.constant_from() <= from) return Repetition{from, otherwise};
+        const double period = model::period_from(excitation, from);
+        return period > 0 ? std::optional(Repetition{from, period}) : std::nullopt;
+    };
     double from = 0;
-    if (excitation.constant_from() <= from) return Repetition{from, otherwise};
-    if (const double period = model::period_from(excitation, from); period > 0) return Repetition{from, period};
+    if (const auto at_once = repeats_from(from)) return at_once;
     for (const model::Component& c : excitation.components()) {
         for (const double t : {c.from, model::constant_from(c)}) {
             if (std::isfinite(t)) from = std::max(from, t);
         }
     }
-    if (excitation.constant_from() <= from) return Repetition{from, otherwise};
-    if (const double period = model::period_from(excitation, from); period > 0) return Repetition{from, period};
-    return {};
+    return repeats_from(from);
 }
 
 namespace {

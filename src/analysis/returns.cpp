@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "algebra/decompositions.hpp"
 #include "analysis/steady_facts.hpp"
@@ -129,7 +127,7 @@ Moment Runs::first() const {
     y.insert(y.end(), question_.drive.velocity0.begin(), question_.drive.velocity0.end());
     for (const model::OwnState& state : question_.drive.states) y.push_back(state.start);
     for (const model::Joint& joint : system().joints) {
-        if (joint.friction.bristle() != nullptr) y.push_back(0);
+        if (joint.friction.bending() != nullptr) y.push_back(0);
     }
     return {vector_of(y)};
 }

@@ -1,7 +1,6 @@
 #include "analysis/spectrum.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <complex>
 #include <cstdint>

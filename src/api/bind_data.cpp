@@ -336,8 +336,7 @@ std::vector<DataColumn> columns_in(lua_State* L, int table, const std::function<
         lua_pop(L, 3);
     }
     for (const std::string& name : lua::text_keys(L, table)) {
-        lua::push_text(L, name);
-        lua_rawget(L, table);
+        lua::push_field(L, table, name);
         columns.push_back(read(name));
         lua_pop(L, 1);
     }

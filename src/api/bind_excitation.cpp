@@ -24,6 +24,13 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
     if (const auto* excitation = lua::test<model::Excitation>(L, index)) {
         return *excitation;
     }
+    const auto refuse = [&](std::string_view wanted, std::string cure) {
+        lua::raise(L, {.sentence = fmt::format("{} must be {}, got {}", what, wanted, lua::describe(L, index)),
+                       .call = std::string(what),
+                       .option = std::string(option),
+                       .culprit = lua::written(L, index),
+                       .cure = std::move(cure)});
+    };
     model::Term term;
     if (lua_type(L, index) == LUA_TNUMBER) {
         term = model::Constant{lua_tonumber(L, index)};
@@ -34,22 +41,12 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
         const auto function = std::make_shared<lua::LuaFunction>(L, index, std::move(role));
         term = model::Scripted{.function = function, .feedback = function->feedback()};
     } else {
-        lua::raise(L, {.sentence = fmt::format("{} must be a function, a number or an excitation, got {}", what,
-                                               lua::describe(L, index)),
-                       .call = std::string(what),
-                       .option = std::string(option),
-                       .culprit = lua::written(L, index),
-                       .cure = lua_type(L, index) == LUA_TSTRING
-                                   ? "; a function of t is written: function(t) return math.sin(t) end"
-                                   : ""});
+        refuse("a function, a number or an excitation",
+               lua_type(L, index) == LUA_TSTRING ? "; a function of t is written: function(t) return math.sin(t) end"
+                                                 : "");
     }
     auto made = model::Excitation::make(std::move(term));
-    if (!made) {
-        lua::raise(L, {.sentence = fmt::format("{} must be finite, got {}", what, lua::describe(L, index)),
-                       .call = std::string(what),
-                       .option = std::string(option),
-                       .culprit = lua::written(L, index)});
-    }
+    if (!made) refuse("finite", "");
     return std::move(made).value();
 }
 

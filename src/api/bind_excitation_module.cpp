@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <type_traits>
 #include <vector>
 
 #include "api/bind_excitation.hpp"

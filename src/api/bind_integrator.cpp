@@ -1,5 +1,4 @@
 // integrator.NAME{...} for every row of motion/integrators.hpp, and the class of integrators: their options are fields.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

@@ -4,14 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/explain.hpp"
@@ -374,11 +374,18 @@ int column_by_name(lua_State* L, const char* name) {
     return 1;
 }
 
-template <motion::Column column>
+template <std::size_t place>
 int column_field(lua_State* L) {
-    const std::string& name = motion::column_names()[static_cast<std::size_t>(column)];
-    if (column != motion::Column::t) check_one(L, *run_self(L, "run.theta"), "." + name);
+    const std::string& name = motion::column_names()[place];
+    if (place > 0) check_one(L, *run_self(L, "run.theta"), "." + name);  // all have t
     return column_by_name(L, name.c_str());
+}
+
+template <std::size_t... place>
+constexpr std::array<lua::Member, sizeof...(place)> column_fields(std::index_sequence<place...> /*places*/) {
+    using motion::body_columns;
+    return {lua::Member{lua::a_field<column_field<place>>,
+                        {body_columns[place].signature, body_columns[place].summary, body_columns[place].example}}...};
 }
 
 /// A method of data applied to the rows of the run.
@@ -593,7 +600,7 @@ std::optional<motion::Integrator> integrator_of_run(const LuaRun& run) {
 constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrator)  --> ",
                                                   motion::usual_integrator.c_str()};
 
-constexpr lua::Member run_members[] = {
+constexpr lua::Member run_methods[] = {
     {lua::a_method<run_at>,
      {"run:at(t) -> theta, velocity, z",
       "Angle (rad) and velocity (rad per time unit) at any time of the run, at the accuracy of the integrator; in "
@@ -606,7 +613,7 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
     {lua::a_method<data_of_run>,
      {"run:data() -> data", "All columns and rows, as data that can be filtered, joined with others and plotted.",
-      DINAL_RUN "print(table.concat(run:data().names, \" \"))  --> t theta velocity M friction damping"}},
+      DINAL_RUN "print(run:data().names[2])  --> theta"}},
     {lua::a_method<as_data<data_functions::column>>,
      {"run:column(name) -> vector", "The column of this name, also if the run has a member of that name.",
       DINAL_RUN "print(run:column(\"theta\") == run.theta)  --> true"}},
@@ -621,9 +628,7 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run:sort(\"theta\").theta[1])  --> 1.0"}},
     {lua::a_method<as_data<data_functions::markdown>>,
      {"run:markdown() -> string", "All rows as a table in Markdown.",
-      DINAL_RUN
-      "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, "
-      "Mc | damping, Mc |"}},
+      DINAL_RUN "print(run:markdown():match(\"| t, T0 | theta, Mc/k\"))  --> | t, T0 | theta, Mc/k"}},
     {lua::a_method<continue_run>,
      {"run:continue{ OPTIONS } -> run",
       "A new run that continues this one from its end, also after Ctrl-C or an error in M, with the same rows as "
@@ -660,24 +665,9 @@ constexpr lua::Member run_members[] = {
     {lua::a_method<plot_run>, plot_run_doc},
     {lua::a_method<phase_plot_run>, phase_plot_run_doc},
     {lua::a_method<animate_run>, animate_doc},
-    {lua::a_field<column_field<motion::Column::t>>,
-     {"run.t -> vector", "The times of the rows, time units.", DINAL_RUN "print(run.t[2])  --> 0.5"}},
-    {lua::a_field<column_field<motion::Column::theta>>,
-     {"run.theta -> vector", "The angle, rad.", DINAL_RUN "print(run.theta[1])  --> 1.0"}},
-    {lua::a_field<column_field<motion::Column::velocity>>,
-     {"run.velocity -> vector", "The velocity, rad per time unit; exactly 0 while the mass sticks.",
-      DINAL_RUN "print(run.velocity[1])  --> 0.0"}},
-    {lua::a_field<column_field<motion::Column::M>>,
-     {"run.M -> vector", "The excitation: the torque M on the mass.", DINAL_RUN "print(run.M:max())  --> 3.0"}},
-    {lua::a_field<column_field<motion::Column::friction>>,
-     {"run.friction -> vector",
-      "The torque of dry friction on the mass: -Rd sgn(velocity) while it moves, -(M - k theta) while it sticks.",
-      "run = system{ I = 1, k = 1, Rd = 2 }:simulate{ theta0 = 1, t_end = 1, dt = 1 }\n"
-      "print(run.friction)  --> vector{ 1, 1 }"}},
-    {lua::a_field<column_field<motion::Column::damping>>,
-     {"run.damping -> vector", "The torque of viscous damping on the mass, -C velocity.",
-      "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
-      "print(run.damping[1])  --> -3.0"}},
+};
+
+constexpr lua::Member run_values[] = {
     {lua::a_value<RunHandle, run_states>,
      {"run.states -> table", "The columns of the states by name: vectors.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.25,\n"
@@ -741,8 +731,7 @@ constexpr lua::Member run_members[] = {
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
     {lua::a_value<RunHandle, [](const LuaRun& run) { return run.result.names(); }>,
-     {"run.names -> table", "The names of the columns.",
-      DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
+     {"run.names -> table", "The names of the columns.", DINAL_RUN "print(run.names[2])  --> theta"}},
     {lua::a_value<RunHandle, system_of_run>,
      {"run.system -> system or nil", "The system; nil for a run read from a file. That of run.load is run.system.load.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
@@ -762,6 +751,9 @@ constexpr lua::Member run_members[] = {
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
       "--> 13 rows, t 0 … 1.2; 2 events (2 turns); moving at the end; peak |theta| 1"}},
 };
+
+constexpr auto run_members =
+    text::joined(run_methods, column_fields(std::make_index_sequence<motion::body_columns.size()>()), run_values);
 
 }  // namespace
 

@@ -17,7 +17,6 @@
 #include "api/system_options.hpp"
 #include "lua/options.hpp"
 #include "lua/values.hpp"
-#include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/jenkins.hpp"
 #include "source/describe.hpp"
@@ -380,7 +379,7 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
             options.fail(name, fmt::format("friction and {} exclude each other; give one of them", name));
         }
     }
-    const bool has_state = law->as<model::laws::Bristle>() != nullptr || law->as<model::laws::Jenkins>() != nullptr;
+    const bool has_state = law->bending() != nullptr || law->as<model::laws::Jenkins>() != nullptr;
     if (!may_have_state && (has_state || law->is_one_way())) {
         options.fail("friction", fmt::format("{} is a law that only system{{ ... }} supports", law->lua_text()));
     }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lua/memory_limit.hpp"
+#include "motion/columns.hpp"
 #include "text/characters.hpp"
 #include "text/html.hpp"
 #include "text/sentences.hpp"
@@ -153,6 +154,7 @@ DataColumn column_of(files::ReadColumn column) {
 
 ColumnUnits::ColumnUnits(const model::Units& units) {
     if (units.usual()) return;
+    named = units;
     t = units.t;
     theta = units.theta;
     M = units.M;
@@ -162,8 +164,8 @@ ColumnUnits::ColumnUnits(const model::Units& units) {
 
 std::string ColumnUnits::of(std::string_view column) const {
     column.remove_prefix(column.find('.') + 1);  // of "load.theta"
-    const bool torque = column == "M" || column == "friction" || column == "damping" || column == "torque";
-    return column == "t" ? t : column == "theta" ? theta : column == "velocity" ? speed : torque ? M : "";
+    const motion::ColumnKind* kind = motion::find_column_kind(column);
+    return kind != nullptr && named ? named->of(kind->quantity) : "";
 }
 
 int push_data(lua_State* L, Data data) {

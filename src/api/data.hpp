@@ -114,6 +114,7 @@ Data table_of(const List& list, const ListColumn<Get>&... columns) {
 /// The units of columns; empty if unknown.
 struct ColumnUnits {
     explicit ColumnUnits(const model::Units& units);
+    std::optional<model::Units> named;  ///< nothing for the usual units, which are not written
     std::string t, theta, M, speed, frequency;
 
     /// The unit of a column of a run; empty for a state.

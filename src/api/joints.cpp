@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -373,7 +372,7 @@ model::Friction read_list(lua_State* L, const lua::Options& options, model::Cont
                                      i, lua::describe(L, -1)));
         }
         friction.listed.push_back(*law);
-        if (law->as<model::laws::Bristle>() != nullptr || (law->depends_on_speed() && main.depends_on_speed())) {
+        if (law->bending() != nullptr || (law->depends_on_speed() && main.depends_on_speed())) {
             options.fail("friction",
                          fmt::format("friction[{}]: a list takes one law that depends on the speed, and none of "
                                      "bristles",
@@ -447,7 +446,7 @@ private:
         friction_.law = law;
         if (const auto* slider = law.as<model::laws::Jenkins>()) friction_.sliders = {*slider}, friction_.law = {};
         if ((!friction_.sliders.empty() || law.is_one_way()) && friction_.normal && !normal_) refuse_load();
-        if (!normal_ || friction_.bristle() != nullptr) return friction_;
+        if (!normal_ || friction_.bending() != nullptr) return friction_;
         friction_.law = friction_.law.under(*normal_);
         friction_.normal.reset();
         return friction_;

@@ -234,7 +234,7 @@ std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std:
         if (!all[i].is(message.name)) continue;
         std::string name(message.name);
         if (i > 1 && all[i - 1].is(".")) {
-            push_variable(L, nullptr, all[i - 2].text);
+            lua::push_global(L, all[i - 2].text);
             name.insert(0, std::string(all[i - 2].text) + (lua_isuserdata(L, -1) != 0 ? ":" : "."));
             lua_pop(L, 1);
         }
@@ -436,11 +436,8 @@ std::string called_as(lua_State* L, std::string_view name) {
 
 /// The same for a global function; "" if there is none.
 std::string call_of_global(lua_State* L, std::string_view name) {
-    lua_pushglobaltable(L);
-    lua_pushlstring(L, name.data(), name.size());
-    lua_rawget(L, -2);
-    std::string call = lua_isfunction(L, -1) ? called_as(L, name) : "";
-    lua_pop(L, 2);
+    std::string call = lua::push_global(L, name) == LUA_TFUNCTION ? called_as(L, name) : "";
+    lua_pop(L, 1);
     return call;
 }
 

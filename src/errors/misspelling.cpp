@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,8 +33,7 @@ bool step_to_index_table(lua_State* L) {
     if (lua_getmetatable(L, -1) == 0) {
         return false;
     }
-    lua_pushliteral(L, "__index");
-    lua_rawget(L, -2);
+    lua::push_field(L, -1, "__index");
     lua_replace(L, -3);
     lua_pop(L, 1);
     return lua_istable(L, -1);
@@ -131,8 +129,7 @@ bool is_nil_global(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>
     if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text)) return false;
     const std::vector<std::string> local = variables(L, frame);
     if (std::find(local.begin(), local.end(), all[i].text) != local.end()) return false;
-    push_variable(L, nullptr, all[i].text);
-    const bool is_nil = lua_isnil(L, -1);
+    const bool is_nil = lua::push_global(L, all[i].text) == LUA_TNIL;
     lua_pop(L, 1);
     return is_nil;
 }
@@ -162,8 +159,7 @@ std::string qualified(lua_State* L, std::string_view name, Use use) {
     std::vector<std::string> found;
     const int top = lua_gettop(L);
     for (const std::string_view module : modules) {
-        push_variable(L, nullptr, module);
-        if (lua_istable(L, -1)) {
+        if (lua::push_global(L, module) == LUA_TTABLE) {
             lua_pushlstring(L, name.data(), name.size());
             go_to_field(L);
             const bool calls = use == Use::as_number && lua_isfunction(L, -1);
@@ -222,11 +218,8 @@ void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
         }
     });
     if (!found) {
-        lua_pushglobaltable(L);
-        lua_pushlstring(L, wanted.data(), wanted.size());
-        lua_rawget(L, -2);
+        lua::push_global(L, wanted);
         lua_replace(L, result);
-        lua_pop(L, 1);
     }
 }
 

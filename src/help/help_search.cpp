@@ -21,12 +21,8 @@ namespace dinal::help {
 namespace {
 
 std::vector<std::string_view> words_of(std::string_view text) {
-    std::vector<std::string_view> words;  // not tokens: these letters may be invalid in Lua
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find(' ', begin), text.size());
-        if (end > begin) words.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
+    std::vector<std::string_view> words = text::split(text, ' ');  // not tokens: the letters may be invalid in Lua
+    std::erase(words, "");
     return words;
 }
 

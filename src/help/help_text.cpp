@@ -49,11 +49,9 @@ std::string code_in_rows(std::string_view line, std::size_t width) {
 std::string indented(std::string_view text, std::size_t width) {
     constexpr std::string_view margin = "    ";
     std::string result;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string rows = code_in_rows(text.substr(begin, end - begin), width - margin.size());
-        result.append(begin == 0 ? "" : "\n").append(margin).append(text::indented(rows, margin.size()));
-        begin = end + 1;
+    for (const std::string_view line : text::split(text, '\n')) {
+        const std::string rows = code_in_rows(line, width - margin.size());
+        result.append(result.empty() ? "" : "\n").append(margin).append(text::indented(rows, margin.size()));
     }
     return result;
 }

@@ -1,9 +1,9 @@
 #include "help/lua_words.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::help {
 namespace {
@@ -207,11 +207,8 @@ std::string lua_word(std::string_view word) {
 std::vector<std::string_view> lua_words() {
     std::vector<std::string_view> all;
     for (const Word& one : vocabulary) {
-        for (std::size_t begin = 0; begin < one.names.size();) {
-            const std::size_t end = std::min(one.names.find(' ', begin), one.names.size());
-            all.push_back(one.names.substr(begin, end - begin));
-            begin = end + 1;
-        }
+        const std::vector<std::string_view> names = text::split(one.names, ' ');
+        all.insert(all.end(), names.begin(), names.end());
     }
     return all;
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -416,18 +415,15 @@ int add_animation(lua_State* L) {
 
 /// The text of the running script; empty at the prompt.
 std::string running_script(lua_State* L) {
-    lua_pushglobaltable(L);
-    lua_pushliteral(L, "arg");
-    lua_rawget(L, -2);
     std::string name;
-    if (lua_istable(L, -1)) {
+    if (lua::push_global(L, "arg") == LUA_TTABLE) {
         lua_rawgeti(L, -1, 0);
         if (lua_type(L, -1) == LUA_TSTRING && text::ending_of(lua_tostring(L, -1)) == ".lua") {
             name = lua_tostring(L, -1);
         }
         lua_pop(L, 1);
     }
-    lua_pop(L, 2);
+    lua_pop(L, 1);
     auto read = files::read_file(name);
     return name.empty() || !read ? "" : std::move(read).value();
 }

@@ -202,6 +202,31 @@ int push_text(lua_State* L, std::string_view text) {
     return 1;
 }
 
+int push_field(lua_State* L, int index, std::string_view name) {
+    index = lua_absindex(L, index);
+    push_text(L, name);
+    return lua_rawget(L, index);
+}
+
+int push_global(lua_State* L, std::string_view name) {
+    lua_pushglobaltable(L);
+    const int type = push_field(L, -1, name);
+    lua_remove(L, -2);
+    return type;
+}
+
+void push_weak_table(lua_State* L, const void* key) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, key) == LUA_TTABLE) return;
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_createtable(L, 0, 1);
+    push_text(L, "k");
+    lua_setfield(L, -2, "__mode");
+    lua_setmetatable(L, -2);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, key);
+}
+
 void set_number(lua_State* L, const char* name, double value) {
     lua_pushnumber(L, value);
     lua_setfield(L, -2, name);

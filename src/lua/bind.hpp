@@ -117,6 +117,12 @@ T value_or_raise(lua_State* L, std::string_view call, text::Expected<T> expected
 
 /// Pushes a text and returns 1, the number of results.
 int push_text(lua_State* L, std::string_view text);
+/// Push a field of the table at `index`, or a global, and return its type. Raw: metamethods are a user's code, and a
+/// strict _G raises errors.
+int push_field(lua_State* L, int index, std::string_view name);
+int push_global(lua_State* L, std::string_view name);
+/// Pushes the table under this key of the registry; makes it if there is none, with weak keys.
+void push_weak_table(lua_State* L, const void* key);
 
 /// Sets a field of the table on the top.
 void set_number(lua_State* L, const char* name, double value);

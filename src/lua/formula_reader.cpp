@@ -8,7 +8,6 @@
 #include <cstring>
 #include <map>
 #include <memory>
-#include <span>
 #include <tuple>
 
 #include "lua/bind.hpp"
@@ -813,8 +812,7 @@ private:
                 lua_rawget(L_, -2);
             }
             if (lua_istable(L_, -1)) {
-                lua_pushstring(L_, one.name);
-                lua_rawget(L_, -2);
+                push_field(L_, -1, one.name);
                 push_kept(object);
                 if (lua_rawequal(L_, -1, -2) != 0) place->second = &one;
             }
@@ -1334,22 +1332,15 @@ int forget_reading(lua_State* L) {
     return 0;
 }
 
-/// Pushes the table of the key, which is made with that field of its metatable.
-void push_table(lua_State* L, const void* key) {
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, key) == LUA_TTABLE) return;
+/// Pushes the metatable of readings.
+void push_reading_class(lua_State* L) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &reading_class_key) == LUA_TTABLE) return;
     lua_pop(L, 1);
     lua_newtable(L);
-    if (key == &readings_key) {
-        lua_createtable(L, 0, 1);
-        lua_pushliteral(L, "k");
-        lua_setfield(L, -2, "__mode");
-        lua_setmetatable(L, -2);
-    } else {
-        lua_pushcfunction(L, forget_reading);
-        lua_setfield(L, -2, "__gc");
-    }
+    lua_pushcfunction(L, forget_reading);
+    lua_setfield(L, -2, "__gc");
     lua_pushvalue(L, -1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, key);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &reading_class_key);
 }
 
 }  // namespace
@@ -1358,7 +1349,7 @@ Shared reading_of(lua_State* L, int index, const Arguments& arguments) {
     luaL_checkstack(L, LUA_MINSTACK, "to read a function");
     const int top = lua_gettop(L), readings = top + 1, made = top + 2, values = top + 3;
     index = lua_absindex(L, index);
-    push_table(L, &readings_key);
+    push_weak_table(L, &readings_key);
     lua_pushvalue(L, index);
     if (lua_rawget(L, readings) == LUA_TUSERDATA) {
         Shared known = *static_cast<Shared*>(lua_touserdata(L, made));
@@ -1371,7 +1362,7 @@ Shared reading_of(lua_State* L, int index, const Arguments& arguments) {
     lua_settop(L, readings);
     auto* const place = static_cast<Shared*>(lua_newuserdatauv(L, sizeof(Shared), 1));
     std::construct_at(place);
-    push_table(L, &reading_class_key);
+    push_reading_class(L);
     lua_setmetatable(L, made);
     lua_newtable(L);
     Shared fresh = std::make_shared<Reading>(Reader(L, arguments, values).read(index));

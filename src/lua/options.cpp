@@ -121,8 +121,7 @@ void Options::refuse(std::vector<std::string_view>& unknown) const {
 }
 
 void Options::push(std::string_view name) const {
-    lua_pushlstring(L_, name.data(), name.size());
-    lua_rawget(L_, index_);  // raw: a metatable must not hide options from the check of names
+    push_field(L_, index_, name);  // raw: a metatable must not hide options from the check of names
 }
 
 const text::Option& Options::row(std::string_view name) const {

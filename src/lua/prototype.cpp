@@ -109,10 +109,10 @@ std::uint32_t Prototype::instruction(std::size_t at) const {
     return read;
 }
 
-std::string dumped_function(lua_State* L, int index) {
+std::string dumped_function(lua_State* L, int index, bool stripped) {
     std::string dumped;
     lua_pushvalue(L, index);
-    lua_dump(L, append_piece, &dumped, 0);
+    lua_dump(L, append_piece, &dumped, stripped ? 1 : 0);
     lua_pop(L, 1);
     return dumped;
 }

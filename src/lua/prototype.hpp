@@ -34,8 +34,8 @@ struct Prototype {
     [[nodiscard]] std::uint32_t instruction(std::size_t at) const;
 };
 
-/// The output of lua_dump for the Lua function at the index, with debug information.
-std::string dumped_function(lua_State* L, int index);
+/// The output of lua_dump for the Lua function at the index; stripped: without debug information.
+std::string dumped_function(lua_State* L, int index, bool stripped = false);
 
 /// Parses a dump; none if it is not in the format of Lua 5.4.
 std::optional<Prototype> prototype_in(std::string_view dumped);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <string_view>
 
+#include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "terminal/progress.hpp"
 
@@ -93,28 +94,22 @@ void note_standard_globals(lua_State* L) {
 
 bool is_overwritten(lua_State* L, std::string_view name, std::string_view field) {
     const int top = lua_gettop(L);
-    const auto get = [L](std::string_view key) {
-        lua_pushlstring(L, key.data(), key.size());
-        lua_rawget(L, -2);
-    };
     push_standard_globals(L);
-    get(name);
+    push_field(L, -1, name);
     if (!field.empty()) {  // a library: its initial table, and the copy of its fields
         lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
         lua_pushvalue(L, -2);
         lua_rawget(L, -2);
         if (lua_istable(L, -1)) {
-            get(field);
+            push_field(L, -1, field);
             lua_pushvalue(L, top + 2);
-            get(field);
+            push_field(L, -1, field);
         } else {
             lua_settop(L, top);
             return false;
         }
     } else {
-        lua_pushglobaltable(L);
-        get(name);
-        lua_remove(L, -2);
+        push_global(L, name);
     }
     const int before = field.empty() ? top + 2 : lua_gettop(L) - 2;
     const bool was = !lua_isnil(L, before);
@@ -125,8 +120,7 @@ bool is_overwritten(lua_State* L, std::string_view name, std::string_view field)
 
 bool is_of_dinal(lua_State* L, std::string_view name) {
     push_dinal_table(L);
-    lua_pushlstring(L, name.data(), name.size());
-    const bool has = lua_rawget(L, -2) != LUA_TNIL;
+    const bool has = push_field(L, -1, name) != LUA_TNIL;
     lua_pop(L, 2);
     return has;
 }

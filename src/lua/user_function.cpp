@@ -9,7 +9,6 @@
 #include <cmath>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lua/bind.hpp"

@@ -1,7 +1,6 @@
 #include "model/components.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace dinal::model {
 namespace {

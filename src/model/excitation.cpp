@@ -1,7 +1,5 @@
 #include "model/excitation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -22,7 +22,7 @@ double period_from(const Excitation& excitation, double t) {
     std::vector<double> periods;
     for (const Component& c : excitation.components()) {
         if (constant_from(c) <= t) continue;
-        const double period = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
+        const double period = std::visit([](const auto& term) { return terms::period_of(term); }, c.term);
         if (!(period > 0) || c.from > t || c.to < never) return 0;
         periods.push_back(period);
     }

@@ -133,7 +133,7 @@ std::optional<Repeating> in_steps(Repeating x, double step) {
 std::optional<double> period_of(const Excitation& excitation) {
     std::optional<double> all = 0;
     for (const Component& c : excitation.components()) {
-        const double own = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
+        const double own = std::visit([](const auto& term) { return terms::period_of(term); }, c.term);
         if (!all || (own == 0 && constant_from(c) != -never) || c.from != -never || c.to != never) return {};
         all = common_period(*all, own);
     }

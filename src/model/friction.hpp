@@ -53,6 +53,20 @@ struct SpeedRange {
     [[nodiscard]] double at(double speed) const { return torque + slope * (speed - from); }
 };
 
+/// A law with an internal state z, such as the deflection of bristles, derives from this. It never sticks or slips
+/// exactly: sliding() is its torque in steady sliding, holding() the greatest torque. z begins at 0.
+struct BendingLaw {
+    /// z' at slip velocity v; it may have a corner at v = 0.
+    [[nodiscard]] virtual double bend_rate(double v, double z) const = 0;
+    [[nodiscard]] virtual double torque(double v, double z) const = 0;
+
+protected:
+    BendingLaw() = default;
+    BendingLaw(const BendingLaw&) = default;
+    BendingLaw& operator=(const BendingLaw&) = default;
+    ~BendingLaw() = default;
+};
+
 // A law may also have
 //     std::string lua_text() const;   the Lua expression that makes it again
 // and, for both directions alike, what lets an integrator predict its corners instead of searching for them:
@@ -122,6 +136,8 @@ public:
     [[nodiscard]] double greatest_holding() const {
         return std::max(holding(Motion::forward), holding(Motion::backward));
     }
+    /// The law without its normal load if it has an internal state, otherwise nullptr.
+    [[nodiscard]] const BendingLaw* bending() const { return law_ ? law_->bending() : nullptr; }
     /// The law without its normal load if it is a `Law`, otherwise nullptr.
     template <FrictionLaw Law>
     [[nodiscard]] const Law* as() const {
@@ -139,6 +155,7 @@ private:
         [[nodiscard]] virtual double holding(Motion way) const = 0;
         [[nodiscard]] virtual bool depends_on_speed() const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
+        [[nodiscard]] virtual const BendingLaw* bending() const = 0;
         [[nodiscard]] virtual std::string lua_text() const = 0;
         [[nodiscard]] virtual std::size_t ranges() const = 0;
         [[nodiscard]] virtual SpeedRange range(std::size_t i) const = 0;
@@ -152,6 +169,13 @@ private:
         [[nodiscard]] double holding(Motion way) const override { return law.holding(way); }
         [[nodiscard]] bool depends_on_speed() const override { return Law::depends_on_speed; }
         [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
+        [[nodiscard]] const BendingLaw* bending() const override {
+            if constexpr (std::derived_from<Law, BendingLaw>) {
+                return &law;
+            } else {
+                return nullptr;
+            }
+        }
         [[nodiscard]] std::string lua_text() const override {
             if constexpr (requires { law.lua_text(); }) {
                 return law.lua_text();

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "model/laws/user_law.hpp"
-#include "model/oscillator.hpp"
 #include "model/springs/user_spring.hpp"
 #include "model/system.hpp"
 
@@ -28,13 +27,6 @@ Spring with_functions(const Spring& spring, auto&& other) {
 
 Excitation with_functions(const Excitation& excitation, auto&& other) {
     return other(excitation);
-}
-
-Oscillator with_functions(const Oscillator& system, auto&& other) {
-    OscillatorParameters parameters = system.parameters();
-    if (parameters.friction) parameters.friction = with_functions(*parameters.friction, other);
-    parameters.spring = with_functions(parameters.spring, other);
-    return Oscillator::make(parameters).value();  // valid, as the original was
 }
 
 SystemHandle with_functions(const SystemHandle& rig, auto&& other) {

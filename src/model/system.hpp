@@ -20,7 +20,6 @@
 #include "model/drive.hpp"
 #include "model/excitation.hpp"
 #include "model/friction.hpp"
-#include "model/laws/bristle.hpp"
 #include "model/laws/jenkins.hpp"
 #include "model/oscillator.hpp"
 #include "model/spring.hpp"
@@ -42,11 +41,11 @@ struct ContactFriction {
     /// Multiplies all torques; negative values count as 0.
     std::optional<Excitation> normal = {};
 
-    /// The law's bristle model, which never sticks or slips exactly; otherwise nullptr.
-    [[nodiscard]] const laws::Bristle* bristle() const { return law.as<laws::Bristle>(); }
+    /// The law if it has an internal state, so that it never sticks or slips exactly; otherwise nullptr.
+    [[nodiscard]] const BendingLaw* bending() const { return law.bending(); }
     /// Returns whether there is only the law, without internal state.
     [[nodiscard]] bool is_constant() const {
-        return bristle() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
+        return bending() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
                !holding[1];
     }
     /// Returns whether no torque can make the contact stick.

@@ -69,6 +69,22 @@ std::string Units::energy() const {
     return M.empty() || theta.empty() || theta == "rad" ? M : M + " " + theta;  // rad is dimensionless
 }
 
+std::string Units::of(Quantity quantity) const {
+    switch (quantity) {
+        case Quantity::time:
+            return t;
+        case Quantity::angle:
+            return theta;
+        case Quantity::speed:
+            return speed();
+        case Quantity::torque:
+            return M;
+        case Quantity::other:
+            break;
+    }
+    return "";
+}
+
 std::string Units::in_words() const {
     if (usual()) return "";
     std::string text;

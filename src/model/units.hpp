@@ -10,6 +10,9 @@
 
 namespace dinal::model {
 
+/// What a number measures, which determines its unit.
+enum class Quantity { time, angle, speed, torque, other };
+
 struct Units {
     std::string theta = "rad";
     std::string t = {};  ///< empty: time units
@@ -27,6 +30,8 @@ struct Units {
     [[nodiscard]] std::string damping() const;
     [[nodiscard]] std::string stiffness() const;
     [[nodiscard]] std::string energy() const;
+    /// The unit of such numbers; empty if it has no name.
+    [[nodiscard]] std::string of(Quantity quantity) const;
     /// "s", or "time units"
     [[nodiscard]] std::string times() const { return t.empty() ? "time units" : t; }
 

@@ -47,19 +47,22 @@ BetweenRows::BetweenRows(const Run& run, const model::Excitation* M) : run_(run)
     if (!run.course || !(run.course->whole_until() >= run.t_stop) || !(run.t_stop > run.t_start)) return;
     const std::vector<std::string>& names = run.names();
     for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(names.size()); ++c) {
-        const std::string& name = names[static_cast<std::size_t>(c)];
+        using By = ColumnKind::By;
         const bool is_state = c >= static_cast<Eigen::Index>(run.first_state());
-        const bool is_motion = name == "theta" || name == "velocity" || name == "damping";
-        if (is_state || is_motion || (name == "M" && M != nullptr && agrees_with_rows(c))) columns_.push_back(c);
+        const ColumnKind* kind = is_state ? nullptr : find_column_kind(names[static_cast<std::size_t>(c)]);
+        const bool known =
+            kind != nullptr && (kind->by == By::motion || (kind->by == By::load && M != nullptr && agrees_with_rows()));
+        if (is_state || known) columns_.push_back(c), kinds_.push_back(kind);
     }
 }
 
 /// Returns false if a user's function now returns other values, as it may if it reads a variable that has changed.
-bool BetweenRows::agrees_with_rows(Eigen::Index column) const {
+bool BetweenRows::agrees_with_rows() const {
     if (!M_->has_script()) return true;
     constexpr Eigen::Index looks = 20;
     constexpr double same = 1e-9;
     const Rows& rows = run_.rows;
+    const auto column = static_cast<Eigen::Index>(Column::M);
     if (rows.rows() == 0) return false;
     const double size = rows.col(column).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < rows.rows(); i += std::max<Eigen::Index>(1, rows.rows() / looks)) {
@@ -74,24 +77,13 @@ void BetweenRows::append_values(double t, std::vector<double>& values) const {
     const model::State y = state ? *state : model::State{unknown, unknown};
     const std::vector<double> states = run_.states > 0 ? run_.course->states_at(t) : std::vector<double>();
     const auto first_state = static_cast<Eigen::Index>(run_.first_state());
-    for (const Eigen::Index c : columns_) {
-        if (c >= first_state) {
-            values.push_back(states[static_cast<std::size_t>(c - first_state)]);
-            continue;
-        }
-        switch (c) {
-            case static_cast<Eigen::Index>(Column::theta):
-                values.push_back(y.theta);
-                break;
-            case static_cast<Eigen::Index>(Column::velocity):
-                values.push_back(y.velocity);
-                break;
-            case static_cast<Eigen::Index>(Column::M):
-                values.push_back(M_->value(t, y));
-                break;
-            default:
-                values.push_back(0.0 - run_.course->system().damping() * y.velocity);
-        }
+    const bool load = std::any_of(kinds_.begin(), kinds_.end(), [](const ColumnKind* kind) {
+        return kind != nullptr && kind->by == ColumnKind::By::load;
+    });
+    const AtRow at{t, y, load ? M_->value(t, y) : unknown, unknown, run_.course->system().damping()};
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        values.push_back(kinds_[i] != nullptr ? kinds_[i]->value(at)
+                                              : states[static_cast<std::size_t>(columns_[i] - first_state)]);
     }
 }
 

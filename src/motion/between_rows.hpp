@@ -28,12 +28,13 @@ public:
     [[nodiscard]] Run drawn(double from, double to, const Monitor& monitor) const;
 
 private:
-    [[nodiscard]] bool agrees_with_rows(Eigen::Index column) const;
+    [[nodiscard]] bool agrees_with_rows() const;
     [[nodiscard]] double interpolated(Eigen::Index column, double t) const;
 
     const Run& run_;
     const model::Excitation* M_;
     std::vector<Eigen::Index> columns_;
+    std::vector<const ColumnKind*> kinds_;  // of each of columns_; nullptr: a state
 };
 
 }  // namespace dinal::motion

@@ -29,16 +29,8 @@ public:
                                                        : std::max(last.from, last.course->whole_until())),
           bytes_(before.bytes_ + last.course->bytes()) {}
 
-    [[nodiscard]] text::Expected<model::State> at(double t) const override {
-        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
-                                            [](double time, const Part& part) { return time < part.from; });
-        return (after - 1)->course->at(t);
-    }
-    [[nodiscard]] std::vector<double> states_at(double t) const override {
-        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
-                                            [](double time, const Part& part) { return time < part.from; });
-        return (after - 1)->course->states_at(t);
-    }
+    [[nodiscard]] text::Expected<model::State> at(double t) const override { return course_at(t).at(t); }
+    [[nodiscard]] std::vector<double> states_at(double t) const override { return course_at(t).states_at(t); }
     [[nodiscard]] double whole_until() const override { return whole_until_; }
     [[nodiscard]] std::vector<double> piece_ends() const override {
         std::vector<double> all;
@@ -54,6 +46,12 @@ public:
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
 
 private:
+    [[nodiscard]] const Course& course_at(double t) const {
+        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
+                                            [](double time, const Part& part) { return time < part.from; });
+        return *(after - 1)->course;
+    }
+
     Growing<Part> parts_;
     double whole_until_;
     std::size_t bytes_;

@@ -31,27 +31,20 @@ public:
 
     void put(const model::State& y, double M, double friction) {
         double* row = column_ + next_;
-        const std::size_t stride = grid_.count();
-        row[0] = next_time_;
-        row[stride] = y.theta;
-        row[2 * stride] = y.velocity;
-        row[3 * stride] = M;
-        row[4 * stride] = friction;
-        row[5 * stride] = 0.0 - damping_ * y.velocity;  // 0 - x: never -0
+        const AtRow at{next_time_, y, M, friction, damping_};
+        for_each_column<body_columns>([&](std::size_t c, auto value) { row[c * grid_.count()] = value(at); });
         ++next_;
         set_next();
     }
     /// Consecutive rows of one motion, column by column.
     void put_block(std::size_t count, const double* theta, const double* velocity, const double* M, double friction) {
         count = std::min(count, grid_.count() - next_);
-        double* row = column_ + next_;
-        const std::size_t stride = grid_.count();
-        for (std::size_t i = 0; i < count; ++i) row[i] = grid_.time(next_ + i);
-        std::copy_n(theta, count, row + stride);
-        std::copy_n(velocity, count, row + 2 * stride);
-        std::copy_n(M, count, row + 3 * stride);
-        std::fill_n(row + 4 * stride, count, friction);
-        for (std::size_t i = 0; i < count; ++i) row[5 * stride + i] = 0.0 - damping_ * velocity[i];
+        for_each_column<body_columns>([&](std::size_t c, auto value) {
+            double* row = column_ + c * grid_.count() + next_;
+            for (std::size_t i = 0; i < count; ++i) {
+                row[i] = value({grid_.time(next_ + i), {theta[i], velocity[i]}, M[i], friction, damping_});
+            }
+        });
         next_ += count;
         set_next();
     }

@@ -16,7 +16,12 @@
 namespace dinal::motion {
 
 const std::vector<std::string>& column_names() {
-    static const std::vector<std::string> names{"t", "theta", "velocity", "M", "friction", "damping"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        all.reserve(body_columns.size());
+        for (const ColumnKind& kind : body_columns) all.emplace_back(kind.name);
+        return all;
+    }();
     return names;
 }
 

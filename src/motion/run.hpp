@@ -13,15 +13,14 @@
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
 #include "model/outcome.hpp"
+#include "motion/columns.hpp"
 #include "motion/course.hpp"
 #include "motion/growing.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::motion {
 
-/// The columns of a computed run, in this order: theta rad, velocity rad per time unit, the rest torques on the mass.
-enum class Column : int { t, theta, velocity, M, friction, damping };
-inline constexpr int column_count = 6;
+/// The names of a body's columns.
 const std::vector<std::string>& column_names();
 
 /// A table of numbers whose columns are contiguous.

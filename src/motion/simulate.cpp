@@ -115,7 +115,7 @@ std::optional<text::Error> lost_term(const model::Excitation& excitation, const 
         }
         const auto* sampled = model::controller_of<model::SampledController>(c);
         const auto* delayed = model::controller_of<model::DelayedController>(c);
-        const double period = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
+        const double period = std::visit([](const auto& term) { return model::terms::period_of(term); }, c.term);
         const char* name = sampled != nullptr ? "every" : delayed != nullptr ? "by" : "period";
         const double spacing = sampled != nullptr ? sampled->every : delayed != nullptr ? delayed->by : period;
         if (!(spacing > 0)) continue;

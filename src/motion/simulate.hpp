@@ -50,7 +50,8 @@ public:
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double time(std::size_t row) const {
         if (!spaced_) return list_[row];
-        return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(row) * dt_;
+        // A signed number is converted by one instruction.
+        return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(static_cast<long long>(row)) * dt_;
     }
 
 private:

@@ -7,40 +7,36 @@
 
 #include "analysis/stretches.hpp"
 #include "files/table.hpp"
+#include "motion/columns.hpp"
 
 namespace dinal::plots {
 namespace {
 
-/// The quantity of a column: curves of one kind share an axis.
-enum class Measure { time, angle, speed, torque, unknown };
+using model::Quantity;
 
 struct Symbol {
     std::string_view name, symbol;
-    Measure measure;
+    Quantity quantity;  ///< curves of one quantity share an axis
 };
 
-constexpr std::array<Symbol, 14> symbols{{{"t", "t", Measure::time},
-                                          {"theta", "θ", Measure::angle},
-                                          {"velocity", "θ'", Measure::speed},
-                                          {"velocity/omega0", "θ'/ω₀", Measure::angle},
-                                          {"velocity_over_omega0", "θ'/ω₀", Measure::angle},
-                                          {"M/k", "M/k", Measure::angle},
-                                          {"M_over_k", "M/k", Measure::angle},
-                                          {"friction_over_k", "friction/k", Measure::angle},
-                                          {"damping_over_k", "damping/k", Measure::angle},
-                                          {"M", "M", Measure::torque},
-                                          {"friction", "friction", Measure::torque},
-                                          {"damping", "damping", Measure::torque},
-                                          {"torque", "torque", Measure::torque},
-                                          {"omega", "ω", Measure::unknown}}};
+constexpr std::array<Symbol, 7> ratios{{{"velocity/omega0", "θ'/ω₀", Quantity::angle},
+                                        {"velocity_over_omega0", "θ'/ω₀", Quantity::angle},
+                                        {"M/k", "M/k", Quantity::angle},
+                                        {"M_over_k", "M/k", Quantity::angle},
+                                        {"friction_over_k", "friction/k", Quantity::angle},
+                                        {"damping_over_k", "damping/k", Quantity::angle},
+                                        {"omega", "ω", Quantity::other}}};
 
 /// The symbol of a column, that of "load.velocity" without the body.
 Symbol symbol_of(std::string_view name) {
     const std::string_view inner = name.substr(name.rfind('.') + 1);
+    if (const motion::ColumnKind* kind = motion::find_column_kind(inner)) {
+        return {kind->name, kind->symbol, kind->quantity};
+    }
     const auto* found =
-        std::find_if(symbols.begin(), symbols.end(), [inner](const Symbol& symbol) { return symbol.name == inner; });
-    return found != symbols.end() ? *found
-                                  : Symbol{name, name, name.ends_with("/k") ? Measure::angle : Measure::unknown};
+        std::find_if(ratios.begin(), ratios.end(), [inner](const Symbol& symbol) { return symbol.name == inner; });
+    return found != ratios.end() ? *found
+                                 : Symbol{name, name, name.ends_with("/k") ? Quantity::angle : Quantity::other};
 }
 
 /// The symbol with the body or link before it: "load θ'".
@@ -51,24 +47,8 @@ std::string full_symbol(std::string_view name) {
     return named ? fmt::format("{} {}", name.substr(0, point), symbol.symbol) : std::string(symbol.symbol);
 }
 
-std::string unit_of(const RunData& run, Measure measure) {
-    switch (measure) {
-        case Measure::time:
-            return run.units.t;
-        case Measure::angle:
-            return run.units.theta;
-        case Measure::speed:
-            return run.units.speed();
-        case Measure::torque:
-            return run.units.M;
-        case Measure::unknown:
-            break;
-    }
-    return "";
-}
-
 std::string axis_label(const RunData& run, std::string_view name) {
-    return model::of_unit(full_symbol(name), unit_of(run, symbol_of(name).measure));
+    return model::of_unit(full_symbol(name), run.units.of(symbol_of(name).quantity));
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
@@ -173,12 +153,12 @@ std::vector<Mark> marks_of_events(const motion::Run& run) {
 }
 
 /// Groups names by quantity, in the order of their first members.
-std::vector<std::vector<std::string>> by_measure(const std::vector<std::string>& names) {
+std::vector<std::vector<std::string>> by_quantity(const std::vector<std::string>& names) {
     std::vector<std::vector<std::string>> groups;
     for (const std::string& name : names) {
-        const Measure measure = symbol_of(name).measure;
-        const auto same = std::find_if(groups.begin(), groups.end(), [measure](const std::vector<std::string>& group) {
-            return symbol_of(group.front()).measure == measure;
+        const Quantity quantity = symbol_of(name).quantity;
+        const auto same = std::find_if(groups.begin(), groups.end(), [quantity](const std::vector<std::string>& group) {
+            return symbol_of(group.front()).quantity == quantity;
         });
         same != groups.end() ? same->push_back(name) : groups.push_back({name});
     }
@@ -208,11 +188,11 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
     if (names.size() == 1) {
         figure.y.label = axis_label(run, names.front());
     } else if (alike) {
-        figure.y.label = model::of_unit(std::string(first.symbol), unit_of(run, first.measure));
+        figure.y.label = model::of_unit(std::string(first.symbol), run.units.of(first.quantity));
     } else {
         figure.y.label =
-            first.measure == Measure::torque ? model::of_unit("torque", run.units.M) : unit_of(run, first.measure);
-        figure.y.names_curves = first.measure != Measure::torque;
+            first.quantity == Quantity::torque ? model::of_unit("torque", run.units.M) : run.units.of(first.quantity);
+        figure.y.names_curves = first.quantity != Quantity::torque;
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.result);
@@ -237,7 +217,7 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
     }
     std::vector<Figure> figures;
     const std::vector<std::vector<std::string>> all{names};
-    for (const std::vector<std::string>& group : asked.axes == Axes::one ? all : by_measure(names)) {
+    for (const std::vector<std::string>& group : asked.axes == Axes::one ? all : by_quantity(names)) {
         auto figure = figure_of_columns(run, across, *x_values, group);
         if (!figure) {
             return figure.error();

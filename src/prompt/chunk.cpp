@@ -207,8 +207,7 @@ void set_ans(lua_State* L, int index) {
 /// Pushes the partial result of a run that failed or was stopped, or nil.
 void push_partial(lua_State* L) {
     lua::push_dinal_table(L);
-    lua_pushliteral(L, "partial");
-    lua_rawget(L, -2);
+    lua::push_field(L, -1, "partial");
     lua_remove(L, -2);
 }
 

@@ -17,6 +17,7 @@
 #include "help/help_text.hpp"
 #include "help/lua_words.hpp"
 #include "help/tour.hpp"
+#include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
@@ -145,13 +146,11 @@ int print_globals(lua_State* L) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     const std::vector<std::string> names = lua::users_globals(L);
     for (const std::string& name : names) {
-        lua_pushglobaltable(L);
-        lua_pushstring(L, name.c_str());
-        lua_rawget(L, -2);
+        lua::push_global(L, name);
         const std::string head = fmt::format("  {:<9} ", name);
         say_value(head + show_line(L, -1, screen, screen.width - std::min(text::columns(head), screen.width / 2) - 1) +
                   "\n");
-        lua_pop(L, 2);
+        lua_pop(L, 1);
     }
     if (names.empty()) {
         say("no variables of your own yet\n");

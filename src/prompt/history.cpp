@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include <system_error>
 
 #include "files/file.hpp"
+#include "text/words.hpp"
 
 // After <cstdio>: readline.h needs FILE.
 #include <readline/history.h>
@@ -91,13 +91,10 @@ std::string suggested(std::string_view line) {
 }
 
 LinesAbove::LinesAbove(std::string_view lines) {
-    for (std::size_t begin = 0; begin < lines.size();) {
-        const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-        if (end > begin) {
-            add_history(std::string(lines.substr(begin, end - begin)).c_str());
-            ++count_;
-        }
-        begin = end + 1;
+    for (const std::string_view line : text::split(lines, '\n')) {
+        if (line.empty()) continue;
+        add_history(std::string(line).c_str());
+        ++count_;
     }
     using_history();
 }

@@ -166,26 +166,24 @@ std::optional<std::string> fault_of(const Ending& ending, const std::string& des
 
 /// The words of a line of --lab-marks after the script's name, which has no quotes here: number, question, verdict,
 /// tries, value, hint.
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
     std::size_t at = line.find("\",");
     at = at == std::string::npos ? line.size() : at + 2;
     for (int i = 0; i < 5 && at < line.size(); ++i) {
         const std::size_t end = std::min(line.find(',', at), line.size());
-        words.push_back(line.substr(at, end - at));
+        words.emplace_back(line.substr(at, end - at));
         at = end + 1;
     }
-    if (at < line.size()) words.emplace_back(text::trimmed(std::string_view(line).substr(at), "\""));
+    if (at < line.size()) words.emplace_back(text::trimmed(line.substr(at), "\""));
     return words;
 }
 
 void read_marks(HandIn& hand_in, const std::string& file) {
     const auto lines = files::read_file(file);
     const std::string text = lines ? *lines : "";
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const auto words = words_of(text.substr(at, end - at));
-        at = end + 1;
+    for (const std::string_view line : text::split(text, '\n')) {
+        const auto words = words_of(line);
         if (words.size() < 6 || words[2] == "begun" || words[1] == "0") continue;
         Answer& answer = hand_in.answers[std::strtoll(words[0].c_str(), nullptr, 10)][words[1]];
         answer.right = words[2] == "right";
@@ -232,8 +230,8 @@ void choose_number(HandIn& hand_in) {
     }
 }
 
-std::string sheet_of(const std::string& question) {
-    return question.substr(0, question.find_first_not_of("0123456789"));
+std::string sheet_of(std::string_view question) {
+    return std::string(question.substr(0, question.find_first_not_of("0123456789")));
 }
 
 std::set<std::string> sheets_of(const HandIn& hand_in) {
@@ -333,11 +331,8 @@ std::vector<std::string> questions_of(const std::vector<HandIn>& all, const std:
     std::set<std::string> tried;
     for (const HandIn& hand_in : all) tried.merge(sheets_of(hand_in));
     std::vector<std::string> questions;
-    for (std::size_t at = 0; at < names.size();) {
-        const std::size_t end = std::min(names.find(' ', at), names.size());
-        if (const std::string name = names.substr(at, end - at); tried.contains(sheet_of(name)))
-            questions.push_back(name);
-        at = end + 1;
+    for (const std::string_view name : text::split(names, ' ')) {
+        if (tried.contains(sheet_of(name))) questions.emplace_back(name);
     }
     return questions;
 }

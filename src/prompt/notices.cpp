@@ -55,12 +55,9 @@ std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
     return count;
 }
 
-/// Raw: must not run the code of a strict _G.
 bool is_global(lua_State* L, std::string_view name) {
-    lua_pushglobaltable(L);
-    lua_pushlstring(L, name.data(), name.size());
-    const bool there = lua_rawget(L, -2) != LUA_TNIL;
-    lua_pop(L, 2);
+    const bool there = lua::push_global(L, name) != LUA_TNIL;
+    lua_pop(L, 1);
     return there;
 }
 

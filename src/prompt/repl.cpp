@@ -8,6 +8,7 @@
 #include <csignal>
 
 #include "files/file.hpp"
+#include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/tokens.hpp"
@@ -27,13 +28,10 @@ namespace dinal::prompt {
 
 namespace {
 
-/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw, because of a strict _G.
+/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours.
 std::string prompt_text(lua_State* L, const char* global, const char* ours) {
-    lua_pushglobaltable(L);
-    lua_pushstring(L, global);
-    lua_rawget(L, -2);
-    std::string text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : ours;
-    lua_pop(L, 2);
+    std::string text = lua::push_global(L, global) == LUA_TSTRING ? lua_tostring(L, -1) : ours;
+    lua_pop(L, 1);
     return text;
 }
 
@@ -138,10 +136,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
 Reading take_copied(Session& session, std::string_view text) {
     std::string open;
     bool is_open = false;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line = text.substr(begin, end - begin);
-        begin = end + 1;
+    for (const std::string_view line : text::split(text, '\n')) {
         const auto code = behind_prompt(line);
         if (!code && !is_open) {
             continue;

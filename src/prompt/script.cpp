@@ -44,10 +44,8 @@ bool was_interrupted = false;
 void hand_over_partial(lua_State* L) {
     was_interrupted = true;
     lua::push_dinal_table(L);
-    lua_pushliteral(L, "on_interrupt");
-    if (lua_rawget(L, -2) == LUA_TFUNCTION) {
-        lua_pushliteral(L, "partial");
-        lua_rawget(L, -3);
+    if (lua::push_field(L, -1, "on_interrupt") == LUA_TFUNCTION) {
+        lua::push_field(L, -2, "partial");
         if (call(L, 1, 0) != LUA_OK) {
             complain(take_text(L));
         }

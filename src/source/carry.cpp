@@ -68,8 +68,7 @@ void Carrier::note_library(const std::string& library) {
     while (lua_next(from_, -2) != 0) {
         if (lua_type(from_, -2) == LUA_TSTRING) {
             const std::string member = lua_tostring(from_, -2);
-            lua_pushlstring(to_, member.data(), member.size());
-            lua_rawget(to_, -2);
+            lua::push_field(to_, -1, member);
             note_standard(library, member);
             lua_pop(to_, 1);
         }
@@ -82,8 +81,7 @@ void Carrier::push_place(const Place& place) {
     lua_pushglobaltable(to_);
     for (const std::string& name : {place.module, place.name}) {
         if (name.empty() || name == "_G") continue;
-        lua_pushlstring(to_, name.data(), name.size());
-        lua_rawget(to_, -2);
+        lua::push_field(to_, -1, name);
         lua_remove(to_, -2);
     }
 }
@@ -299,13 +297,9 @@ bool Carrier::variables(int index, int copy) {
 /// Carries a global that a function names, if it is a user's.
 bool Carrier::global(const std::string& name) {
     if (!globals_.insert(name).second) return true;
-    lua_pushglobaltable(from_);
-    lua::push_text(from_, name);
-    lua_rawget(from_, -2);
+    const int type = lua::push_global(from_, name);
     lua::push_standard_globals(from_);
-    lua::push_text(from_, name);
-    lua_rawget(from_, -2);
-    const int type = lua_type(from_, -3);
+    lua::push_field(from_, -1, name);
     const bool standard = type == LUA_TNIL || lua_rawequal(from_, -1, -3) != 0 || name == "dinal" || name == "_G";
     lua_pop(from_, 2);
     bool good = true;
@@ -322,7 +316,7 @@ bool Carrier::global(const std::string& name) {
             lua_pop(to_, 1);
         }
     }
-    lua_pop(from_, 2);
+    lua_pop(from_, 1);
     return good;
 }
 

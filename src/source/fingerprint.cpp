@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <optional>
 #include <tuple>
 #include <type_traits>
 
@@ -246,14 +245,11 @@ void Fingerprint::function(int index) {
 
 void Fingerprint::global(const std::string& name) {
     const int top = lua_gettop(L_);
-    lua_pushglobaltable(L_);
-    lua::push_text(L_, name);
-    lua_rawget(L_, -2);
+    lua::push_global(L_, name);
     lua::push_standard_globals(L_);
-    lua::push_text(L_, name);
-    lua_rawget(L_, -2);
+    lua::push_field(L_, -1, name);
     const bool standard = lua_rawequal(L_, -1, -3) != 0 || name == "dinal" || name == LUA_GNAME;
-    join(standard ? 0 : reference(top + 2));
+    join(standard ? 0 : reference(top + 1));
     lua_settop(L_, top);
 }
 

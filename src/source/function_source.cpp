@@ -6,6 +6,7 @@
 #include "files/file.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
 #include "text/characters.hpp"
 
@@ -14,11 +15,6 @@ namespace {
 
 const char kept_key = 0;   // registry key of kept texts: name -> list of texts
 const char known_key = 0;  // registry key of results: function -> its text
-
-int append(lua_State*, const void* piece, std::size_t size, void* text) {
-    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
-    return 0;
-}
 
 /// Distinguishes functions: lines, names, and bytes of code.
 struct Shape {
@@ -34,9 +30,7 @@ struct Shape {
             upvalues.emplace_back(name);
             lua_pop(L, 1);
         }
-        lua_pushvalue(L, index);
-        lua_dump(L, append, &code, 1);
-        lua_pop(L, 1);
+        code = lua::dumped_function(L, index, true);
     }
     [[nodiscard]] bool like(const Shape& other) const {
         return about.linedefined == other.about.linedefined && about.lastlinedefined == other.about.lastlinedefined &&
@@ -153,15 +147,7 @@ std::optional<std::string> whole_chunk(std::string_view source) {
 
 /// Pushes the weak table of texts by function; false for one whose text is not at hand.
 void push_known(lua_State* L) {
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &known_key) == LUA_TTABLE) return;
-    lua_pop(L, 1);
-    lua_newtable(L);
-    lua_createtable(L, 0, 1);
-    lua_pushstring(L, "k");
-    lua_setfield(L, -2, "__mode");
-    lua_setmetatable(L, -2);
-    lua_pushvalue(L, -1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &known_key);
+    lua::push_weak_table(L, &known_key);
 }
 
 }  // namespace

@@ -7,9 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "api/lua_run.hpp"

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -105,18 +106,18 @@ struct Call {
 std::optional<Error> complaint(const Option& option, const OptionValue& value);
 
 namespace detail {
-template <std::size_t n>
-std::array<char, n> row_count(const Option (&)[n]);
-template <std::size_t n>
-std::array<char, n> row_count(const std::array<Option, n>&);
+template <class Row, std::size_t n>
+std::array<char, n> row_count(const Row (&)[n]);
+template <class Row, std::size_t n>
+std::array<char, n> row_count(const std::array<Row, n>&);
 template <class Rows>
 inline constexpr std::size_t rows_in = std::tuple_size_v<decltype(row_count(std::declval<const Rows&>()))>;
 }  // namespace detail
 
-/// Concatenates rows, for calls that share some.
+/// Concatenates rows, such as the options of calls that share some.
 template <class... Rows>
-constexpr std::array<Option, (detail::rows_in<Rows> + ...)> joined(const Rows&... parts) {
-    std::array<Option, (detail::rows_in<Rows> + ...)> all{};
+constexpr auto joined(const Rows&... parts) {
+    std::array<std::common_type_t<std::ranges::range_value_t<Rows>...>, (detail::rows_in<Rows> + ...)> all{};
     auto place = all.begin();
     ((place = std::copy(std::begin(parts), std::end(parts), place)), ...);
     return all;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dinal::text {
 
@@ -28,6 +29,15 @@ inline std::string lower(std::string_view text) {
 /// Returns ".csv" for "Run.CSV"; empty if the name has no extension.
 inline std::string ending_of(std::string_view file) {
     return lower(file.substr(std::min(file.rfind('.'), file.size())));
+}
+
+/// Returns the parts between separators; some may be empty.
+inline std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t begin = 0; begin <= text.size(); begin += parts.back().size() + 1) {
+        parts.push_back(text.substr(begin, text.find(separator, begin) - begin));
+    }
+    return parts;
 }
 
 /// Returns the text without these characters at its ends.

@@ -157,6 +157,14 @@ SlidingMotion DenHartog::sliding(double friction_ratio, double swing) const {
 }
 
 // swing = sqrt(Phi^2 - (gamma Y'/r)^2) is amplitude - gamma Y: the harmonic part at the turn.
+/// The swing of a motion without stops if it is beyond this; otherwise none.
+std::optional<double> DenHartog::swing_beyond(double least, double friction_ratio) const {
+    const double phi = magnification(r_, modes_.zeta());
+    const double lost = friction_ratio * std::fabs(velocity_) / r_;
+    const double swing = std::sqrt(phi - lost) * std::sqrt(phi + lost);
+    return lost < phi && swing > least ? std::optional(swing) : std::nullopt;
+}
+
 std::optional<SlidingMotion> DenHartog::motion(double friction_ratio, double breakaway_ratio) const {
     if (r_ == 0) {
         if (breakaway_ratio > 0) return {};
@@ -167,22 +175,15 @@ std::optional<SlidingMotion> DenHartog::motion(double friction_ratio, double bre
         constexpr double unbounded = std::numeric_limits<double>::infinity();
         return SlidingMotion{unbounded, pi / 2, unbounded, pi / 2};
     }
-    const double phi = magnification(r_, modes_.zeta());
-    const double lost = friction_ratio * std::fabs(velocity_) / r_;
-    if (!(lost < phi)) return {};
-    const double swing = std::sqrt(phi - lost) * std::sqrt(phi + lost);
-    if (!(swing > excess_at_turn(friction_ratio, breakaway_ratio))) return {};
-    if (!(swing > friction_ratio * greatest_excess())) return {};
-    return sliding(friction_ratio, swing);
+    const auto swing = swing_beyond(excess_at_turn(friction_ratio, breakaway_ratio), friction_ratio);
+    if (!swing || !(*swing > friction_ratio * greatest_excess())) return {};
+    return sliding(friction_ratio, *swing);
 }
 
 std::optional<SlidingMotion> DenHartog::without_stops(double friction_ratio) const {
-    const double phi = magnification(r_, modes_.zeta());
-    const double lost = friction_ratio * std::fabs(velocity_) / r_;
-    if (r_ == 0 || grows() || !(lost < phi)) return {};
-    const double swing = std::sqrt(phi - lost) * std::sqrt(phi + lost);
-    if (!(swing > excess_at_turn(friction_ratio, friction_ratio))) return {};
-    return sliding(friction_ratio, swing);
+    if (r_ == 0 || grows()) return {};
+    const auto swing = swing_beyond(excess_at_turn(friction_ratio, friction_ratio), friction_ratio);
+    return swing ? std::optional(sliding(friction_ratio, *swing)) : std::nullopt;
 }
 
 double DenHartog::stop_boundary(double breakaway_factor) const {

@@ -45,6 +45,7 @@ private:
     [[nodiscard]] double refined_peak(double from, double to) const;
     [[nodiscard]] double excess_at_turn(double friction, double breakaway) const;
     [[nodiscard]] bool grows() const;
+    [[nodiscard]] std::optional<double> swing_beyond(double least, double friction_ratio) const;
     [[nodiscard]] SlidingMotion sliding(double friction_ratio, double swing) const;
 
     double r_;

@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <memory>
-#include <numbers>
 #include <random>
 #include <string>
 

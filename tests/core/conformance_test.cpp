@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <variant>
 #include <vector>
 
 #include "support/catch.hpp"

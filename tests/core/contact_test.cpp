@@ -2,7 +2,6 @@
 #include "motion/contact.hpp"
 
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "model/event.hpp"

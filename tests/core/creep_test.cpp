@@ -1,5 +1,4 @@
 // A mass that creeps is still on its way: what moves it next finds the friction of sliding, not that of rest.
-#include <cmath>
 #include <vector>
 
 #include "support/catch.hpp"

@@ -1,7 +1,5 @@
 // What exact alone promises; tests/core/oracle_test.cpp has its motions.
-#include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>

@@ -12,7 +12,6 @@
 #include "model/sticking.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
-#include "support/within.hpp"
 
 namespace dinal::laws_test {
 

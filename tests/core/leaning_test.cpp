@@ -1,6 +1,5 @@
 // Runs of systems with walls that have more in them, and what begins at a wall.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

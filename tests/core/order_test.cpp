@@ -1,6 +1,7 @@
 // What is told between the rows, whatever rows are asked for, and after a thousand periods. That rk4 is of fourth order
 // is in the tolerances of conformance_test.cpp.
 #include <cmath>
+#include <functional>
 
 #include "motion/engine/affine_step.hpp"
 #include "support/catch.hpp"
@@ -31,54 +32,55 @@ double rounding_of_time(const ReferenceSystem& s, const Integrator& integrator) 
     return steps * 1.2e-16 * s.fastest_rate() * (s.window.end - s.window.start);
 }
 
-}  // namespace
-
-TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dopri5][dinal1989][rows]") {
+/// Each reference system with each integrator whose steps do not depend on rows, of about the length h.
+void for_each_run(const std::function<void(const ReferenceSystem&, const Integrator&, double h)>& look) {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
         const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
         const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dopri5{1e-8}, Dinal1989{.h = h}};
         for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
-            const double dt = (s.window.end - s.window.start) / 61.3;
-            const Run with_rows = must_run(s, Grid::every(dt), integrator);
-            const Run without = must_run(s, Grid::none(), integrator);
-            for (Eigen::Index i = 0; i < with_rows.size(); ++i) {
-                const auto y = without.at(with_rows.rows(i, 0));
-                REQUIRE(y);
-                INFO(with_rows.rows(i, 0) << ": off by " << distance(s, *y, with_rows, i));
-                // M is sampled in blocks, and the last bit of a block's sines depends on where the block begins.
-                REQUIRE(distance(s, *y, with_rows, i) <= 1e-15 + rounding_of_time(s, integrator));
-            }
+            look(s, integrator, h);
         }
     }
 }
 
-TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dopri5][dinal1989][rows][long]") {
-    for (const ReferenceSystem& s : reference_systems()) {
-        CAPTURE(s.name);
-        const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
-        const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dopri5{1e-8}, Dinal1989{.h = h}};
-        for (const Integrator& integrator : all) {
-            CAPTURE(integrator.index());
-            const Run none = must_run(s, Grid::none(), integrator);
-            const Run some = must_run(s, Grid::every(7.3 * h), integrator);
-            const Run many = must_run(s, Grid::every(0.31 * h), integrator);
-            const Run steps = must_run(s, Grid::every(h), integrator);
-            const std::vector<const Run*> others{&some, &many, &steps};
-            for (const Run* other : others) {
-                REQUIRE(none.events.size() == other->events.size());
-                for (std::size_t i = 0; i < none.events.size(); ++i) {
-                    REQUIRE(none.events[i].t == other->events[i].t);
-                    REQUIRE(none.events[i].theta == other->events[i].theta);
-                }
-                const Eigen::Index last = other->size() - 1;
-                const State at_end{some.rows(some.size() - 1, 1), some.rows(some.size() - 1, 2)};
-                REQUIRE(other->rows(last, 0) == s.window.end);
-                REQUIRE(distance(s, at_end, *other, last) <= rounding_of_time(s, integrator));
-            }
+}  // namespace
+
+TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dopri5][dinal1989][rows]") {
+    for_each_run([](const ReferenceSystem& s, const Integrator& integrator, double /*h*/) {
+        const double dt = (s.window.end - s.window.start) / 61.3;
+        const Run with_rows = must_run(s, Grid::every(dt), integrator);
+        const Run without = must_run(s, Grid::none(), integrator);
+        for (Eigen::Index i = 0; i < with_rows.size(); ++i) {
+            const auto y = without.at(with_rows.rows(i, 0));
+            REQUIRE(y);
+            INFO(with_rows.rows(i, 0) << ": off by " << distance(s, *y, with_rows, i));
+            // M is sampled in blocks, and the last bit of a block's sines depends on where the block begins.
+            REQUIRE(distance(s, *y, with_rows, i) <= 1e-15 + rounding_of_time(s, integrator));
         }
-    }
+    });
+}
+
+TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dopri5][dinal1989][rows][long]") {
+    for_each_run([](const ReferenceSystem& s, const Integrator& integrator, double h) {
+        const Run none = must_run(s, Grid::none(), integrator);
+        const Run some = must_run(s, Grid::every(7.3 * h), integrator);
+        const Run many = must_run(s, Grid::every(0.31 * h), integrator);
+        const Run steps = must_run(s, Grid::every(h), integrator);
+        const std::vector<const Run*> others{&some, &many, &steps};
+        for (const Run* other : others) {
+            REQUIRE(none.events.size() == other->events.size());
+            for (std::size_t i = 0; i < none.events.size(); ++i) {
+                REQUIRE(none.events[i].t == other->events[i].t);
+                REQUIRE(none.events[i].theta == other->events[i].theta);
+            }
+            const Eigen::Index last = other->size() - 1;
+            const State at_end{some.rows(some.size() - 1, 1), some.rows(some.size() - 1, 2)};
+            REQUIRE(other->rows(last, 0) == s.window.end);
+            REQUIRE(distance(s, at_end, *other, last) <= rounding_of_time(s, integrator));
+        }
+    });
 }
 
 TEST_CASE("an affine step is the step of the four stages of the classical method") {

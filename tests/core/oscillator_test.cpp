@@ -1,7 +1,6 @@
 #include "model/oscillator.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "support/catch.hpp"

@@ -1,7 +1,6 @@
 // What only the spectral integrator has to answer for: functions that hide their jumps, feedback, and where it gives
 // up.
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 

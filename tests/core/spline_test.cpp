@@ -3,7 +3,6 @@
 #include "model/terms/spline.hpp"
 
 #include <Eigen/LU>
-#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <string>
 
 #include "fuzz/lua_runner.hpp"
 

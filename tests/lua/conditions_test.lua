@@ -139,19 +139,28 @@ test("functions that are equal make the same motion, however their conditions ar
     end
 end)
 
+--- A mass under a state of this rate.
+local function under_state(rate)
+    return system { I = 1, k = 4, C = 0.02, Rd = 0.1, Re = 0.15 }:simulate {
+        M = function(_, _, _, state) return state.z end, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
+        states = { z = { start = 0.1, rate = rate } },
+    }
+end
+
+--- Two bodies under this load of the second.
+local function of_two(M)
+    local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.1, Re = 0.15 }, b = { I = 0.5 } }, links = { ab = { "a", "b", k = 3, C = 0.1 } } }
+    return rig:simulate { M = { b = M }, theta0 = { a = 0.3, b = 0.1 }, velocity0 = { a = 0.1, b = -0.2 }, t_end = 4 }
+end
+
 test("a condition of |theta| is found on both sides of theta = 0, for a rate and between bodies", function()
     local function visits(theta) return math.abs(theta) ^ 0.5 > 0.172 end
     local function equal_ones(theta) return math.abs(theta) > 0.172 ^ 2 end
     local one, two = {}, {}
     for i, fast in ipairs { visits, equal_ones } do
-        local run = system { I = 1, k = 4, C = 0.02, Rd = 0.1, Re = 0.15 }:simulate {
-            M = function(_, _, _, state) return state.z end, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
-            states = { z = { start = 0.1, rate = function(_, theta) return fast(theta) and 0.1 or 3 end } },
-        }
+        local run = under_state(function(_, theta) return fast(theta) and 0.1 or 3 end)
         one[i] = run.theta[#run.theta]
-        local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.1, Re = 0.15 }, b = { I = 0.5 } }, links = { ab = { "a", "b", k = 3, C = 0.1 } } }
-        local M = function(_, theta, velocity) return fast(theta.b - theta.a / 2) and -velocity.b or -0.2 end
-        local both = rig:simulate { M = { b = M }, theta0 = { a = 0.3, b = 0.1 }, velocity0 = { a = 0.1, b = -0.2 }, t_end = 4 }
+        local both = of_two(function(_, theta, velocity) return fast(theta.b - theta.a / 2) and -velocity.b or -0.2 end)
         two[i] = both.a.theta[#both.a.theta]
     end
     near(one[1], one[2], 1e-11)
@@ -165,8 +174,7 @@ test("what jumps along with a condition, or only touches its limit there, does n
         function(_, _, velocity) return math.abs(velocity.b) > 0 and 0.1 or 0.5 end,
         function(_, _, _) return 0.1 end,
     } do
-        local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.1, Re = 0.15 }, b = { I = 0.5 } }, links = { ab = { "a", "b", k = 3, C = 0.1 } } }
-        local run = rig:simulate { M = { b = M }, theta0 = { a = 0.3, b = 0.1 }, velocity0 = { a = 0.1, b = -0.2 }, t_end = 4 }
+        local run = of_two(M)
         equal(run.status, "end")
         ends[i] = run.b.theta[#run.b.theta]
     end
@@ -180,10 +188,7 @@ test("what a long stretch has crossed is crossed for the short one behind it, to
         function(t, theta) return theta < 0 and math.min(-t, -1) or -t end,
         function(t, theta) return theta < 0 and t < 1 and -1 or -t end,
     } do
-        local run = system { I = 1, k = 4, C = 0.02, Rd = 0.1, Re = 0.15 }:simulate {
-            M = function(_, _, _, state) return state.z end, theta0 = 0.3, velocity0 = 0.1, t_end = 4,
-            states = { z = { start = 0.1, rate = function(t, theta, _, state) return math.sin(low(t, theta)) - state.z end } },
-        }
+        local run = under_state(function(t, theta, _, state) return math.sin(low(t, theta)) - state.z end)
         equal(run.status, "end", i)
         ends[i] = run.theta[#run.theta]
     end

@@ -15,6 +15,7 @@ local sys = system { I = 1, k = 4, C = 0.1, Rd = 0.1, Re = 0.15 }
 local M = excitation.harmonic { amplitude = 1.3, omega = 1.1 }
 local run = sys:simulate { M = M, theta0 = 0.3, t_end = 40, dt = 0.05 }
 local guess = system { I = 1.2, k = 3, C = 0.05, Rd = 0.2, Re = 0.2 }
+local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
 
 test("velocities alone tell the system, with gaps in them", function()
     local v = {}
@@ -57,7 +58,6 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     equal(fit.misfit, "velocity")
     has(fit, "standard errors are left out")
 
-    local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
     fit = identify { data = record(r, 6, 0.003), M = M, system = uneven(0.1, 0.1),
         free = { "friction.forward.Rd", "friction.backward.Rd", "k" } }
@@ -149,7 +149,6 @@ test("starts and offsets of bodies are given by name, a run of several bodies is
 end)
 
 test("Re goes with Rd where both are one number, of each way of an asymmetric law, too", function()
-    local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
     local fit = identify { data = r, M = M, system = uneven(0.1, 0.1), free = { "friction.forward.Rd", "friction.backward.Rd" } }
     near(fit["friction.forward.Rd"], 0.05, 1e-6)

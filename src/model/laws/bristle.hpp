@@ -11,7 +11,7 @@ namespace dinal::model::laws {
 
 /// torque = stiffness z + damping z' + viscous v with z' = v - stiffness |v| z/g(v), g(v) = Rd + (Re - Rd)
 /// exp(-(v/speed)^2).
-struct Bristle {
+struct Bristle final : BendingLaw {
     double kinetic = 0;                    ///< Rd
     std::optional<double> breakaway = {};  ///< Re >= Rd
     double speed = std::numeric_limits<double>::infinity();
@@ -25,8 +25,10 @@ struct Bristle {
         const double x = v / speed;
         return kinetic + (greatest() - kinetic) * std::exp(-x * x);
     }
-    [[nodiscard]] double bend_rate(double v, double z) const { return v - stiffness * std::fabs(v) * z / steady(v); }
-    [[nodiscard]] double torque(double v, double z) const {
+    [[nodiscard]] double bend_rate(double v, double z) const override {
+        return v - stiffness * std::fabs(v) * z / steady(v);
+    }
+    [[nodiscard]] double torque(double v, double z) const override {
         return stiffness * z + damping * bend_rate(v, z) + viscous * v;
     }
     [[nodiscard]] double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }

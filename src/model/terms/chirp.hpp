@@ -28,7 +28,6 @@ struct Chirp {
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + duration}); }
     [[nodiscard]] double constant_from() const { return to > 0 ? never : from > 0 ? at + duration : -never; }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {

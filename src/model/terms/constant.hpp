@@ -14,7 +14,6 @@ struct Constant {
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const { return -never; }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {

@@ -24,7 +24,6 @@ struct Exponential {
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
     [[nodiscard]] double constant_from() const { return never; }
     [[nodiscard]] double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {

@@ -21,7 +21,6 @@ struct Gaussian {
         return std::nextafter(at + vanished * sigma, never);
     }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const {
         constexpr double visible = 10;  // exp(-10^2 / 2) = 2e-22 is lost in rounding
         return {at - visible * sigma, at + visible * sigma, sigma / 2};

@@ -31,7 +31,6 @@ struct Polynomial {
                                                                                                              : never;
     }
     [[nodiscard]] double most() const { return coefficients.size() < 2 ? std::fabs(value(0)) : never; }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {

@@ -15,7 +15,6 @@ struct Pulse {
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
     [[nodiscard]] double constant_from() const { return at + width; }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {

@@ -20,7 +20,6 @@ struct Ramp {
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + duration}); }
     [[nodiscard]] double constant_from() const { return at + duration; }
     [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * duration); }
-    [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {

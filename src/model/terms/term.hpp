@@ -45,6 +45,7 @@ struct TermText {
 ///     std::optional<text::Error> complaint() const;   an error that ranges cannot express
 ///     void closed_form(double inside, Sum& sum) const;   adds its formula to any Sum (closed_form.hpp)
 ///     double value(double t, double rest = 0) const;   at t + rest, for terms so quick that the rounding of t matters
+///     double repeats_after() const;   its period, if it has one
 template <class T>
 concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.value(x) } -> std::same_as<double>;
@@ -54,8 +55,6 @@ concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.constant_from() } -> std::same_as<double>;
     /// An upper bound of |value|; `never` if unknown.
     { term.most() } -> std::same_as<double>;
-    /// Its period; 0 if it has none.
-    { term.repeats_after() } -> std::same_as<double>;
     { term.detail() } -> std::same_as<Detail>;
     /// Delays the term by x.
     own.delay_by(x);
@@ -71,6 +70,16 @@ double value_near(const T& term, double t, double rest) {
         return term.value(t, rest);
     } else {
         return term.value(t);
+    }
+}
+
+/// The period of a term; 0 if it has none.
+template <class T>
+double period_of(const T& term) {
+    if constexpr (requires { term.repeats_after(); }) {
+        return term.repeats_after();
+    } else {
+        return 0;
     }
 }
 

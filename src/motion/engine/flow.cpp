@@ -463,7 +463,7 @@ void Flow::add_turns(const Segment& s, std::vector<double>& places) const {
         const model::Joint& joint = mechanics_.system().joints[i];
         const model::Friction& law = joint.friction.law;
         const bool users = joint.friction.function != nullptr ||
-                           (joint.friction.bristle() == nullptr && law.depends_on_speed() && law.ranges() == 0);
+                           (joint.friction.bending() == nullptr && law.depends_on_speed() && law.ranges() == 0);
         if (joint.spring.none() && !users) continue;
         const Nodes velocity = mechanics_.slips(i, s.y, users ? s.belts[i] : Nodes{});
         const Series series = cheb::fit(velocity);

@@ -348,7 +348,7 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
             const auto turned = [this, j](const Moment& at) { return angle(j, at.y); };
             contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, true});
         }
-        contact.bristle = friction.bristle();
+        contact.bristle = friction.bending();
         const bool bends = contact.bristle != nullptr;
         contact.native = friction.is_constant() && !contact.law && friction.sliders.empty();
         nonlinear_ |= !friction.sliders.empty();
@@ -589,7 +589,7 @@ void Mechanics::rates(const Moment& at, double* out, const Mode* mode) const {
 }
 
 double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double belt) const {
-    const laws::Bristle* own = bristle(joint);
+    const model::BendingLaw* own = bristle(joint);
     if (own == nullptr) return 0;
     const auto place = std::find(bristles_.begin(), bristles_.end(), joint) - bristles_.begin();
     const double z = at.y[2 * bodies() + drive_.states.size() + static_cast<std::size_t>(place)];

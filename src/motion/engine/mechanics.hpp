@@ -127,8 +127,8 @@ public:
     [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size() + sliders_.size(); }
     [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
     [[nodiscard]] std::size_t events() const { return drive_.events.size(); }
-    /// The bristle law of a joint, or nullptr.
-    [[nodiscard]] const model::laws::Bristle* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
+    /// The law of a joint if it has an internal state, or nullptr.
+    [[nodiscard]] const model::BendingLaw* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
     [[nodiscard]] const std::vector<std::size_t>& bristles() const { return bristles_; }
     /// A Jenkins element: a dry slider behind a spring. `bend` is the index of its deflection in y.
@@ -350,7 +350,7 @@ private:
     struct Contact {
         std::array<Signal, 2> sliding, holding;
         Signal normal;
-        const model::laws::Bristle* bristle = nullptr;
+        const model::BendingLaw* bristle = nullptr;
         std::optional<Piecewise> law = {};     ///< the user's friction law
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;

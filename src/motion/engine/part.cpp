@@ -76,7 +76,7 @@ model::Motion way_at_stop(const Mode& mode, std::size_t joint) {
 }
 
 bool rubs(const model::Joint& joint) {
-    return !joint.friction.none() && joint.friction.bristle() == nullptr;
+    return !joint.friction.none() && joint.friction.bending() == nullptr;
 }
 
 /// Returns whether every turn of the joint's angle is an event. Not on a belt, nor without own dry friction if its
@@ -93,12 +93,11 @@ bool turns_are_events(const model::System& system, const model::Drive& drive, st
 
 /// The columns of a joint, without its name before them.
 std::vector<std::string> names_at(const model::System& system, const model::Drive& drive, std::size_t joint) {
-    std::vector<std::string> names = column_names();
-    if (system.is_link(joint)) {
-        names = {"t", "theta", "velocity", "torque", "friction"};
-    } else if (system.bodies[joint].moved) {
-        names.emplace_back("torque");
-    }
+    const auto columns = columns_of(system.is_link(joint));
+    std::vector<std::string> names;
+    names.reserve(columns.size() + 1 + drive.states.size());
+    for (const ColumnKind& kind : columns) names.emplace_back(kind.name);
+    if (!system.is_link(joint) && system.bodies[joint].moved) names.emplace_back(column::torque.name);
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     return names;
 }

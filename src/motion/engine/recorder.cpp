@@ -173,13 +173,13 @@ bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
 void Recorder::put_row(double t, const model::State& y, double M, double friction) {
     double* cell = cells_ + next_row_;
     const std::size_t stride = problem_.rows.count();
-    const double damping = -problem_.system.joints[0].damping * y.velocity;
+    const AtRow at{t, y, M, friction, problem_.system.joints[0].damping};
     const auto put = [&](double value) {
         *cell = value == 0 ? 0 : value;
         cell += stride;
     };
-    for (const double value : {t, y.theta, y.velocity, M, friction, damping}) put(value);
-    const double all = M + friction + damping - problem_.system.joints[0].stiffness * y.theta;
+    for_each_column<body_columns>([&](std::size_t /*c*/, auto value) { put(value(at)); });
+    const double all = M + friction + column::damping.value(at) - problem_.system.joints[0].stiffness * y.theta;
     if (!problem_.joined_elsewhere) put(all / problem_.system.bodies[0].inertia);
     ++next_row_;
 }
@@ -211,13 +211,15 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         return std::isfinite(value);
     };
     bool good = put(t);
+    AtRow row{.t = t};
+    const auto put_column = [&](std::size_t c, auto value) { good = (c == 0 || put(value(row))) && good; };
     for (std::size_t i = 0; i < n(); ++i) {
-        good = put(y[i]) && good;
-        good = put(y[n() + i]) && good;
         const std::optional<double> known = sampled.at(i, x);
-        good = put(known ? *known : mechanics_.load(i, at)) && good;
-        good = put(friction(now, i, at, balance_)) && good;
-        good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
+        row.y = {y[i], y[n() + i]};
+        row.torque = known ? *known : mechanics_.load(i, at);
+        row.friction = friction(now, i, at, balance_);
+        row.damping = problem_.system.joints[i].damping;
+        for_each_column<body_columns>(put_column);
     }
     for (std::size_t j = n(); j < told_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
@@ -225,10 +227,11 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
         if (now.mode.holds(j)) torque += balance_.holding[j];
         const bool kept = now.mode.rigid[j] != 0;  // to the letter
-        good = put(kept ? now.rigid_at[j] : mechanics_.angle(j, y)) && good;
-        good = put(kept ? 0 : mechanics_.velocity(j, y)) && good;
-        good = put(torque) && good;
-        good = put(friction(now, j, at, balance_)) && good;
+        row.y = {kept ? now.rigid_at[j] : mechanics_.angle(j, y), kept ? 0 : mechanics_.velocity(j, y)};
+        row.torque = torque;
+        row.friction = friction(now, j, at, balance_);
+        row.damping = problem_.system.joints[j].damping;
+        for_each_column<link_columns>(put_column);
     }
     for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);

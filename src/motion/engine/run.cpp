@@ -434,16 +434,14 @@ void Engine::find_belt_slopes(std::optional<double> x) {
 
 std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive) {
     std::vector<std::string> names{"t"};
-    const auto add = [&](const std::string& joint, std::initializer_list<const char*> columns) {
-        for (const char* column : columns) names.push_back(joint.empty() ? column : joint + "." + column);
+    const auto add = [&](const std::string& joint, const ColumnKind& kind) {
+        names.push_back((joint.empty() ? "" : joint + ".").append(kind.name));
     };
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        const std::string& name = system.joints[j].name;
-        system.is_link(j) ? add(name, {"theta", "velocity", "torque", "friction"})
-                          : add(name, {"theta", "velocity", "M", "friction", "damping"});
+        for (const ColumnKind& kind : columns_of(system.is_link(j)).subspan(1)) add(system.joints[j].name, kind);
     }
     for (const model::Body& body : system.bodies) {
-        if (body.moved) add(body.name, {"torque"});
+        if (body.moved) add(body.name, column::torque);
     }
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     return names;

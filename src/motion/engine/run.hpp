@@ -11,10 +11,10 @@
 
 namespace dinal::motion::engine {
 
-inline constexpr std::size_t columns_of_body = 5, columns_of_link = 4;
-/// t; theta, velocity, M, friction and damping of each body; theta, velocity, torque and friction of each link, as in
-/// "load.theta"; the torque on each body with prescribed motion; states. The accelerations of the bodies follow without
-/// names, unless the run is `joined_elsewhere`.
+/// Without t, which is the first column.
+inline constexpr std::size_t columns_of_body = body_columns.size() - 1, columns_of_link = link_columns.size() - 1;
+/// t; the other columns of each body and of each link, as in "load.theta"; the torque on each body with prescribed
+/// motion; states. The accelerations of the bodies follow without names, unless the run is `joined_elsewhere`.
 std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive);
 
 struct Request {

@@ -1,7 +1,6 @@
 #include "motion/exact/free_motion.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "model/excitation.hpp"
 
@@ -48,20 +47,6 @@ FreeStep LinearMotion::after(double tau) const {
     }
     const double slow = std::exp(-slow_ * tau), fast = std::exp(-fast_ * tau), apart = 2 * w1_;
     return {(fast_ * slow - slow_ * fast) / apart, (slow - fast) / apart, (fast_ * fast - slow_ * slow) / apart};
-}
-
-double LinearMotion::turns_after(double velocity, double acceleration) const {
-    // The velocity is fading (velocity cos(w1 tau) + rising sin(w1 tau)/w1), or the same with cosh and sinh.
-    const double sign = velocity < 0 ? -1 : 1, speed = sign * velocity;
-    const double rising = sign * (acceleration + delta_ * velocity);
-    if (swings_) {
-        if (speed == 0) return std::numbers::pi / w1_;
-        return std::atan2(speed * w1_, -rising) / w1_;
-    }
-    if (!(rising < 0) || speed == 0) return model::never;
-    const double part = speed / -rising;
-    if (w1_ == 0) return part;
-    return w1_ * part < 1 ? std::atanh(w1_ * part) / w1_ : model::never;
 }
 
 FreeParts LinearMotion::parts(double theta, double velocity) const {

@@ -29,7 +29,6 @@ public:
     [[nodiscard]] double w0() const { return w0_; }
     [[nodiscard]] double w0_squared() const { return w0_squared_; }
     [[nodiscard]] double delta() const { return delta_; }
-    [[nodiscard]] double twice_delta() const { return 2 * delta_; }
     /// The rate of the faster of its two parts, per time unit: no derivative grows faster.
     [[nodiscard]] double fastest() const { return fastest_; }
     /// The rate of the part that does not decay at once; it also converts the rounding of an angle to a velocity.
@@ -37,10 +36,6 @@ public:
     /// The decay rate of its slowest part, per time unit.
     [[nodiscard]] double decay() const { return slow_; }
     [[nodiscard]] FreeStep after(double tau) const;
-
-    /// The time of the first zero of the velocity in a free motion about any place, given its initial velocity and
-    /// acceleration, not both 0; `never` if there is none.
-    [[nodiscard]] double turns_after(double velocity, double acceleration) const;
 
     // The same motion by its parts:
     [[nodiscard]] FreeParts parts(double theta, double velocity) const;

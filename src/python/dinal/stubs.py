@@ -30,7 +30,7 @@ def sweep(*, over: Options, run: Callback, executor: Executor | Callable[[], Exe
           seed: int = ..., progress: Callable[[int, int], object] | None = ..., workers: int | None = ...,
           max_time: Number | None = ...) -> Data: ...
 '''
-COLUMNS = "t theta velocity M friction damping acceleration".split()
+COLUMNS = [*dinal.system(I=1, k=1).simulate(theta0=1, t_end=1).names, "acceleration"]
 # Additions to the tables of the program: fields named by the user, and results that depend on the arguments.
 MORE = {"Run": f'''    @overload
     def at(self, t: Number) -> tuple[float, ...]: ...
