@@ -113,7 +113,7 @@ bool Decider::decide() {
         if (asked_[j].before.slid != Motion::stuck) settle_at_limit(j);
     }
     if (released_) {
-        const Series series = cheb::fit(by_.last.holding[released_->joint]);
+        const Series& series = by_.last.holding_series[released_->joint];
         between_ = lost_in_time(series, std::fabs(now().t.hi), by_.last.h, model::never);
     }
     if (!settle(all_used)) return false;

@@ -86,6 +86,13 @@ void Flow::make_room(Segment& s) const {
     for (auto of : {&Segment::moved, &Segment::torques}) (s.*of).resize(n_);
     for (auto of : {&Segment::loads, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding})
         (s.*of).resize(mechanics_.joints());
+    s.holding_series.resize(mechanics_.joints());
+}
+
+/// The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a belt
+/// moves the body by it.
+bool Flow::is_compared(std::size_t joint, const Mode& mode) const {
+    return mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint));
 }
 
 /// All that depends on the time alone. False when one of the user's functions has failed.
@@ -268,18 +275,19 @@ void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>&
     }
 }
 
-void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) const {
+/// Finds the torques of the joints that hold, and the series of those that are compared with a limit.
+void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) {
     if (frame.edges.empty()) return;
-    thread_local std::vector<double> lacking, held;
-    lacking.resize(n_), held.assign(mechanics_.joints(), 0);
-    for (std::size_t j = 0; j < node_count; ++j) {
-        for (std::size_t i = 0; i < n_; ++i) {
-            lacking[i] = mechanics_.system().bodies[i].inertia * s.f[n_ + i][j] - s.torques[i][j];
+    room_.lacking.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double inertia = mechanics_.system().bodies[i].inertia;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            room_.lacking[i][j] = inertia * s.f[n_ + i][j] - s.torques[i][j];
         }
-        frame.multipliers(lacking, held);
-        for (std::size_t joint = 0; joint < held.size(); ++joint) {
-            if (mode.holds(joint)) s.holding[joint][j] = held[joint];
-        }
+    }
+    frame.multipliers(room_.lacking, s.holding);
+    for (std::size_t joint = 0; joint < s.holding.size(); ++joint) {
+        if (is_compared(joint, mode)) s.holding_series[joint] = cheb::fit(s.holding[joint]);
     }
 }
 
@@ -392,10 +400,8 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        // The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a
-        // belt moves the body by it.
-        if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
-            const Series series = cheb::fit(s.holding[joint]);
+        if (is_compared(joint, mode)) {
+            const Series& series = s.holding_series[joint];
             const double torques = std::max(size_at(joint), held),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
             note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
@@ -632,6 +638,7 @@ void Flow::stand_still(Segment& s, const std::vector<double>& y) const {
     for (auto of : {&Segment::moved, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding}) {
         for (Nodes& values : s.*of) values.fill(0);
     }
+    for (Series& held : s.holding_series) held = {};
 }
 
 /// Nothing that happens here can be seen: all goes on as it begins.
@@ -651,7 +658,10 @@ void Flow::pass_over(Segment& s) const {
     for (auto of : {&Segment::torques, &Segment::driven, &Segment::loads}) {
         for (Nodes& values : s.*of) values.fill(values[0]);
     }
-    for (Nodes& held : s.holding) held.fill(held[0]);
+    for (std::size_t joint = 0; joint < s.holding.size(); ++joint) {
+        s.holding[joint].fill(s.holding[joint][0]);
+        s.holding_series[joint] = cheb::fit(s.holding[joint]);
+    }
 }
 
 }  // namespace dinal::motion::engine

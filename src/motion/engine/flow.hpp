@@ -65,8 +65,6 @@ public:
     void pass_over(Segment& segment) const;
     /// The possible error of torques that results from the slopes of belts, which are differences.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
-    /// The multipliers of what holds, at the nodes.
-    void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
     /// The limits of what sticks, where they change.
     void find_limits(Segment& segment, const Mode& mode) const;
 
@@ -106,6 +104,8 @@ protected:
 
 private:
     void make_room(Segment& segment) const;
+    void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
+    [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
@@ -128,6 +128,7 @@ private:
     /// Room, so that a stretch need not allocate it.
     struct {
         std::vector<double> torque, load, belt, rate;
+        std::vector<Nodes> lacking;
         std::array<std::vector<double>, node_count> points;  ///< all of y at a node
     } room_;
 };

@@ -260,6 +260,28 @@ void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>&
     }
 }
 
+void Frame::multipliers(std::vector<Nodes>& lacking, std::vector<Nodes>& of_joints) const {
+    if (!closing.empty()) {
+        Eigen::VectorXd r(static_cast<Eigen::Index>(lacking.size()));
+        for (std::size_t j = 0; j < node_count; ++j) {
+            for (std::size_t i = 0; i < lacking.size(); ++i) r(static_cast<Eigen::Index>(i)) = lacking[i][j];
+            const Eigen::VectorXd shared = sharing * r;
+            for (std::size_t c = 0; c < sharing_of.size(); ++c) {
+                of_joints[sharing_of[c]][j] = shared(static_cast<Eigen::Index>(c));
+            }
+        }
+        return;
+    }
+    for (std::size_t e = edges.size(); e-- > 0;) {
+        const Edge& edge = edges[e];
+        Nodes& torque = of_joints[edge.joint];
+        for (std::size_t j = 0; j < node_count; ++j) torque[j] = lacking[edge.child][j] / edge.by;
+        for (const auto& [body, by] : system_->joints[edge.joint].of) {
+            if (body != edge.child) add(lacking[body], torque, -by);
+        }
+    }
+}
+
 std::vector<std::size_t> redundant_rigid(const model::System& system) {
     Mode mode;
     const std::size_t joints = system.joints.size();

@@ -95,6 +95,8 @@ struct Frame {
     void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
     /// Computes the torque of each holding joint from the torque that each body lacks, I a - torque.
     void multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const;
+    /// The same at all nodes of a stretch. `lacking` is used up.
+    void multipliers(std::vector<Nodes>& lacking, std::vector<Nodes>& of_joints) const;
 
 private:
     void go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;

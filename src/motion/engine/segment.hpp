@@ -27,6 +27,7 @@ struct Segment : NodeTimes {
     std::vector<Nodes> torques{};  ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
+    std::vector<Series> holding_series{};      ///< the same, of those whose torque is compared with a limit
     /// The most that holds each joint that sticks and whose limits change, backward and forward.
     std::vector<std::array<Nodes, 2>> limits{};
 
