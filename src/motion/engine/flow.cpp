@@ -353,9 +353,9 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     judge_states(s, frame, by_others);
 }
 
-void Flow::note(const Series& series, double scale, double allowed) {
+void Flow::note(const Segment& s, const Series& series, double scale, double allowed) {
     unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
-    growth_ = std::min(growth_, longer_by(series, allowed / scale));
+    if (s.may_grow) growth_ = std::min(growth_, longer_by(series, allowed / scale));
 }
 
 /// Returns what the loads of a body may be off by because times far from t = 0 are rounded.
@@ -383,13 +383,13 @@ void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_loads(s, i);
             allowed += per_torque * noise_.of_torques() + others;
-            note(series, h, allowed);
+            note(s, series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
-            note(series, 1, allowed);
+            note(s, series, 1, allowed);
         }
     }
 }
@@ -404,13 +404,13 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
             const Series& series = s.holding_series[joint];
             const double torques = std::max(size_at(joint), held),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
-            note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
+            note(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
-                note(limit, 1, allowed);
+                note(s, limit, 1, allowed);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
@@ -418,7 +418,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
                                16 * rounding * fastest_.belts[joint] +
                                lost_in_time(belt, late(s), s.h, fastest_.belts[joint]) + smallest;
-        note(belt, 1, allowed);
+        note(s, belt, 1, allowed);
     }
 }
 
@@ -437,7 +437,7 @@ void Flow::judge_states(const Segment& s, const Frame& frame, const std::vector<
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
             64 * rounding * h * fastest_.rates[k] + lost_in_time(series, late(s), h, h * fastest_.rates[k]) +
             h * noise_.floor().noise[n_ + k] + of_others(by_others, frame.groups() + k);
-        note(series, 1, allowed + smallest);
+        note(s, series, 1, allowed + smallest);
     }
 }
 

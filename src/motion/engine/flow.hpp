@@ -35,7 +35,7 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
-    /// The factor by which the next stretch may be longer than the last one, which was resolved.
+    /// The factor by which the next stretch may be longer than the last one, which was resolved, if one may.
     [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved because of noise, which need not be smoother from now on.
     bool found_noise(const Segment& segment, const Mode& mode) {
@@ -111,7 +111,7 @@ private:
     void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
-    void note(const Series& series, double scale, double allowed);
+    void note(const Segment& segment, const Series& series, double scale, double allowed);
     [[nodiscard]] double lost_of_loads(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool hides_nothing(Segment& segment, const Mode& mode, double until);

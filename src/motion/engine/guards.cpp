@@ -123,9 +123,12 @@ bool Guards::may_creep(std::size_t joint) const {
 /// The torque that holds a joint passes its limit.
 void Guards::watch_release(std::size_t joint) {
     const double beside_zero = now_.mode.friction[joint].beside;
-    const bool between = beside_zero > 0;
+    const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
+    Nodes pull{};
+    Series series = segment_.holding_series[joint];  // of the pull
+    for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j], series[j] = -series[j];
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
         if (wall * sign > 0) continue;
@@ -141,21 +144,26 @@ void Guards::watch_release(std::size_t joint) {
                                            between ? just_beside(mechanics_, at, joint, side, beside_zero, beside) : at,
                                            now_.mode, frame_, found);
         };
-        Nodes pull{}, values{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            Balance found;
-            if (between && !find_balance(cheb::nodes[j], segment_.moment(j, point_), found)) good_ = false;
-            pull[j] = between ? -found.holding[joint] : -segment_.holding[joint][j];
+        if (between) {
+            for (std::size_t j = 0; j < node_count; ++j) {
+                Balance found;
+                if (!find_balance(cheb::nodes[j], segment_.moment(j, point_), found)) good_ = false;
+                pull[j] = -found.holding[joint];
+            }
+            if (!good_) return;
+            series = cheb::fit(pull);
         }
-        if (!good_) return;
-        const Series series = cheb::fit(pull);
         const double blunt = now_.mode.friction[joint].blunt;
+        Series left = constant ? Series{most[0]} : cheb::fit(most);
+        const double doubt =
+            8 * (rounding * (greatest(most) + torques) + cheb::tail(series) + (constant ? 0 : cheb::tail(left))) +
+            of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
+        left[0] += blunt;
+        for (std::size_t k = 0; k < node_count; ++k) left[k] -= sign * series[k];
+        if (cheb::least_bound(left) > 2 * doubt) continue;
+        Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
-        const Series left = cheb::fit(values);
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
-        const double doubt = 8 * (rounding * (greatest(most) + torques) + cheb::tail(series) +
-                                  (mechanics_.varies(joint) ? cheb::tail(cheb::fit(most)) : 0)) +
-                             of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
             std::vector<double> y;

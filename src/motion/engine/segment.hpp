@@ -15,6 +15,7 @@ struct Segment : NodeTimes {
     Clock start;
     double end = 0;                ///< exactly
     bool proven = true;            ///< functions that are read do nothing in it that their series do not
+    bool may_grow = true;          ///< the next stretch may be longer than all before
     bool to_the_end = false;       ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
     std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
     std::vector<Nodes> f{};        ///< their rates: of the angles without meaning
