@@ -112,7 +112,8 @@ void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& 
             record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled, turns);
         }
     }
-    std::stable_sort(turns.begin(), turns.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+    const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
+    if (turns.size() > 1) std::stable_sort(turns.begin(), turns.end(), earlier);
     for (const Event& turn : turns) tell({.event = turn});
 }
 
@@ -124,7 +125,9 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     constexpr double underflow = 1e-280;  // numbers so small lose their digits
     if (!(moving > std::max(nothing, underflow))) return;
     Half half = static_cast<int>(heading_[body]);
-    const Watched watched(v, exact);
+    Series series = segment.series[n() + body];
+    series[0] += v[0];
+    const Watched watched(v, exact, 0, series);
     std::vector<double> zeros{-1};
     for (;;) {
         const auto x = watched.leaves(half, zeros.back());
@@ -305,8 +308,9 @@ std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segmen
 
 /// Adds what springs of sliders that stick, and pressed walls, take and store.
 void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const {
-    Nodes springs{};
     acting.presses = now.mode.presses[joint] != 0;
+    if (!acting.presses && now.mode.sliders.empty()) return;
+    Nodes springs{};
     if (acting.presses) {
         const model::Walls& stops = *problem_.system.joints[joint].stops;
         springs = mechanics_.between(joint, segment.y);
