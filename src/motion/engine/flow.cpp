@@ -43,10 +43,9 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
-        for (std::size_t j = 0; j < node_count; ++j) {
-            s.f[n_ + i][j] =
-                sum_of_groups(frame.bodies[i], [&](std::size_t g) { return unknown_[g][j]; }) + offsets_.rates[i][j];
-        }
+        Nodes rates = offsets_.rates[i];
+        for (const auto& [group, by] : frame.bodies[i]) add(rates, unknown_[group], by);
+        s.f[n_ + i] = rates;
     }
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
     fit_series(s, frame, begin);
@@ -100,12 +99,13 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     const std::size_t joints = mechanics_.joints();
     make_room(s);
     for (Nodes& way : s.moved) way.fill(0);
+    const Clock start = s.start;
+    for (std::size_t j = 0; j + 1 < node_count; ++j) s.times[j] = start.after(s.h * (1 + cheb::nodes[j]));
+    s.times[node_count - 1] = s.end;
     for (std::size_t j = 0; j < node_count; ++j) {
-        s.times[j] = s.time(cheb::nodes[j]);
-        s.rests[j] = s.h * (1 + cheb::nodes[j]) - s.start.until(s.times[j]);
+        s.rests[j] = s.h * (1 + cheb::nodes[j]) - start.until(s.times[j]);
     }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
-    for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i] = {}, offsets_.rates[i] = {}, offsets_.ways[i] = {};
     mechanics_.sample_loads(s, s.loads);
     std::size_t good = node_count;
     for (const Nodes& load : s.loads) {
@@ -116,10 +116,8 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
         bad_time_ = s.times[good];
         return false;
     }
-    if (!mechanics_.has_belts()) {
-        for (std::size_t joint = 0; joint < joints; ++joint) s.belts[joint] = s.belt_rates[joint] = {};
-        return true;
-    }
+    if (!mechanics_.has_belts()) return true;
+    for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i] = {}, offsets_.rates[i] = {}, offsets_.ways[i] = {};
     for (std::size_t joint = 0; joint < joints; ++joint) {
         s.belts[joint] = s.belt_rates[joint] = {};
         if (!mechanics_.has_belt(joint)) continue;
@@ -156,8 +154,9 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
 
 /// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the motion
 /// are asked at `departing` where that is given, else at the motion of the segment.
-bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                    const std::vector<double>* departing) {
+template <class First, class End>
+bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First first, End end,
+                         const std::vector<double>* departing) {
     bool good = true;
     bool placed = false;
     const auto each_node = [&](auto&& at_node) {
@@ -231,6 +230,11 @@ bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_
     }
     return good;
 }
+
+template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::size_t, std::size_t,
+                                  const std::vector<double>*);
+template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::integral_constant<std::size_t, 0>,
+                                  std::integral_constant<std::size_t, node_count>, const std::vector<double>*);
 
 double Flow::size_at(std::size_t joint) const {
     double size = 0;

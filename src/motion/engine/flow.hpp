@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "motion/engine/mechanics.hpp"
@@ -79,7 +80,15 @@ protected:
     [[nodiscard]] virtual bool follows_rates() const = 0;
 
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                  const std::vector<double>* departing);
+                  const std::vector<double>* departing) {
+        return evaluate_part(segment, mode, frame, first, end, departing);
+    }
+    /// The same at all nodes, at the motion of the segment.
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame) {
+        constexpr std::integral_constant<std::size_t, 0> first;
+        constexpr std::integral_constant<std::size_t, node_count> end;
+        return evaluate_part(segment, mode, frame, first, end, nullptr);
+    }
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     Attempt look_between(Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes(const Segment& segment);
@@ -103,6 +112,9 @@ protected:
     } sizes_;  ///< of the torques on each body
 
 private:
+    template <class First, class End>
+    bool evaluate_part(Segment& segment, const Mode& mode, const Frame& frame, First first, End end,
+                       const std::vector<double>* departing);
     void make_room(Segment& segment) const;
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
     [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;

@@ -551,7 +551,16 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
     const Joint& own = system_.joints[joint];
     const double C = own.damping, k = own.stiffness;
     const Nodes angle = between(joint, y), velocity = between(joint, std::span(y).subspan(bodies()));
-    for (std::size_t j = first; j < end; ++j) out[j] = C * velocity[j] + k * angle[j];
+    for (std::size_t j = 0; j < node_count; ++j) out[j] = C * velocity[j] + k * angle[j];
+    const model::Friction& law = own.friction.law;
+    if (const Slipping& how = mode.friction[joint];
+        own.spring.none() && mode.presses[joint] == 0 && !law.depends_on_speed()) {
+        if (how.way == Motion::stuck || !rubs(joint)) return;
+        const double most = how.riding ? law.holding(how.way) : law.sliding(how.way, 0);
+        const double torque = model::sign_of(how.way) * most;
+        for (double& each : out) each += torque;
+        return;
+    }
     if (!own.spring.none()) {
         for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
     }

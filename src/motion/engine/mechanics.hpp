@@ -207,7 +207,7 @@ public:
     /// The torque of a joint that does not hold.
     [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// The same at nodes for a native joint that does not lean on a wall, from angles, velocities (and states) y and
-    /// the velocity of its belt.
+    /// the velocity of its belt; at other nodes `out` is of no use.
     void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
                         std::size_t first, std::size_t end, Nodes& out) const;
     /// Adds the friction part of native_torques().

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -35,6 +37,12 @@ public:
     void solve(double h, const Frame& frame, const Eigen::VectorXd& residual, Eigen::VectorXd& step) {
         factors(h, frame).solve(residual, step);
     }
+    /// Returns whether all is linear, and the inverse of the matrix is known so well that one step is exact.
+    bool knows_inverse(const Segment& segment, const Mode& mode, const Frame& frame, const Floor& floor) {
+        if (!known_ && !find(segment, mode, frame, 0, floor)) return false;
+        const double h = segment.h, of = factors(h, frame).one_step_of;
+        return std::fabs(last_factors_->first - h) * of <= 4 * rounding * h;
+    }
     /// Returns the slopes; null if they are those of another frame.
     [[nodiscard]] const Eigen::MatrixXd* slopes(const Frame& frame) const {
         const auto rows = static_cast<Eigen::Index>(frame.groups() + mechanics_.states());
@@ -48,6 +56,8 @@ private:
     struct Factors {
         int asked = 0;  ///< so often
         Eigen::MatrixXd inverse;
+        /// One step by the inverse is exact for a length that is as near as rounding divided by this.
+        double one_step_of = std::numeric_limits<double>::infinity();
         std::unique_ptr<const algebra::Factored> sparse;
         std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
         void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
