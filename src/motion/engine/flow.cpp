@@ -261,8 +261,12 @@ void Flow::find_sizes_at_start(const Segment& s, const std::vector<double>& begi
 /// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the
 /// last one are added to those that they equal at the nodes.
 void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
-    for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
     const bool integrated = follows_rates() && !mechanics_.has_belts();
+    if (integrated && unknown_.empty()) {  // all stands
+        for (std::size_t k = 0; k < s.y.size(); ++k) s.rates[k] = s.series[k] = {};
+        return;
+    }
+    for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
     for (std::size_t i = 0; i < n_ && integrated; ++i) {
         auto w = s.rates[n_ + i];
         for (double& c : w) c *= s.h;

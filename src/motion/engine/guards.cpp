@@ -329,10 +329,27 @@ void Guards::watch_normal(std::size_t joint) {
     half = -half;
 }
 
+/// Returns the place at which an angle, a velocity or a state comes to a relay's level.
+std::optional<double> Guards::switches(double sign, double level, std::size_t k) const {
+    Nodes values = segment_.y[k];
+    Series series = segment_.series[k];
+    series[0] += values[0] - level;
+    for (double& each : values) each = sign * (each - level);
+    for (double& each : series) each *= sign;
+    if (stays_above_zero(1, series, std::fabs(level))) return {};
+    const auto exact = [&](double x) { return sign * (segment_.at(k, x) - level); };
+    Half half = 1;
+    return values[0] < 0 ? -1 : Watched(values, exact, 0, series).leaves(half, -1);
+}
+
 void Guards::watch_relays() {
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const Signal& load = mechanics_.loads()[i];
         for (std::size_t r = 0; r < load.relays(); ++r) {
+            if (const auto of = load.switching(r); of.place) {
+                see(switches(of.sign, of.level, *of.place), By::relay, i, static_cast<int>(r));
+                continue;
+            }
             const auto left = [&](const Moment& at) { return load.until_switch(r, at); };
             const Nodes values = segment_.at_nodes(left, point_);
             Half half = 1;

@@ -377,6 +377,11 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const auto varies = [](const Signal& limit) { return !limit.none(); };
         contact.may_open =
             !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
+        if (contact.native && !friction.law.depends_on_speed() && !bends) {
+            const auto& law = friction.law;
+            contact.constant = {{law.holding(Motion::backward), law.holding(Motion::forward)},
+                                {law.sliding(Motion::backward, 0), law.sliding(Motion::forward, 0)}};
+        }
         all_linear_ =
             all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none() && !joint.stops;
         contacts_.push_back(std::move(contact));
@@ -445,6 +450,7 @@ double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) cons
 double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const Contact& contact = contacts_[joint];
+    if (contact.constant) return contact.constant->sliding[side_of(how.way)];
     const double speed = model::sign_of(how.way) * slip;
     const Signal& own = contact.sliding[side_of(how.way)];
     double torque = 0;
@@ -468,6 +474,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
 double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const Contact& contact = contacts_[joint];
+    if (contact.constant) return contact.constant->holding[side_of(way)];
     const Signal &own = contact.holding[side_of(way)], &sliding_own = contact.sliding[side_of(way)];
     double torque = 0;
     if (!own.none()) {
@@ -508,6 +515,8 @@ double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& 
     const Slipping& how = mode.friction[joint];
     if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
     if (how.way == Motion::stuck || !rubs(joint)) return 0;
+    if (const auto& constant = contacts_[joint].constant)
+        return -model::sign_of(how.way) * constant->sliding[side_of(how.way)];
     Slipping present = how;
     // Along a wall no guard watches for the corners of the law, so choose the range here.
     if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
@@ -632,7 +641,8 @@ double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double bel
 double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
-    double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
+    double size = std::fabs(own.stiffness * q);
+    if (!own.spring.none()) size += std::fabs(own.spring.torque(q));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);

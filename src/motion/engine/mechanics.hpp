@@ -184,7 +184,7 @@ public:
     /// known value.
     template <class Known>
     void loads_of_time(double t, Side side, std::vector<double>& loads, const Known& known) const {
-        const double push = base(t, side);
+        const double push = has_base() ? base(t, side) : 0;
         loads.resize(joints());
         for (std::size_t i = 0; i < loads.size(); ++i) {
             const std::optional<double> load = known(i);
@@ -356,6 +356,11 @@ private:
         std::optional<Piecewise> law = {};     ///< the user's friction law
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;
+        /// What holds and what slides each way, where that depends on the way only.
+        struct Constant {
+            std::array<double, 2> holding, sliding;
+        };
+        std::optional<Constant> constant = {};
     };
 
     [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;

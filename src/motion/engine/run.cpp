@@ -415,15 +415,15 @@ double Engine::kinetic_energy() const {
 
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
 void Engine::go_to(double x) {
-    const std::vector<double> begin = now_.y;
-    segment_.state(x, now_.y);
     for (std::size_t i = 0; i < n(); ++i) {
         const double moved =
             (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + now_.low[i];
-        now_.y[i] = begin[i] + moved;
-        const double added = now_.y[i] - begin[i];
-        now_.low[i] = (begin[i] - (now_.y[i] - added)) + (moved - added);
+        const double begin = now_.y[i];
+        now_.y[i] = begin + moved;
+        const double added = now_.y[i] - begin;
+        now_.low[i] = (begin - (now_.y[i] - added)) + (moved - added);
     }
+    for (std::size_t k = n(); k < now_.y.size(); ++k) now_.y[k] = segment_.at(k, x);
     walls_.follow(problem_.system, now_);
 }
 
