@@ -167,6 +167,10 @@ Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Fram
         for (std::size_t j = 1; j < node_count; ++j) unknown_[g][j] = found_[g][0] + step_.data()[g * inner + j - 1];
     }
     place(s, frame);
+    double moves = 0, most = 0;
+    for (const double step : step_) moves = std::max(moves, std::fabs(step));
+    for (const Nodes& a : unknown_) most = std::max(most, greatest(a));
+    if (newton_.error_of_length(s.h) * moves > 4 * rounding * most) return iterate(s, mode, frame, Slopes::known);
     const bool holds = !frame.edges.empty() || !frame.closing.empty();
     if (holds) return evaluate(s, mode, frame) ? Attempt::resolved : Attempt::failed;
     for (std::size_t i = 0; i < n_; ++i) {
