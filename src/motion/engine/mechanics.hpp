@@ -263,7 +263,8 @@ public:
     [[nodiscard]] bool asks_functions() const;
     /// Returns whether there is any user function.
     [[nodiscard]] bool has_functions() const;
-    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
+    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. Of
+    /// many groups a bound that it does not exceed.
     [[nodiscard]] double fastest(const Frame& frame) const;
 
     /// Visits all signals.
@@ -363,6 +364,7 @@ private:
         std::optional<Constant> constant = {};
     };
 
+    [[nodiscard]] double bound_of_fastest(const Frame& frame) const;
     [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;
     [[nodiscard]] double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Visits each user function.
