@@ -163,6 +163,7 @@ void Guards::watch_release(std::size_t joint) {
         if (cheb::least_bound(left) > 2 * doubt) continue;
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
+        left = cheb::fit(values);  // beside zero it has digits that a difference of series has not
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {

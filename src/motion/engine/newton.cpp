@@ -151,8 +151,8 @@ double norm_of(const Matrix& A) {
 /// The size of a matrix without the unit one, if its inverse is right to rounding; otherwise 0.
 template <class Matrix>
 double size_if_well(const Matrix& A, const Matrix& inverse) {
-    constexpr double well = 300;  // errors of an inverse are its condition times rounding at most
-    if (!(norm_of(A) * norm_of(inverse) < well * static_cast<double>(A.rows() / inner))) return 0;
+    constexpr double well = 18.75;  // times the rows: errors of an inverse are its condition times rounding at most
+    if (!(norm_of(A) * norm_of(inverse) < well * static_cast<double>(A.rows()))) return 0;
     return 2 * norm_of(Matrix(A - Matrix::Identity(A.rows(), A.cols()))) + rounding;
 }
 
