@@ -251,12 +251,13 @@ private:
         if (!motion_.differentiable) return;
         double largest = 0;
         for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
+        constexpr double next_to_nothing = 1e-10;  // what differences of runs tell no better
         if (!motion_.stable) {
             say("It is unstable: a disturbance grows by a factor of {:.6g} in a period, so no run stays on it.",
                 largest);
         } else if (largest > 1 - 1e-6) {
             say("It is marginally stable: a disturbance neither grows nor decays.");
-        } else if (largest < 1e-12) {
+        } else if (largest < next_to_nothing) {
             say("It is stable: a disturbance is gone after one period.");
         } else {
             say("It is stable: {} of a disturbance remains after a period.", text::percent(largest));

@@ -140,6 +140,12 @@ double size(const Series<n>& c) {
     return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]); });
 }
 
+/// A bound that no value is below.
+template <std::size_t n>
+double least_bound(const Series<n>& c) {
+    return c[0] - (size(c) - std::fabs(c[0]));
+}
+
 /// The size of the last two coefficients, about the error of a series that has decayed. Evenly spaced jumps make every
 /// second coefficient zero, sometimes the last one; so the two before are included, which are far smaller for a smooth
 /// function.

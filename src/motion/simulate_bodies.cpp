@@ -55,6 +55,14 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
                                                    method.about().call.name),
                            .option = "integrator"};
     }
+    const auto resolves = [&](const model::Oscillator& mode) {
+        return std::none_of(drive.loads.begin(), drive.loads.end(), [&](const model::Excitation& load) {
+            return wrong_method(method, mode, load, window).has_value();
+        });
+    };
+    // Stretches resolve all that is slower than what they resolve. Steps may be too long for what is damped, too.
+    const bool takes_steps = method.cut()->step > 0 || method.cut()->pair != nullptr;
+    if (const auto fast = engine::no_slower_than_modes(system); !takes_steps && fast && resolves(*fast)) return {};
     for (const model::Oscillator& mode : engine::modes_of(system)) {
         for (const model::Excitation& load : drive.loads) {
             if (auto wrong = wrong_method(method, mode, load, window)) return wrong;

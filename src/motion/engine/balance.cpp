@@ -22,6 +22,7 @@ Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Flo
     has_feedback_ = std::any_of(mechanics.loads().begin(), mechanics.loads().end(),
                                 [](const Signal& load) { return load.asks_the_motion(); });
     for (const model::Body& body : mechanics.system().bodies) inertia_ += body.inertia;
+    belts_.assign(mechanics.joints(), 0), rates_ = belts_, offsets_.assign(mechanics.bodies(), 0);
 }
 
 bool Balances::at_present(const Moment& at, const Now& now, const Mode& mode, const Frame& frame, const Segment& last,
@@ -49,14 +50,13 @@ template <class Rate, class Known>
 bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, const Rate& rate, const Known& known,
                     Balance& result) {
     const std::size_t joints = mechanics_.joints(), n = mechanics_.bodies();
-    belts_.assign(joints, 0), rates_.assign(joints, 0);
-    for (std::size_t j = 0; j < joints; ++j) {
+    for (std::size_t j = 0; j < joints && mechanics_.has_belts(); ++j) {
         belts_[j] = mechanics_.belt(j, at.t, at.side);
         if (mechanics_.has_belt(j)) rates_[j] = rate(j);
     }
     mechanics_.loads_of_time(at.t, at.side, result.loads, known);
     mechanics_.torques(at, mode, belts_, result.loads, result.torques);
-    frame.offsets(rates_, mode, offsets_);
+    if (mechanics_.has_belts()) frame.offsets(rates_, mode, offsets_);
     of_group_.assign(frame.groups(), 0), lacking_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const double own = mechanics_.system().bodies[i].inertia * offsets_[i];

@@ -84,6 +84,7 @@ void Engine::choose(const Frame& frame) {
     segment_.from_break = now_.after_break;
     segment_.to_break = to_limit && limit == breaks;
     segment_.to_the_end = to_limit;
+    segment_.may_grow = pace_.h < frame.longest / 2;
 }
 
 /// Returns the time to the next wall, if all accelerations stay as they are.

@@ -96,11 +96,13 @@ void Collocation::place(Segment& s, const Frame& frame) {
         for (std::size_t b = i; b < n_; ++b) {
             if (frame.bodies[b] != shape) continue;
             placed_[b] = 1;
-            for (std::size_t j = 1; j < node_count; ++j) {
-                s.moved[b][j] = way[j] + offsets_.ways[b][j];
-                s.y[b][j] = s.y[b][0] + s.moved[b][j];
-                s.y[n_ + b][j] = velocity[j] + offsets_.velocities[b][j];
-            }
+            Nodes moved = way, moves = velocity;
+            add(moved, offsets_.ways[b], 1), add(moves, offsets_.velocities[b], 1);
+            const double from = s.y[b][0];
+            std::copy(moves.begin() + 1, moves.end(), s.y[n_ + b].begin() + 1);
+            std::copy(moved.begin() + 1, moved.end(), s.moved[b].begin() + 1);
+            for (double& place : moved) place += from;
+            std::copy(moved.begin() + 1, moved.end(), s.y[b].begin() + 1);
         }
     }
     for (std::size_t k = 0; k < m_; ++k) {
@@ -115,7 +117,9 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
     const std::size_t count = frame.groups() + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    newton_.begin(mode, frame);
+    if (count > 0) newton_.begin(mode, frame);  // what stands still lets it know what it knew
+    if (!mechanics_.nonlinear() && m_ == 0 && (count == 0 || newton_.knows_inverse(s, mode, frame, noise_.floor())))
+        return find_at_once(s, mode, frame);
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
@@ -132,6 +136,48 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
     }
     newton_.forget();
     return Attempt::shorten;
+}
+
+/// Where all is linear, one step is exact: from a motion without acceleration, whose torques are known at all nodes.
+Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Frame& frame) {
+    for (Nodes& a : unknown_) a.fill(0);
+    guess(s, frame);
+    if (!evaluate(s, mode, frame)) return Attempt::failed;
+    const std::size_t groups = frame.groups();
+    if (groups == 0) return Attempt::resolved;
+    const Eigen::MatrixXd& slopes = *newton_.slopes(frame);
+    for (std::size_t g = 0; g < groups; ++g) {
+        Nodes rest = found_[g];
+        for (double& a : rest) a -= found_[g][0];
+        for (std::size_t c = 0; c < groups; ++c) {
+            const double of_angle = slopes(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(c));
+            const double of_velocity = slopes(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(groups + c));
+            if (of_angle == 0 && of_velocity == 0) continue;
+            const double first = of_velocity * found_[c][0], second = of_angle * found_[c][0] / 2;
+            for (std::size_t j = 0; j < node_count; ++j) {
+                const double since = s.h * (1 + cheb::nodes[j]);
+                rest[j] += since * (first + since * second);
+            }
+        }
+        std::copy(rest.begin() + 1, rest.end(), residual_.data() + g * inner);
+    }
+    newton_.solve(s.h, frame, residual_, step_);
+    for (std::size_t g = 0; g < groups; ++g) {
+        unknown_[g][0] = found_[g][0];
+        for (std::size_t j = 1; j < node_count; ++j) unknown_[g][j] = found_[g][0] + step_.data()[g * inner + j - 1];
+    }
+    place(s, frame);
+    double moves = 0, most = 0;
+    for (const double step : step_) moves = std::max(moves, std::fabs(step));
+    for (const Nodes& a : unknown_) most = std::max(most, greatest(a));
+    if (newton_.error_of_length(s.h) * moves > 4 * rounding * most) return iterate(s, mode, frame, Slopes::known);
+    const bool holds = !frame.edges.empty() || !frame.closing.empty();
+    if (holds) return evaluate(s, mode, frame) ? Attempt::resolved : Attempt::failed;
+    for (std::size_t i = 0; i < n_; ++i) {
+        s.torques[i] = {};
+        for (const auto& [group, by] : frame.bodies[i]) add(s.torques[i], unknown_[group], by * frame.inertia[group]);
+    }
+    return Attempt::resolved;
 }
 
 /// All accelerations and rates are what they are at the first node.

@@ -24,6 +24,7 @@ private:
     void remember_end(const Segment& segment, const Frame& frame);
     enum class Slopes { known, here, none };
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, Slopes slopes);
+    Attempt find_at_once(Segment& segment, const Mode& mode, const Frame& frame);
     void begin_at_first_node(Segment& segment, const Frame& frame);
     struct Residual {
         double left = 0;        ///< over of the equations

@@ -24,9 +24,11 @@ void Projection::apply(Now& now, const Frame& frame, Side when) {
     if (frame.edges.empty()) return;
     const model::System& system = mechanics_.system();
     const std::size_t n = system.bodies.size();
-    belts_.resize(mechanics_.joints());
-    for (std::size_t j = 0; j < belts_.size(); ++j) belts_[j] = mechanics_.belt(j, now.t.hi, when);
-    frame.offsets(belts_, now.mode, offsets_);
+    if (mechanics_.has_belts()) {
+        belts_.resize(mechanics_.joints());
+        for (std::size_t j = 0; j < belts_.size(); ++j) belts_[j] = mechanics_.belt(j, now.t.hi, when);
+        frame.offsets(belts_, now.mode, offsets_);
+    }
     momentum_.assign(frame.groups(), 0), first_.resize(frame.groups());
     seen_.assign(frame.groups(), 0), alike_.assign(frame.groups(), 1);
     for (std::size_t i = 0; i < n; ++i) {

@@ -37,7 +37,8 @@ struct Contacts {
 class Projection {
 public:
     /// The joints behind the first `told` ones move bodies.
-    Projection(const Mechanics& mechanics, std::size_t told) : mechanics_(mechanics), told_(told) {}
+    Projection(const Mechanics& mechanics, std::size_t told)
+        : mechanics_(mechanics), told_(told), offsets_(mechanics.bodies()) {}
     void apply(Now& now, const Frame& frame, Side when);
 
 private:

@@ -56,12 +56,10 @@ class Watched {
 public:
     /// Values up to `rounded` count as zero.
     Watched(const Nodes& values, const F& exact, double rounded = 0)
-        : values_(values), exact_(exact), rounded_(rounded), series_(cheb::fit(values)) {
-        constexpr double few = 64;
-        size_ = cheb::size(series_);
-        floor_ = std::max(few * rounding * size_, rounded);
-        smooth_ = cheb::tail(series_) <= 1e-9 * size_;
-    }
+        : Watched(values, exact, rounded, cheb::fit(values), 0) {}
+    /// The same with a known series, of which the function has only some digits more.
+    Watched(const Nodes& values, const F& exact, double rounded, const Series& series)
+        : Watched(values, exact, rounded, series, 1e-13) {}
     /// The first x after `from` at which it leaves its half; an unknown half is set from the nodes.
     [[nodiscard]] std::optional<double> leaves(Half& half, double from) const {
         const bool at_zero = half == 0 || std::fabs(from == -1 ? values_[0] : exact_(from)) <= floor_;
@@ -94,18 +92,31 @@ public:
     }
 
 private:
+    Watched(const Nodes& values, const F& exact, double rounded, const Series& series, double usual)
+        : values_(values), exact_(exact), rounded_(rounded), usual_(usual), series_(series) {
+        constexpr double few = 64;
+        size_ = cheb::size(series_);
+        floor_ = std::max(few * rounding * size_, rounded);
+        smooth_ = cheb::tail(series_) <= 1e-9 * size_;
+    }
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
     /// The series tells the places to search; the exact value, which has some digits more, decides.
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
-        Bounded<points> curve(half, series_, derivative(series_));
+        Nodes values = values_;
+        for (double& each : values) each *= half;
+        Bounded<points> curve(half, series_, derivative(series_), values);
         curve.raise_floor(rounded_);
         double near = 1e-7;
         while (start < 1) {
             const auto x = first_below(curve, start);
             if (!x) break;
+            if (usual_ > 0) {
+                const auto zero = refined(half, std::max(start, *x - usual_), std::min(1.0, *x + usual_));
+                if (zero) return zero;
+            }
             double a = std::max(start, *x - near);
             while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
             if (half * exact_(a) < -rounded_) return a;  // it has been below earlier
@@ -143,7 +154,7 @@ private:
 
     const Nodes& values_;
     const F& exact_;
-    double rounded_;
+    double rounded_, usual_;  ///< the distance of the zeros of both, if not 0
     Series series_;
     double size_ = 0, floor_ = 0;
     bool smooth_ = false;

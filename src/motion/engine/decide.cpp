@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace dinal::motion::engine {
 
@@ -90,8 +91,9 @@ private:
     Decision& made_;
     std::vector<Asked>& asked_;
     Balance& found_;
-    std::size_t full_ = 0;  ///< the joint of a loop that came to its limit
-    double between_ = 0;    ///< the torque of what was released, between two doubles of the time
+    std::size_t full_ = 0;        ///< the joint of a loop that came to its limit
+    bool found_at_stop_ = false;  ///< the balance is that of the only joint where it stopped, and it holds
+    double between_ = 0;          ///< the torque of what was released, between two doubles of the time
 };
 
 bool Decider::decide() {
@@ -113,7 +115,7 @@ bool Decider::decide() {
         if (asked_[j].before.slid != Motion::stuck) settle_at_limit(j);
     }
     if (released_) {
-        const Series series = cheb::fit(by_.last.holding[released_->joint]);
+        const Series& series = by_.last.holding_series[released_->joint];
         between_ = lost_in_time(series, std::fabs(now().t.hi), by_.last.h, model::never);
     }
     if (!settle(all_used)) return false;
@@ -162,7 +164,8 @@ bool Decider::settle(bool all_used) {
             project(frame());
             continue;
         }
-        if (!by_.balances.at_present(now(), present, by_.last, found_)) return false;
+        const bool found = std::exchange(found_at_stop_, false);
+        if (!found && !by_.balances.at_present(now(), present, by_.last, found_)) return false;
         for (std::size_t j = 0; j < joints(); ++j) {
             if (memory().of[j].crept && asked_[j].before.slid != Motion::stuck && mode().holds(j))
                 creep(j, asked_[j].before.slid, -found_.holding[j]);
@@ -392,6 +395,7 @@ void Decider::settle_at_limit(std::size_t joint) {
     const double limit = mechanics_.holding(joint, pull.towards, now().here());
     const double place = contact::place_at_limit(pull, limit, own.stiffness, found_.loads[0], now().y[0],
                                                  std::max(memory().size_at_stop, before));
+    found_at_stop_ = joints() == 1 && place == now().y[0];
     if (place != now().y[0]) now().y[0] = place, now().low[0] = 0;
 }
 

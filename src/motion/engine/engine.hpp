@@ -144,6 +144,10 @@ private:
     DecisionRoom room_;
     TorqueSizes sizes_;
     std::vector<double> departing_;
+    struct {
+        std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
+    } standing_;
+    Mode before_;  ///< the decision
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

@@ -79,13 +79,12 @@ bool Engine::come_to_a_stop(std::size_t j) {
 /// A joint has come to its limit.
 bool Engine::release(const Ending& ending) {
     const std::size_t j = ending.which;
-    const Mode before = now_.mode;
+    before_ = now_.mode;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
-    bool same = now_.mode.leans == before.leans;
+    bool same = now_.mode.leans == before_.leans;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
-        same = now_.mode.friction[i].way == before.friction[i].way &&
-               now_.mode.friction[i].riding == before.friction[i].riding &&
-               now_.mode.friction[i].creeps == before.friction[i].creeps;
+        const Slipping &is = now_.mode.friction[i], &was = before_.friction[i];
+        same = is.way == was.way && is.riding == was.riding && is.creeps == was.creeps;
     }
     // A joint that only touched its limit must pass it clearly the next time.
     if (same && Chatter::too_blunt(now_.mode.friction[j], torque_size(j))) return fail(Outcome::chattering);

@@ -43,10 +43,9 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
-        for (std::size_t j = 0; j < node_count; ++j) {
-            s.f[n_ + i][j] =
-                sum_of_groups(frame.bodies[i], [&](std::size_t g) { return unknown_[g][j]; }) + offsets_.rates[i][j];
-        }
+        Nodes rates = offsets_.rates[i];
+        for (const auto& [group, by] : frame.bodies[i]) add(rates, unknown_[group], by);
+        s.f[n_ + i] = rates;
     }
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
     fit_series(s, frame, begin);
@@ -86,6 +85,13 @@ void Flow::make_room(Segment& s) const {
     for (auto of : {&Segment::moved, &Segment::torques}) (s.*of).resize(n_);
     for (auto of : {&Segment::loads, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding})
         (s.*of).resize(mechanics_.joints());
+    s.holding_series.resize(mechanics_.joints());
+}
+
+/// The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a belt
+/// moves the body by it.
+bool Flow::is_compared(std::size_t joint, const Mode& mode) const {
+    return mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint));
 }
 
 /// All that depends on the time alone. False when one of the user's functions has failed.
@@ -93,12 +99,13 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     const std::size_t joints = mechanics_.joints();
     make_room(s);
     for (Nodes& way : s.moved) way.fill(0);
+    const Clock start = s.start;
+    for (std::size_t j = 0; j + 1 < node_count; ++j) s.times[j] = start.after(s.h * (1 + cheb::nodes[j]));
+    s.times[node_count - 1] = s.end;
     for (std::size_t j = 0; j < node_count; ++j) {
-        s.times[j] = s.time(cheb::nodes[j]);
-        s.rests[j] = s.h * (1 + cheb::nodes[j]) - s.start.until(s.times[j]);
+        s.rests[j] = s.h * (1 + cheb::nodes[j]) - start.until(s.times[j]);
     }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
-    for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i] = {}, offsets_.rates[i] = {}, offsets_.ways[i] = {};
     mechanics_.sample_loads(s, s.loads);
     std::size_t good = node_count;
     for (const Nodes& load : s.loads) {
@@ -109,10 +116,8 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
         bad_time_ = s.times[good];
         return false;
     }
-    if (!mechanics_.has_belts()) {
-        for (std::size_t joint = 0; joint < joints; ++joint) s.belts[joint] = s.belt_rates[joint] = {};
-        return true;
-    }
+    if (!mechanics_.has_belts()) return true;
+    for (std::size_t i = 0; i < n_; ++i) offsets_.velocities[i] = {}, offsets_.rates[i] = {}, offsets_.ways[i] = {};
     for (std::size_t joint = 0; joint < joints; ++joint) {
         s.belts[joint] = s.belt_rates[joint] = {};
         if (!mechanics_.has_belt(joint)) continue;
@@ -149,8 +154,9 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
 
 /// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the motion
 /// are asked at `departing` where that is given, else at the motion of the segment.
-bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                    const std::vector<double>* departing) {
+template <class First, class End>
+bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First first, End end,
+                         const std::vector<double>* departing) {
     bool good = true;
     bool placed = false;
     const auto each_node = [&](auto&& at_node) {
@@ -225,6 +231,11 @@ bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_
     return good;
 }
 
+template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::size_t, std::size_t,
+                                  const std::vector<double>*);
+template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::integral_constant<std::size_t, 0>,
+                                  std::integral_constant<std::size_t, node_count>, const std::vector<double>*);
+
 double Flow::size_at(std::size_t joint) const {
     double size = 0;
     for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
@@ -250,8 +261,12 @@ void Flow::find_sizes_at_start(const Segment& s, const std::vector<double>& begi
 /// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the
 /// last one are added to those that they equal at the nodes.
 void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
-    for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
     const bool integrated = follows_rates() && !mechanics_.has_belts();
+    if (integrated && unknown_.empty()) {  // all stands
+        for (std::size_t k = 0; k < s.y.size(); ++k) s.rates[k] = s.series[k] = {};
+        return;
+    }
+    for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
     for (std::size_t i = 0; i < n_ && integrated; ++i) {
         auto w = s.rates[n_ + i];
         for (double& c : w) c *= s.h;
@@ -268,18 +283,19 @@ void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>&
     }
 }
 
-void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) const {
+/// Finds the torques of the joints that hold, and the series of those that are compared with a limit.
+void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) {
     if (frame.edges.empty()) return;
-    thread_local std::vector<double> lacking, held;
-    lacking.resize(n_), held.assign(mechanics_.joints(), 0);
-    for (std::size_t j = 0; j < node_count; ++j) {
-        for (std::size_t i = 0; i < n_; ++i) {
-            lacking[i] = mechanics_.system().bodies[i].inertia * s.f[n_ + i][j] - s.torques[i][j];
+    room_.lacking.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double inertia = mechanics_.system().bodies[i].inertia;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            room_.lacking[i][j] = inertia * s.f[n_ + i][j] - s.torques[i][j];
         }
-        frame.multipliers(lacking, held);
-        for (std::size_t joint = 0; joint < held.size(); ++joint) {
-            if (mode.holds(joint)) s.holding[joint][j] = held[joint];
-        }
+    }
+    frame.multipliers(room_.lacking, s.holding);
+    for (std::size_t joint = 0; joint < s.holding.size(); ++joint) {
+        if (is_compared(joint, mode)) s.holding_series[joint] = cheb::fit(s.holding[joint]);
     }
 }
 
@@ -345,9 +361,9 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     judge_states(s, frame, by_others);
 }
 
-void Flow::note(const Series& series, double scale, double allowed) {
+void Flow::note(const Segment& s, const Series& series, double scale, double allowed) {
     unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
-    growth_ = std::min(growth_, longer_by(series, allowed / scale));
+    if (s.may_grow) growth_ = std::min(growth_, longer_by(series, allowed / scale));
 }
 
 /// Returns what the loads of a body may be off by because times far from t = 0 are rounded.
@@ -375,13 +391,13 @@ void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_loads(s, i);
             allowed += per_torque * noise_.of_torques() + others;
-            note(series, h, allowed);
+            note(s, series, h, allowed);
             allowed_[i] = allowed / h;
         } else {
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
-            note(series, 1, allowed);
+            note(s, series, 1, allowed);
         }
     }
 }
@@ -392,19 +408,17 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        // The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a
-        // belt moves the body by it.
-        if (mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint))) {
-            const Series series = cheb::fit(s.holding[joint]);
+        if (is_compared(joint, mode)) {
+            const Series& series = s.holding_series[joint];
             const double torques = std::max(size_at(joint), held),
                          lost = (tells_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
-            note(series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
+            note(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
-                note(limit, 1, allowed);
+                note(s, limit, 1, allowed);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
@@ -412,7 +426,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
                                16 * rounding * fastest_.belts[joint] +
                                lost_in_time(belt, late(s), s.h, fastest_.belts[joint]) + smallest;
-        note(belt, 1, allowed);
+        note(s, belt, 1, allowed);
     }
 }
 
@@ -431,7 +445,7 @@ void Flow::judge_states(const Segment& s, const Frame& frame, const std::vector<
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
             64 * rounding * h * fastest_.rates[k] + lost_in_time(series, late(s), h, h * fastest_.rates[k]) +
             h * noise_.floor().noise[n_ + k] + of_others(by_others, frame.groups() + k);
-        note(series, 1, allowed + smallest);
+        note(s, series, 1, allowed + smallest);
     }
 }
 
@@ -632,6 +646,7 @@ void Flow::stand_still(Segment& s, const std::vector<double>& y) const {
     for (auto of : {&Segment::moved, &Segment::driven, &Segment::belts, &Segment::belt_rates, &Segment::holding}) {
         for (Nodes& values : s.*of) values.fill(0);
     }
+    for (Series& held : s.holding_series) held = {};
 }
 
 /// Nothing that happens here can be seen: all goes on as it begins.
@@ -651,7 +666,10 @@ void Flow::pass_over(Segment& s) const {
     for (auto of : {&Segment::torques, &Segment::driven, &Segment::loads}) {
         for (Nodes& values : s.*of) values.fill(values[0]);
     }
-    for (Nodes& held : s.holding) held.fill(held[0]);
+    for (std::size_t joint = 0; joint < s.holding.size(); ++joint) {
+        s.holding[joint].fill(s.holding[joint][0]);
+        s.holding_series[joint] = cheb::fit(s.holding[joint]);
+    }
 }
 
 }  // namespace dinal::motion::engine

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "motion/engine/mechanics.hpp"
@@ -35,7 +36,7 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
-    /// The factor by which the next stretch may be longer than the last one, which was resolved.
+    /// The factor by which the next stretch may be longer than the last one, which was resolved, if one may.
     [[nodiscard]] double growth() const { return growth_; }
     /// The last one was not resolved because of noise, which need not be smoother from now on.
     bool found_noise(const Segment& segment, const Mode& mode) {
@@ -65,8 +66,6 @@ public:
     void pass_over(Segment& segment) const;
     /// The possible error of torques that results from the slopes of belts, which are differences.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
-    /// The multipliers of what holds, at the nodes.
-    void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
     /// The limits of what sticks, where they change.
     void find_limits(Segment& segment, const Mode& mode) const;
 
@@ -81,7 +80,15 @@ protected:
     [[nodiscard]] virtual bool follows_rates() const = 0;
 
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                  const std::vector<double>* departing);
+                  const std::vector<double>* departing) {
+        return evaluate_part(segment, mode, frame, first, end, departing);
+    }
+    /// The same at all nodes, at the motion of the segment.
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame) {
+        constexpr std::integral_constant<std::size_t, 0> first;
+        constexpr std::integral_constant<std::size_t, node_count> end;
+        return evaluate_part(segment, mode, frame, first, end, nullptr);
+    }
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     Attempt look_between(Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes(const Segment& segment);
@@ -105,13 +112,18 @@ protected:
     } sizes_;  ///< of the torques on each body
 
 private:
+    template <class First, class End>
+    bool evaluate_part(Segment& segment, const Mode& mode, const Frame& frame, First first, End end,
+                       const std::vector<double>* departing);
     void make_room(Segment& segment) const;
+    void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
+    [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
-    void note(const Series& series, double scale, double allowed);
+    void note(const Segment& segment, const Series& series, double scale, double allowed);
     [[nodiscard]] double lost_of_loads(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool hides_nothing(Segment& segment, const Mode& mode, double until);
@@ -128,6 +140,7 @@ private:
     /// Room, so that a stretch need not allocate it.
     struct {
         std::vector<double> torque, load, belt, rate;
+        std::vector<Nodes> lacking;
         std::array<std::vector<double>, node_count> points;  ///< all of y at a node
     } room_;
 };

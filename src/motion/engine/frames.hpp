@@ -1,6 +1,8 @@
 // The frames of a run: one for each set of joints that hold, made once.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -20,13 +22,20 @@ public:
     [[nodiscard]] const Frame& of(const Mode& mode);
 
 private:
+    [[nodiscard]] std::uint64_t short_key(const Mode& mode) const;
+
     using Key = std::pair<std::vector<char>, std::vector<int>>;  ///< the joints that hold, and at which walls
 
     const Mechanics& mechanics_;
     double longest_, otherwise_;
     std::map<Key, Frame> frames_, older_;
     Key last_key_;
-    const Frame* last_ = nullptr;
+    /// The last two, which alternate at the stops of a body: by a number that tells the modes of a few joints apart.
+    struct Recent {
+        std::uint64_t key = 0;
+        const Frame* frame = nullptr;
+    };
+    std::array<Recent, 2> recent_{};
 };
 
 /// Stretches of a linear system are no longer than this part of its shortest period.

@@ -123,9 +123,12 @@ bool Guards::may_creep(std::size_t joint) const {
 /// The torque that holds a joint passes its limit.
 void Guards::watch_release(std::size_t joint) {
     const double beside_zero = now_.mode.friction[joint].beside;
-    const bool between = beside_zero > 0;
+    const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
+    Nodes pull{};
+    Series series = segment_.holding_series[joint];  // of the pull
+    for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j], series[j] = -series[j];
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
         if (wall * sign > 0) continue;
@@ -141,21 +144,27 @@ void Guards::watch_release(std::size_t joint) {
                                            between ? just_beside(mechanics_, at, joint, side, beside_zero, beside) : at,
                                            now_.mode, frame_, found);
         };
-        Nodes pull{}, values{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            Balance found;
-            if (between && !find_balance(cheb::nodes[j], segment_.moment(j, point_), found)) good_ = false;
-            pull[j] = between ? -found.holding[joint] : -segment_.holding[joint][j];
+        if (between) {
+            for (std::size_t j = 0; j < node_count; ++j) {
+                Balance found;
+                if (!find_balance(cheb::nodes[j], segment_.moment(j, point_), found)) good_ = false;
+                pull[j] = -found.holding[joint];
+            }
+            if (!good_) return;
+            series = cheb::fit(pull);
         }
-        if (!good_) return;
-        const Series series = cheb::fit(pull);
         const double blunt = now_.mode.friction[joint].blunt;
+        Series left = constant ? Series{most[0]} : cheb::fit(most);
+        const double doubt =
+            8 * (rounding * (greatest(most) + torques) + cheb::tail(series) + (constant ? 0 : cheb::tail(left))) +
+            of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
+        left[0] += blunt;
+        for (std::size_t k = 0; k < node_count; ++k) left[k] -= sign * series[k];
+        if (cheb::least_bound(left) > 2 * doubt) continue;
+        Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
-        const Series left = cheb::fit(values);
+        left = cheb::fit(values);  // beside zero it has digits that a difference of series has not
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
-        const double doubt = 8 * (rounding * (greatest(most) + torques) + cheb::tail(series) +
-                                  (mechanics_.varies(joint) ? cheb::tail(cheb::fit(most)) : 0)) +
-                             of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
             std::vector<double> y;
@@ -321,10 +330,27 @@ void Guards::watch_normal(std::size_t joint) {
     half = -half;
 }
 
+/// Returns the place at which an angle, a velocity or a state comes to a relay's level.
+std::optional<double> Guards::switches(double sign, double level, std::size_t k) const {
+    Nodes values = segment_.y[k];
+    Series series = segment_.series[k];
+    series[0] += values[0] - level;
+    for (double& each : values) each = sign * (each - level);
+    for (double& each : series) each *= sign;
+    if (stays_above_zero(1, series, std::fabs(level))) return {};
+    const auto exact = [&](double x) { return sign * (segment_.at(k, x) - level); };
+    Half half = 1;
+    return values[0] < 0 ? -1 : Watched(values, exact, 0, series).leaves(half, -1);
+}
+
 void Guards::watch_relays() {
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const Signal& load = mechanics_.loads()[i];
         for (std::size_t r = 0; r < load.relays(); ++r) {
+            if (const auto of = load.switching(r); of.place) {
+                see(switches(of.sign, of.level, *of.place), By::relay, i, static_cast<int>(r));
+                continue;
+            }
             const auto left = [&](const Moment& at) { return load.until_switch(r, at); };
             const Nodes values = segment_.at_nodes(left, point_);
             Half half = 1;

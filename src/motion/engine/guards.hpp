@@ -60,6 +60,7 @@ private:
     void watch_corner(std::size_t joint);
     void watch_normal(std::size_t joint);
     void watch_bristles(std::size_t joint);
+    [[nodiscard]] std::optional<double> switches(double sign, double level, std::size_t k) const;
     void watch_relays();
 
     [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return mechanics_.system().joints[joint]; }

@@ -260,6 +260,28 @@ void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>&
     }
 }
 
+void Frame::multipliers(std::vector<Nodes>& lacking, std::vector<Nodes>& of_joints) const {
+    if (!closing.empty()) {
+        Eigen::VectorXd r(static_cast<Eigen::Index>(lacking.size()));
+        for (std::size_t j = 0; j < node_count; ++j) {
+            for (std::size_t i = 0; i < lacking.size(); ++i) r(static_cast<Eigen::Index>(i)) = lacking[i][j];
+            const Eigen::VectorXd shared = sharing * r;
+            for (std::size_t c = 0; c < sharing_of.size(); ++c) {
+                of_joints[sharing_of[c]][j] = shared(static_cast<Eigen::Index>(c));
+            }
+        }
+        return;
+    }
+    for (std::size_t e = edges.size(); e-- > 0;) {
+        const Edge& edge = edges[e];
+        Nodes& torque = of_joints[edge.joint];
+        for (std::size_t j = 0; j < node_count; ++j) torque[j] = lacking[edge.child][j] / edge.by;
+        for (const auto& [body, by] : system_->joints[edge.joint].of) {
+            if (body != edge.child) add(lacking[body], torque, -by);
+        }
+    }
+}
+
 std::vector<std::size_t> redundant_rigid(const model::System& system) {
     Mode mode;
     const std::size_t joints = system.joints.size();
@@ -355,6 +377,11 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const auto varies = [](const Signal& limit) { return !limit.none(); };
         contact.may_open =
             !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
+        if (contact.native && !friction.law.depends_on_speed() && !bends) {
+            const auto& law = friction.law;
+            contact.constant = {{law.holding(Motion::backward), law.holding(Motion::forward)},
+                                {law.sliding(Motion::backward, 0), law.sliding(Motion::forward, 0)}};
+        }
         all_linear_ =
             all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none() && !joint.stops;
         contacts_.push_back(std::move(contact));
@@ -423,6 +450,7 @@ double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) cons
 double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const Contact& contact = contacts_[joint];
+    if (contact.constant) return contact.constant->sliding[side_of(how.way)];
     const double speed = model::sign_of(how.way) * slip;
     const Signal& own = contact.sliding[side_of(how.way)];
     double torque = 0;
@@ -446,6 +474,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
 double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const Contact& contact = contacts_[joint];
+    if (contact.constant) return contact.constant->holding[side_of(way)];
     const Signal &own = contact.holding[side_of(way)], &sliding_own = contact.sliding[side_of(way)];
     double torque = 0;
     if (!own.none()) {
@@ -486,6 +515,8 @@ double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& 
     const Slipping& how = mode.friction[joint];
     if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
     if (how.way == Motion::stuck || !rubs(joint)) return 0;
+    if (const auto& constant = contacts_[joint].constant)
+        return -model::sign_of(how.way) * constant->sliding[side_of(how.way)];
     Slipping present = how;
     // Along a wall no guard watches for the corners of the law, so choose the range here.
     if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
@@ -529,7 +560,16 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
     const Joint& own = system_.joints[joint];
     const double C = own.damping, k = own.stiffness;
     const Nodes angle = between(joint, y), velocity = between(joint, std::span(y).subspan(bodies()));
-    for (std::size_t j = first; j < end; ++j) out[j] = C * velocity[j] + k * angle[j];
+    for (std::size_t j = 0; j < node_count; ++j) out[j] = C * velocity[j] + k * angle[j];
+    const model::Friction& law = own.friction.law;
+    if (const Slipping& how = mode.friction[joint];
+        own.spring.none() && mode.presses[joint] == 0 && !law.depends_on_speed()) {
+        if (how.way == Motion::stuck || !rubs(joint)) return;
+        const double most = how.riding ? law.holding(how.way) : law.sliding(how.way, 0);
+        const double torque = model::sign_of(how.way) * most;
+        for (double& each : out) each += torque;
+        return;
+    }
     if (!own.spring.none()) {
         for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
     }
@@ -601,7 +641,8 @@ double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double bel
 double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
-    double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
+    double size = std::fabs(own.stiffness * q);
+    if (!own.spring.none()) size += std::fabs(own.spring.torque(q));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
@@ -700,9 +741,24 @@ bool Mechanics::has_functions() const {
     return has;
 }
 
+/// The greatest sum of a row is no less than the square of the greatest frequency (Gershgorin), and not far from it in
+/// a chain. To find that itself takes the cube of the number of groups, for each set of joints that hold.
+double Mechanics::bound_of_fastest(const Frame& frame) const {
+    std::vector<double> sums(frame.groups(), 0);
+    for (std::size_t j = 0; j < joints(); ++j) {
+        const double k = system_.joints[j].stiffness;
+        for (const auto& [p, of_p] : frame.joints[j]) {
+            for (const auto& [q, of_q] : frame.joints[j]) sums[p] += std::fabs(of_p * of_q) * k / frame.inertia[p];
+        }
+    }
+    return std::sqrt(*std::max_element(sums.begin(), sums.end()));
+}
+
 double Mechanics::fastest(const Frame& frame) const {
     const auto n = static_cast<Eigen::Index>(frame.groups());
     if (n == 0) return 0;
+    constexpr Eigen::Index few = 8;
+    if (n > few) return bound_of_fastest(frame);
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
     for (std::size_t j = 0; j < joints(); ++j) {
         const double k = system_.joints[j].stiffness;

@@ -95,6 +95,8 @@ struct Frame {
     void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
     /// Computes the torque of each holding joint from the torque that each body lacks, I a - torque.
     void multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const;
+    /// The same at all nodes of a stretch. `lacking` is used up.
+    void multipliers(std::vector<Nodes>& lacking, std::vector<Nodes>& of_joints) const;
 
 private:
     void go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
@@ -182,7 +184,7 @@ public:
     /// known value.
     template <class Known>
     void loads_of_time(double t, Side side, std::vector<double>& loads, const Known& known) const {
-        const double push = base(t, side);
+        const double push = has_base() ? base(t, side) : 0;
         loads.resize(joints());
         for (std::size_t i = 0; i < loads.size(); ++i) {
             const std::optional<double> load = known(i);
@@ -205,7 +207,7 @@ public:
     /// The torque of a joint that does not hold.
     [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// The same at nodes for a native joint that does not lean on a wall, from angles, velocities (and states) y and
-    /// the velocity of its belt.
+    /// the velocity of its belt; at other nodes `out` is of no use.
     void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
                         std::size_t first, std::size_t end, Nodes& out) const;
     /// Adds the friction part of native_torques().
@@ -261,7 +263,8 @@ public:
     [[nodiscard]] bool asks_functions() const;
     /// Returns whether there is any user function.
     [[nodiscard]] bool has_functions() const;
-    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
+    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. Of
+    /// many groups a bound that it does not exceed.
     [[nodiscard]] double fastest(const Frame& frame) const;
 
     /// Visits all signals.
@@ -354,8 +357,14 @@ private:
         std::optional<Piecewise> law = {};     ///< the user's friction law
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;
+        /// What holds and what slides each way, where that depends on the way only.
+        struct Constant {
+            std::array<double, 2> holding, sliding;
+        };
+        std::optional<Constant> constant = {};
     };
 
+    [[nodiscard]] double bound_of_fastest(const Frame& frame) const;
     [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;
     [[nodiscard]] double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Visits each user function.

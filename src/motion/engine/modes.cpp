@@ -1,6 +1,7 @@
 #include "motion/engine/modes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 
 #include "algebra/decompositions.hpp"
@@ -34,6 +35,21 @@ std::vector<model::Oscillator> modes_of(const model::System& system) {
         if (mode) modes.push_back(*mode);
     }
     return modes;
+}
+
+/// By the greatest sum of a row of the stiffnesses over inertias (Gershgorin).
+text::Expected<model::Oscillator> no_slower_than_modes(const model::System& system) {
+    std::vector<double> sums(system.bodies.size(), 0);
+    for (const model::Joint& joint : system.joints) {
+        double all = 0;
+        for (const model::Weight& turned : joint.of) all += std::fabs(turned.by);
+        for (const model::Weight& on : joint.of) {
+            if (system.bodies[on.body].moved) continue;
+            sums[on.body] += std::fabs(on.by) * all * joint.stiffness / system.bodies[on.body].inertia;
+        }
+    }
+    const double most = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
+    return model::Oscillator::make({.inertia = 1, .stiffness = most});
 }
 
 }  // namespace dinal::motion::engine

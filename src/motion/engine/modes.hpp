@@ -14,6 +14,9 @@ namespace dinal::motion::engine {
 /// The linear modes of the system without friction, each as a system of one body.
 std::vector<model::Oscillator> modes_of(const model::System& system);
 
+/// A system of one body that swings no slower than any mode.
+text::Expected<model::Oscillator> no_slower_than_modes(const model::System& system);
+
 struct EigenMode {
     std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
     std::vector<std::complex<double>> shape{};  ///< amplitude of each body; the greatest is 1

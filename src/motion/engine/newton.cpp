@@ -1,7 +1,9 @@
 #include "motion/engine/newton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace dinal::motion::engine {
 
@@ -9,7 +11,48 @@ namespace {
 
 constexpr double clear_of_noise = 1e4;  // differences over so much motion tell a slope
 constexpr std::size_t most_factors = 24;
-constexpr Eigen::Index many_unknowns = 8;  // their matrix is sparse
+constexpr Eigen::Index few_unknowns = 8;    // their matrices are dense, also in a chain
+constexpr Eigen::Index many_unknowns = 64;  // their matrix is sparse, if it has no narrow band
+using Complex = std::complex<double>;
+
+/// Without a look at numbers that are not finite.
+Complex product(Complex a, Complex b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// Solves with L and U of a banded matrix; the diagonal has the inverses of the pivots.
+void solve_band(const Complex* rows, Eigen::Index size, Eigen::Index band, Complex* x) {
+    const Eigen::Index wide = 2 * band + 1;
+    for (Eigen::Index r = 1; r < size; ++r) {
+        const Complex* const row = rows + r * wide + band - r;
+        for (Eigen::Index c = std::max<Eigen::Index>(0, r - band); c < r; ++c) x[r] -= product(row[c], x[c]);
+    }
+    for (Eigen::Index r = size; r-- > 0;) {
+        const Complex* const row = rows + r * wide + band - r;
+        for (Eigen::Index c = r + 1; c <= std::min(size - 1, r + band); ++c) x[r] -= product(row[c], x[c]);
+        x[r] = product(row[r], x[r]);
+    }
+}
+
+/// Makes L and U of a banded matrix without looking for pivots: those of springs and dampers need none. Returns false
+/// if one is next to nothing.
+bool eliminate_band(Complex* rows, Eigen::Index size, Eigen::Index band) {
+    const Eigen::Index wide = 2 * band + 1;
+    const auto at = [=](Eigen::Index r, Eigen::Index c) -> Complex& { return rows[r * wide + band + c - r]; };
+    constexpr double nothing = 1e-6;
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const Eigen::Index last = std::min(size - 1, k + band);
+        double greatest = 0;
+        for (Eigen::Index c = k; c <= last; ++c) greatest = std::max(greatest, std::norm(at(k, c)));
+        if (!(std::norm(at(k, k)) > nothing * nothing * greatest)) return false;
+        at(k, k) = 1.0 / at(k, k);
+        for (Eigen::Index r = k + 1; r <= last; ++r) {
+            const Complex part = at(r, k) = product(at(r, k), at(k, k));
+            for (Eigen::Index c = k + 1; c <= last; ++c) at(r, c) -= product(part, at(k, c));
+        }
+    }
+    return true;
+}
 
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
 using Integration = Eigen::Matrix<double, node_count, node_count>;
@@ -67,6 +110,52 @@ void multiply(const double* matrix, const double* vector, std::size_t columns, d
     result = sums;
 }
 
+/// The inverse of a matrix, by elimination with the greatest pivots. A general decomposition takes six times as long.
+using Inner = Eigen::Matrix<double, inner, inner>;
+Inner inverse_of(Inner A) {
+    std::array<std::size_t, inner> pivots{};
+    const auto column = [&A](std::size_t k) { return A.data() + k * inner; };
+    for (std::size_t k = 0; k < inner; ++k) {
+        std::size_t pivot = k;
+        for (std::size_t i = k + 1; i < inner; ++i) {
+            if (std::fabs(column(i)[k]) > std::fabs(column(pivot)[k])) pivot = i;
+        }
+        pivots[k] = pivot;
+        if (pivot != k) std::swap_ranges(column(k), column(k) + inner, column(pivot));
+        std::array<double, inner> own;
+        std::copy(column(k), column(k) + inner, own.begin());
+        const double by = 1 / own[k];
+        own[k] = 1;
+        for (double& each : own) each *= by;
+        for (std::size_t i = 0; i < inner; ++i) {
+            double* const other = column(i);
+            const double part = other[k];
+            other[k] = 0;
+            for (std::size_t j = 0; j < inner && i != k; ++j) other[j] -= part * own[j];
+        }
+        std::copy(own.begin(), own.end(), column(k));
+    }
+    for (std::size_t k = inner; k-- > 0;) {
+        if (pivots[k] == k) continue;
+        for (std::size_t i = 0; i < inner; ++i) std::swap(column(i)[k], column(i)[pivots[k]]);
+    }
+    return A;
+}
+
+/// Returns the greatest sum of the sizes of a column.
+template <class Matrix>
+double norm_of(const Matrix& A) {
+    return A.cwiseAbs().colwise().sum().maxCoeff();
+}
+
+/// The size of a matrix without the unit one, if its inverse is right to rounding; otherwise 0.
+template <class Matrix>
+double size_if_well(const Matrix& A, const Matrix& inverse) {
+    constexpr double well = 18.75;  // times the rows: errors of an inverse are its condition times rounding at most
+    if (!(norm_of(A) * norm_of(inverse) < well * static_cast<double>(A.rows()))) return 0;
+    return 2 * norm_of(Matrix(A - Matrix::Identity(A.rows(), A.cols()))) + rounding;
+}
+
 }  // namespace
 
 void integrate(const Nodes& values, double h, Nodes& sums) {
@@ -85,7 +174,7 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
     const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
     const std::size_t groups = frame.groups(), rows = groups + m, columns = 2 * groups + m;
     slopes_.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    factors_.clear(), last_factors_ = nullptr;
+    factors_.clear(), last_factors_ = nullptr, order_.clear();
     known_ = true;
     if (!mechanics_.nonlinear()) {
         find_linear(frame);
@@ -181,8 +270,24 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
     for (Eigen::Index r = 0; r < rows; ++r) {
         multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
     }
-    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(rows);
-    for (std::size_t i = 0; i < each.values.size(); ++i) {
+    thread_local std::vector<Complex> in_order;
+    in_order.resize(static_cast<std::size_t>(rows));
+    for (std::size_t i = 0; i < each.values.size() && band >= 0; ++i) {
+        const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const Eigen::Index at = order[k] * size;
+            in_order[k] = {left(at + real), imaginary < 0 ? 0 : left(at + imaginary)};
+        }
+        const Eigen::Index numbers = rows * (2 * band + 1);
+        solve_band(of_modes.data() + static_cast<Eigen::Index>(i) * numbers, rows, band, in_order.data());
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const Eigen::Index at = order[k] * size;
+            left(at + real) = in_order[k].real();
+            if (imaginary >= 0) left(at + imaginary) = in_order[k].imag();
+        }
+    }
+    Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(band < 0 ? rows : 0);
+    for (std::size_t i = 0; i < each.values.size() && band < 0; ++i) {
         const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
         for (Eigen::Index r = 0; r < rows; ++r) {
             of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
@@ -200,6 +305,70 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
     }
 }
 
+/// The order of Cuthill and McKee: the neighbours of each follow it, those with fewer of their own first.
+void Newton::find_order(Eigen::Index groups) {
+    const Eigen::Index rows = slopes_.rows();
+    const auto count = static_cast<std::size_t>(rows);
+    std::vector<std::vector<Eigen::Index>> neighbours(count);
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        for (Eigen::Index c = 0; c < r; ++c) {
+            const auto acts = [&](Eigen::Index on, Eigen::Index of) {
+                return (of < groups && slopes_(on, of) != 0) || slopes_(on, groups + of) != 0;
+            };
+            if (!acts(r, c) && !acts(c, r)) continue;
+            neighbours[static_cast<std::size_t>(r)].push_back(c), neighbours[static_cast<std::size_t>(c)].push_back(r);
+        }
+    }
+    const auto fewer = [&](Eigen::Index a, Eigen::Index b) {
+        return neighbours[static_cast<std::size_t>(a)].size() < neighbours[static_cast<std::size_t>(b)].size();
+    };
+    std::vector<Eigen::Index> place(count, -1), firsts(count);
+    for (Eigen::Index r = 0; r < rows; ++r) firsts[static_cast<std::size_t>(r)] = r;
+    std::stable_sort(firsts.begin(), firsts.end(), fewer);
+    order_.clear();
+    const auto take = [&](Eigen::Index r) {
+        if (place[static_cast<std::size_t>(r)] >= 0) return;
+        place[static_cast<std::size_t>(r)] = static_cast<Eigen::Index>(order_.size());
+        order_.push_back(r);
+    };
+    for (const Eigen::Index first : firsts) {
+        std::size_t next = order_.size();
+        for (take(first); next < order_.size(); ++next) {
+            std::vector<Eigen::Index>& near = neighbours[static_cast<std::size_t>(order_[next])];
+            std::stable_sort(near.begin(), near.end(), fewer);
+            std::for_each(near.begin(), near.end(), take);
+        }
+    }
+    band_ = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+        for (const Eigen::Index c : neighbours[r]) {
+            band_ = std::max(band_, place[r] - place[static_cast<std::size_t>(c)]);
+        }
+    }
+}
+
+bool Newton::factor_band(double h, Eigen::Index groups, Factors& made) const {
+    const Eigen::Index rows = slopes_.rows(), wide = 2 * band_ + 1;
+    const auto& values = integration_modes().values;
+    made.of_modes.assign(values.size() * static_cast<std::size_t>(rows * wide), 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const Complex once = h * values[i], twice = once * once;
+        Complex* const own = made.of_modes.data() + static_cast<Eigen::Index>(i) * rows * wide;
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            for (Eigen::Index c = std::max<Eigen::Index>(0, r - band_); c <= std::min(rows - 1, r + band_); ++c) {
+                const Eigen::Index on = order_[static_cast<std::size_t>(r)], of = order_[static_cast<std::size_t>(c)];
+                Complex sum = r == c ? 1 : 0;
+                sum -= once * slopes_(on, groups + of);
+                if (of < groups) sum -= twice * slopes_(on, of);
+                own[r * wide + band_ + c - r] = sum;
+            }
+        }
+        if (!eliminate_band(own, rows, band_)) return false;
+    }
+    made.band = band_, made.order = order_;
+    return true;
+}
+
 const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     constexpr Eigen::Index few = 3;
     constexpr int often = 4;
@@ -214,7 +383,6 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
         last_factors_ = &*found;
         return found->second;
     }
-    using Inner = Eigen::Matrix<double, inner, inner>;
     static const Inner once = integration().bottomRightCorner<inner, inner>(), twice = once * once;
     const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
                groups = static_cast<Eigen::Index>(frame.groups());
@@ -235,6 +403,11 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     }
     Factors& made = found->second;
     last_factors_ = &*found;
+    if (linear && rows == 1) {
+        const Inner A = block(0, 0), inverse = inverse_of(A);
+        made.inverse = inverse, made.off = size_if_well(A, inverse);
+        return made;
+    }
     if (linear && known) {
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
         for (Eigen::Index r = 0; r < rows; ++r) {
@@ -242,10 +415,15 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
                 if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
             }
         }
-        made.inverse = algebra::inverse(A);
+        made.inverse = algebra::inverse(A), made.off = size_if_well(A, made.inverse);
         return made;
     }
+    if (rows >= few_unknowns && order_.empty()) find_order(groups);
+    const bool narrow =
+        rows >= few_unknowns && (4 * band_ < rows || (rows >= many_unknowns && 2 * band_ < many_unknowns));
+    if (narrow && factor_band(h, groups, made)) return made;
     if (rows < many_unknowns) {
+        made.of_modes.clear();
         made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
         for (const std::complex<double>& value : integration_modes().values) {
             const std::complex<double> once_by = h * value, twice_by = once_by * once_by;

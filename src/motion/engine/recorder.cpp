@@ -101,18 +101,20 @@ void Recorder::end_events(model::Outcome outcome, const Mode& mode, const Contac
 
 void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise) {
     const auto& [now, segment, frame, balances, sampled] = of;
-    std::vector<Event> turns;
+    std::vector<Event>& turns = room_.turns;
+    turns.clear(), room_.rubs.assign(n(), 0);
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!now.rubs(j)) continue;
+        for (const model::Weight& weight : problem_.system.joints[j].of) room_.rubs[weight.body] = 1;
+    }
     for (std::size_t i = 0; i < n(); ++i) {
-        bool rubs = false;
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            rubs = rubs || (problem_.system.joints[j].is_on(i) && now.rubs(j));
-        }
-        if (!rubs && !frame.bodies[i].empty()) {
+        if (room_.rubs[i] == 0 && !frame.bodies[i].empty()) {
             const double torques = std::max(100 * rounding * sizes.on(problem_.system.joints[i]), noise);
             record_turns(i, segment, until, segment.h / problem_.system.bodies[i].inertia * torques, sampled, turns);
         }
     }
-    std::stable_sort(turns.begin(), turns.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+    const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
+    if (turns.size() > 1) std::stable_sort(turns.begin(), turns.end(), earlier);
     for (const Event& turn : turns) tell({.event = turn});
 }
 
@@ -124,8 +126,12 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     constexpr double underflow = 1e-280;  // numbers so small lose their digits
     if (!(moving > std::max(nothing, underflow))) return;
     Half half = static_cast<int>(heading_[body]);
-    const Watched watched(v, exact);
-    std::vector<double> zeros{-1};
+    Series series = segment.series[n() + body];
+    series[0] += v[0];
+    if (half != 0 && stays_above_zero(half, series)) return;
+    const Watched watched(v, exact, 0, series);
+    std::vector<double>& zeros = room_.zeros;
+    zeros.assign(1, -1);
     for (;;) {
         const auto x = watched.leaves(half, zeros.back());
         if (!x || *x >= until - 1e-12) break;
@@ -151,7 +157,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
         if (std::exchange(way, next) == 0) continue;
         const double x = zeros[k], t = segment.time(x);
         if (!(t > problem_.window.start) && problem_.before == nullptr) continue;
-        std::vector<double> y;
+        std::vector<double>& y = room_.y;
         segment.state(x, y);
         const std::optional<double> known = sampled.at(body, x);
         const double M = known ? *known : mechanics_.load(body, {t, Side::at, y});
@@ -308,8 +314,9 @@ std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segmen
 
 /// Adds what springs of sliders that stick, and pressed walls, take and store.
 void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const {
-    Nodes springs{};
     acting.presses = now.mode.presses[joint] != 0;
+    if (!acting.presses && now.mode.sliders.empty()) return;
+    Nodes springs{};
     if (acting.presses) {
         const model::Walls& stops = *problem_.system.joints[joint].stops;
         springs = mechanics_.between(joint, segment.y);

@@ -103,6 +103,12 @@ private:
     std::size_t next_row_ = 0;
     Balance balance_;
     std::vector<double> row_, point_;
+    /// Room, so that a stretch need not allocate it.
+    struct {
+        std::vector<char> rubs;  ///< of each body
+        std::vector<model::Event> turns;
+        std::vector<double> zeros, y;
+    } room_;
 };
 
 }  // namespace dinal::motion::engine

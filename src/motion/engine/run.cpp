@@ -288,13 +288,13 @@ bool Engine::stands_for_good(const Frame& present) {
     if (mechanics_.has_belts() || !problem_.drive.events.empty()) return false;
     bool constant = true;
     mechanics_.for_each_signal([&](const Signal& s) { constant = constant && s.constant_from() <= now_.t.hi; });
-    std::vector<double> greatest_pull(mechanics_.joints()), lacking(n()), held(mechanics_.joints());
-    std::vector<double> none(mechanics_.joints()), torques;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!mechanics_.is_native(j) || now_.mode.friction[j].riding) return false;
         if (!constant && (now_.mode.leans[j] != 0 || now_.mode.friction[j].creeps != Motion::stuck)) return false;
     }
     if (constant) return true;
+    auto& [greatest_pull, lacking, held, belts, loads, torques] = standing_;
+    greatest_pull.assign(mechanics_.joints(), 0), held.assign(mechanics_.joints(), 0);
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const double most = mechanics_.loads()[i].most();
         if (!(most < model::never)) return false;
@@ -303,13 +303,20 @@ bool Engine::stands_for_good(const Frame& present) {
         present.multipliers(lacking, held);
         for (std::size_t j = 0; j < held.size(); ++j) greatest_pull[j] += most * std::fabs(held[j]);
     }
-    mechanics_.torques(now_.here(), now_.mode, std::vector<double>(mechanics_.joints()), none, torques);
+    const auto most = [&](std::size_t j, Motion way) { return mechanics_.holding(j, way, now_.here()); };
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!now_.mode.holds(j) || now_.mode.rigid[j] != 0) continue;
+        constexpr double clearly = 1 - 1e-9;
+        if (2 * clearly * greatest_pull[j] > most(j, Motion::forward) + most(j, Motion::backward)) return false;
+    }
+    belts.assign(mechanics_.joints(), 0), loads.assign(mechanics_.joints(), 0);
+    mechanics_.torques(now_.here(), now_.mode, belts, loads, torques);
     for (std::size_t i = 0; i < n(); ++i) lacking[i] = -torques[i];
     present.multipliers(lacking, held);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (!now_.mode.holds(j) || now_.mode.rigid[j] != 0) continue;
-        if (!(greatest_pull[j] - held[j] <= mechanics_.holding(j, Motion::forward, now_.here()))) return false;
-        if (!(greatest_pull[j] + held[j] <= mechanics_.holding(j, Motion::backward, now_.here()))) return false;
+        if (!(greatest_pull[j] - held[j] <= most(j, Motion::forward))) return false;
+        if (!(greatest_pull[j] + held[j] <= most(j, Motion::backward))) return false;
     }
     return true;
 }
@@ -409,15 +416,15 @@ double Engine::kinetic_energy() const {
 
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
 void Engine::go_to(double x) {
-    const std::vector<double> begin = now_.y;
-    segment_.state(x, now_.y);
     for (std::size_t i = 0; i < n(); ++i) {
         const double moved =
             (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + now_.low[i];
-        now_.y[i] = begin[i] + moved;
-        const double added = now_.y[i] - begin[i];
-        now_.low[i] = (begin[i] - (now_.y[i] - added)) + (moved - added);
+        const double begin = now_.y[i];
+        now_.y[i] = begin + moved;
+        const double added = now_.y[i] - begin;
+        now_.low[i] = (begin - (now_.y[i] - added)) + (moved - added);
     }
+    for (std::size_t k = n(); k < now_.y.size(); ++k) now_.y[k] = segment_.at(k, x);
     walls_.follow(problem_.system, now_);
 }
 

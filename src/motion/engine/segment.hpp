@@ -15,6 +15,7 @@ struct Segment : NodeTimes {
     Clock start;
     double end = 0;                ///< exactly
     bool proven = true;            ///< functions that are read do nothing in it that their series do not
+    bool may_grow = true;          ///< the next stretch may be longer than all before
     bool to_the_end = false;       ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
     std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
     std::vector<Nodes> f{};        ///< their rates: of the angles without meaning
@@ -27,6 +28,7 @@ struct Segment : NodeTimes {
     std::vector<Nodes> torques{};  ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
+    std::vector<Series> holding_series{};      ///< the same, of those whose torque is compared with a limit
     /// The most that holds each joint that sticks and whose limits change, backward and forward.
     std::vector<std::array<Nodes, 2>> limits{};
 

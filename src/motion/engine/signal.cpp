@@ -99,6 +99,8 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         }
         if (part.relay != nullptr) relays_.push_back(parts_.size());
         if (part.delayed != nullptr) delays_.push_back(part.delayed->by);
+        const bool holds = part.sampled != nullptr || part.relay != nullptr;
+        is_held_ = is_held_ && (part.of_motion || (holds && c.from == -model::never && c.to == model::never));
         of_time_only_ = of_time_only_ && !controller && !part.of_motion;
         parts_.push_back(part);
     }
@@ -145,6 +147,7 @@ double Signal::sum(const Moment& at, bool of_motion) const {
 
 void Signal::sample(const NodeTimes& when, Nodes& out) const {
     const auto at_node = [&](std::size_t j) { return of_time({when.times[j], when.side(j), {}}); };
+    if (is_held_) return out.fill(at_node(0));
     if (!of_time_only_) {
         for (std::size_t j = 0; j < node_count; ++j) out[j] = at_node(j);
         return;
@@ -238,12 +241,16 @@ bool Signal::arrive(const Moment& at) {
     return true;
 }
 
-double Signal::until_switch(std::size_t relay, const Moment& at) const {
+Signal::Switching Signal::switching(std::size_t relay) const {
     const std::size_t i = relays_[relay];
     const model::RelayController& own = *parts_[i].relay;
     const double way = own.off > own.on ? 1 : -1;
-    const double sign = memory_[i].on ? -way : way, level = memory_[i].on ? own.off : own.on;
-    const double measured = memory_[i].place ? at.y[*memory_[i].place] : asking_->ask_at(*own.function, at.t, at.y);
+    return {memory_[i].on ? -way : way, memory_[i].on ? own.off : own.on, memory_[i].place};
+}
+
+double Signal::until_switch(std::size_t relay, const Moment& at) const {
+    const auto [sign, level, place] = switching(relay);
+    const double measured = place ? at.y[*place] : asking_->ask_at(*parts_[relays_[relay]].relay->function, at.t, at.y);
     return sign * (measured - level);
 }
 

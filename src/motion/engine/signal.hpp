@@ -295,6 +295,12 @@ public:
             if (parts_[i].relay->function != nullptr) f(*parts_[i].relay->function);
         }
     }
+    /// A relay's watched value is sign * (input - level), positive until it must switch.
+    struct Switching {
+        double sign, level;
+        std::optional<std::size_t> place;  ///< of the input in y; none: a function
+    };
+    [[nodiscard]] Switching switching(std::size_t relay) const;
     /// Positive until the relay must switch.
     [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
@@ -334,6 +340,7 @@ private:
     std::vector<std::size_t> relays_, held_;
     std::vector<double> delays_;
     bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
+    bool is_held_ = true;  ///< all that does not depend on the motion are controllers that hold a value for ever
     mutable model::Spread spread_{.places = cheb::nodes};
     /// Caches of_time() at both ends of the last stretch, one of which is the beginning of the next.
     static constexpr double nowhen = std::numeric_limits<double>::quiet_NaN();
