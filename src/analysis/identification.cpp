@@ -123,7 +123,8 @@ struct Record {
         : theta(question.theta.size()),
           cut(cut_off(question.theta)),
           span(question.t.back() - question.t.front()),
-          noise(noise_of(question.theta)) {
+          noise(noise_of(question.theta)),
+          step(step_of_instrument(question.theta)) {
         std::copy(question.theta.begin(), question.theta.end(), theta.data());
         range = theta.maxCoeff() - theta.minCoeff();
         turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
@@ -144,6 +145,7 @@ struct Record {
     Eigen::VectorXd theta;
     CutOff cut;
     double range, span, noise;
+    double step;                     // of the instrument; 0 if it shows none
     std::vector<std::size_t> turns;  // places of the turning points
 };
 
@@ -1001,7 +1003,8 @@ private:
     /// the first harmonic of the sawtooth).
     void add_steps(const Eigen::MatrixXd& J, const Eigen::VectorXd& path, double noise,
                    Eigen::MatrixXd& covariance) const {
-        const double step = smallest_step(question_.theta), variance = noise * noise, rounded = step * step / 12;
+        const double step = record_.step, variance = noise * noise, rounded = step * step / 12;
+        if (step == 0) return;
         const double other = std::max(0.0, variance - rounded) * std::pow(2 * std::numbers::pi / step, 2);
         const double share = variance > 0 ? std::min(1.0, rounded / variance * std::exp(-other)) : 0;
         constexpr double little = 1e-3;
@@ -1112,7 +1115,11 @@ private:
     /// An instrument that shows steps errs by half of one, alike from sample to sample where the motion is slow.
     [[nodiscard]] bool is_within_a_step() const {
         constexpr double part = 0.5;
-        return deviation() < part * smallest_step(question_.theta);
+        return deviation() < part * record_.step;
+    }
+    /// Noise by which the parameters err: rounding to steps does not show where the mass rests, as the zero fits there.
+    [[nodiscard]] double noise_of_errors() const {
+        return is_within_a_step() ? std::max(deviation(), record_.step / std::sqrt(12.0)) : deviation();
     }
 
     [[nodiscard]] Identified result() {
@@ -1132,7 +1139,7 @@ private:
         if (found.noise > least_noise * record_.range) {
             found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
         }
-        const double spread = found.widening * found.noise;
+        const double spread = found.widening * noise_of_errors();
         judge(found);
         if (!found.is_noise && !found.wild && !is_rounding()) {
             const Eigen::MatrixXd& J = weighed.slopes;

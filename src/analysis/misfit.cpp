@@ -266,4 +266,14 @@ double smallest_step(std::span<const double> values) {
     return step;
 }
 
+double step_of_instrument(std::span<const double> values) {
+    const double step = smallest_step(values);
+    constexpr double rounding = 1e-6;
+    const bool is_even = std::all_of(values.begin(), values.end(), [&](double x) {
+        const double steps = (x - values.front()) / step;
+        return std::fabs(steps - std::round(steps)) < rounding * std::max(1.0, std::fabs(steps));
+    });
+    return is_even ? step : 0;
+}
+
 }  // namespace dinal::analysis

@@ -58,7 +58,10 @@ bool is_white(std::span<const double> residual, double unusual = 2);
 /// A residual that is white once the memory of one step is filtered out.
 bool has_only_memory(std::span<const double> residual);
 
-/// The smallest difference of two neighbours that differ: the step of an instrument that shows steps.
+/// The smallest difference of two neighbours that differ.
 double smallest_step(std::span<const double> values);
+/// That, if all values are whole numbers of it apart, as an instrument with steps or printed digits have it; otherwise
+/// 0.
+double step_of_instrument(std::span<const double> values);
 
 }  // namespace dinal::analysis

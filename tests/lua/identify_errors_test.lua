@@ -1,5 +1,5 @@
 -- identify: how often the truth lies within the errors where the record is not what the model says: a law of friction that
--- falls with the speed, a zero that drifts; and that a record as the model says is left in peace.
+-- falls with the speed, a zero that drifts, an instrument with steps; and that a record as the model says is left in peace.
 dofile "tests/lua/support.lua"
 
 local function between(a, b) return a + (b - a) * math.random() end
@@ -74,6 +74,18 @@ test("a zero that drifts is told or widens the errors, most of all that of the o
         three, four = offset(fit, truth)
     end
     if n == 200 then assert(one > 0.66 and two > 0.91 and three > 0.5 and four > 0.82, one .. " " .. two .. " " .. three .. " " .. four) end
+end)
+
+test("steps of an instrument do not hide where the mass rests, which is where the zero is fitted to them", function()
+    local count, n, one, two = counted(every), lots(100)
+    for seed = 1, n do
+        local truth, run = decay(seed)
+        local step = by_ratio(0.002, 0.04) * (run.theta:max() - run.theta:min())
+        local fit = identify{ data = { t = run.t, theta = ((run.theta + 0.1) / step):map(function(x) return math.floor(x + 0.5) * step end) } }
+        equal(fit.misfit, nil)
+        one, two = count(fit, truth)
+    end
+    if n == 100 then assert(one > 0.66 and two > 0.92, one .. " " .. two) end
 end)
 
 test("a driven record of friction that falls with the speed is told or its errors are wider", function()
