@@ -72,12 +72,15 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     Covariance covariance = covariance_of(J, question.scale.whole, found.noise);
     const double spread = found.widening * found.noise;
     covariance.matrix *= spread * spread;
-    if (found.noise > question.least_noise && !is_all_white(question, best->residual)) {
-        const Eigen::VectorXd wider =
-            widened_by_memory(J, question.scale.whole, best->residual, question.columns, found.noise, found.widening);
-        covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
-        found.misfit = misfit_of(best->residual, question.columns, J, question.scale.whole,
-                                 question.structures(best->parameters, found.noise));
+    if (found.noise > question.least_noise) {
+        const bool white = is_all_white(question, best->residual);
+        if (!white) {
+            const Eigen::VectorXd wider = widened_by_memory(J, question.scale.whole, best->residual, question.columns,
+                                                            found.noise, found.widening);
+            covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
+        }
+        found.misfit = misfit_of(best->residual, white, question.columns, J,
+                                 question.structures(best->parameters, found.noise, white));
         if (found.misfit) covariance.matrix += found.misfit->added_covariance();
     }
     found.silent = covariance.silent;

@@ -20,8 +20,8 @@ struct GeneralQuestion {
     Eigen::VectorXd start;
     FitScale scale;
     double least_noise = 0;  ///< a residual that is less is rounding
-    /// The terms that the model may lack at these parameters; called only if the residual is not white.
-    std::function<std::vector<Structure>(const Eigen::VectorXd& parameters, double noise)> structures;
+    /// The terms that the model may lack at these parameters.
+    std::function<std::vector<Structure>(const Eigen::VectorXd& parameters, double noise, bool is_white)> structures;
     std::vector<std::vector<double>> other_starts;  ///< of each parameter: where a search may begin, too
 };
 

@@ -14,6 +14,7 @@
 #include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
+#include "analysis/missing_torques.hpp"
 #include "analysis/repetition.hpp"
 #include "analysis/turning_points.hpp"
 #include "motion/integrators.hpp"
@@ -65,6 +66,7 @@ struct Rest {
     double breakaway = 0;  // Re/k; 0: Rd/k
     std::optional<double> turn = {};
     Covariance covariance = {};
+    Eigen::MatrixXd slopes = {};
 };
 
 double omega0_of(const Parameters& p) {
@@ -121,7 +123,8 @@ struct Record {
         : theta(question.theta.size()),
           cut(cut_off(question.theta)),
           span(question.t.back() - question.t.front()),
-          noise(noise_of(question.theta)) {
+          noise(noise_of(question.theta)),
+          step(step_of_instrument(question.theta)) {
         std::copy(question.theta.begin(), question.theta.end(), theta.data());
         range = theta.maxCoeff() - theta.minCoeff();
         turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
@@ -142,6 +145,7 @@ struct Record {
     Eigen::VectorXd theta;
     CutOff cut;
     double range, span, noise;
+    double step;                     // of the instrument; 0 if it shows none
     std::vector<std::size_t> turns;  // places of the turning points
 };
 
@@ -989,18 +993,18 @@ private:
         rests_at_.reset();
         return J.value_or(Eigen::MatrixXd::Zero(record_.theta.size(), count()));
     }
-    [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise) {
-        const Eigen::MatrixXd J = slopes_at(rest, noise);
-        Covariance covariance = covariance_of(J, scale_of(filled(rest.fit.parameters)).whole, noise);
-        add_steps(J, record_.theta - rest.fit.residual, noise, covariance.matrix);
-        return covariance;
+    void find_covariance(Rest& rest, double noise) {
+        rest.slopes = slopes_at(rest, noise);
+        rest.covariance = covariance_of(rest.slopes, scale_of(filled(rest.fit.parameters)).whole, noise);
+        add_steps(rest.slopes, record_.theta - rest.fit.residual, noise, rest.covariance.matrix);
     }
 
     /// An instrument with steps errs alike as long as the motion stays within one, unless noise hides its steps (by
     /// the first harmonic of the sawtooth).
     void add_steps(const Eigen::MatrixXd& J, const Eigen::VectorXd& path, double noise,
                    Eigen::MatrixXd& covariance) const {
-        const double step = smallest_step(question_.theta), variance = noise * noise, rounded = step * step / 12;
+        const double step = record_.step, variance = noise * noise, rounded = step * step / 12;
+        if (step == 0) return;
         const double other = std::max(0.0, variance - rounded) * std::pow(2 * std::numbers::pi / step, 2);
         const double share = variance > 0 ? std::min(1.0, rounded / variance * std::exp(-other)) : 0;
         constexpr double little = 1e-3;
@@ -1016,23 +1020,26 @@ private:
 
     /// Takes the likeliest of the ways in which the record may have come to rest; in units of noise squared, with what
     /// is not sure because the others are possible, too.
-    [[nodiscard]] Covariance weigh_rests() {
+    [[nodiscard]] Rest weigh_rests() {
         base_ = best_base_;
         const double noise = deviation(), least = best_->sum;
-        Rest best{freest_.value_or(*best_), best_breakaway_, best_rest_, {}};
-        best.covariance = covariance_at(best, noise);
+        Rest best{freest_.value_or(*best_), best_breakaway_, best_rest_};
+        find_covariance(best, noise);
         if (freest_ && noise > 0) {
             const Eigen::VectorXd apart = (freest_->parameters - best_->parameters) / noise;
             best.covariance.matrix += apart * apart.transpose();
-            const Covariance held = covariance_at({*best_, best_breakaway_, best_rest_, {}}, noise);
-            best.covariance.matrix.diagonal() = best.covariance.matrix.diagonal().cwiseMax(held.matrix.diagonal());
+            Rest held{*best_, best_breakaway_, best_rest_};
+            find_covariance(held, noise);
+            best.covariance.matrix.diagonal() =
+                best.covariance.matrix.diagonal().cwiseMax(held.covariance.matrix.diagonal());
+            best.slopes = std::move(held.slopes);
         }
-        if (rests_.empty() || !(noise > 0)) return best.covariance;
+        if (rests_.empty() || !(noise > 0)) return best;
         constexpr double unlikely = 40;
         std::vector<Rest> ways{best};
         for (Rest& rest : rests_) {
             if (rest.fit.sum > least + unlikely * noise * noise || is_same(rest.fit, *best_)) continue;
-            rest.covariance = covariance_at(rest, noise);
+            find_covariance(rest, noise);
             ways.push_back(rest);
         }
         const auto evidence = [&](const Rest& rest) {
@@ -1050,53 +1057,75 @@ private:
             odds += share;
         }
         all.matrix /= odds;
-        return all;
+        best.covariance = std::move(all);
+        return best;
     }
 
     // ---- what a wrong model leaves
 
-    /// Rounding and the steps of an instrument count as white.
-    [[nodiscard]] bool is_left_white() const {
-        const std::span<const double> left(best_->residual.data(), question_.t.size());
-        return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step() ||
-               (is_white(left) && !may_drift(question_.t, left));
+    /// What is left is rounding, of the motion or of an instrument.
+    [[nodiscard]] bool is_rounding() const {
+        return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step();
     }
 
-    [[nodiscard]] std::optional<Misfit> misfit(const Eigen::MatrixXd& J, std::span<const int> columns) {
+    /// How the best fit, of which this is the run, changes with each torque that it may lack.
+    [[nodiscard]] std::optional<Eigen::MatrixXd> responses_at_best(const model::Oscillator& system,
+                                                                   const model::State& initial,
+                                                                   const motion::Run& run) {
+        const model::Excitation M = question_.M.value_or(model::Excitation());
+        if (M.has_feedback()) {
+            const std::size_t n = question_.t.size();
+            const Pushed pushed = [&](const model::Excitation& added) -> std::optional<Eigen::VectorXd> {
+                ++runs_;
+                const auto other = driven(system, M + added, initial, n);
+                if (!other) return {};
+                return shown(
+                    Eigen::VectorXd(other->column(motion::Column::theta).array() + at(best_filled_, Unknown::offset)));
+            };
+            const Eigen::VectorXd theta = run.column(motion::Column::theta),
+                                  velocity = run.column(motion::Column::velocity);
+            const std::span<const double> angles(theta.data(), n), speeds(velocity.data(), n);
+            return responses(pushed, question_.t, MissingTorques(angles, speeds).along(angles, speeds),
+                             system.stiffness() * record_.range, deviation());
+        }
+        Eigen::MatrixXd changes = responses(system, M, run, question_.t);
+        const Eigen::VectorXd seen = record_.theta - best_->residual;
+        for (Eigen::Index i = 0; i < changes.rows(); ++i) {
+            const bool is_cut = (record_.cut.at_low > 0 && seen[i] <= record_.cut.low) ||
+                                (record_.cut.at_high > 0 && seen[i] >= record_.cut.high);
+            if (is_cut) changes.row(i).setZero();
+        }
+        return changes;
+    }
+
+    [[nodiscard]] std::optional<Misfit> misfit(const Eigen::MatrixXd& J, std::span<const int> columns, bool is_white) {
         const auto system = system_of(best_filled_);
         if (!system) return {};
         const model::State initial{at(best_filled_, Unknown::theta0), at(best_filled_, Unknown::velocity0)};
         const auto run = driven(*system, question_.M.value_or(model::Excitation()), initial, question_.t.size());
         if (!run) return {};
-        const Eigen::VectorXd theta = run->column(motion::Column::theta),
-                              velocity = run->column(motion::Column::velocity);
-        std::vector<Structure> structures{drift(question_.t, columns, 0)};
-        const Pushed pushed = [&](const model::Excitation& added) -> std::optional<Eigen::VectorXd> {
-            ++runs_;
-            const auto other =
-                driven(*system, question_.M.value_or(model::Excitation()) + added, initial, question_.t.size());
-            if (!other) return {};
-            return shown(
-                Eigen::VectorXd(other->column(motion::Column::theta).array() + at(best_filled_, Unknown::offset)));
-        };
-        const std::size_t n = question_.t.size();
-        for (const Follows what : {Follows::velocity, Follows::theta}) {
-            auto found = responses(pushed, question_.t, missing_torques(what, {theta.data(), n}, {velocity.data(), n}),
-                                   at(best_filled_, Unknown::k) * record_.range, deviation());
-            if (found) structures.push_back({what, *std::move(found), {}});
+        std::vector<Structure> structures{drift(question_.t, columns, 0, is_white)};
+        if (const auto changes = responses_at_best(*system, initial, *run)) {
+            structures.push_back({Follows::velocity, changes->leftCols(velocity_torques), {}});
+            structures.push_back({Follows::theta, changes->rightCols(theta_torques), {}});
         }
-        return misfit_of(best_->residual, columns, J, scale_of(best_filled_).whole, structures);
+        return misfit_of(best_->residual, is_white, columns, J, structures);
     }
 
     /// An instrument that shows steps errs by half of one, alike from sample to sample where the motion is slow.
     [[nodiscard]] bool is_within_a_step() const {
         constexpr double part = 0.5;
-        return deviation() < part * smallest_step(question_.theta);
+        return deviation() < part * record_.step;
+    }
+    /// Noise by which the parameters err: rounding to steps does not show where the mass rests, as the zero fits there.
+    [[nodiscard]] double noise_of_errors() const {
+        return is_within_a_step() ? std::max(deviation(), record_.step / std::sqrt(12.0)) : deviation();
     }
 
     [[nodiscard]] Identified result() {
         Identified found;
-        Covariance covariance = weigh_rests();
+        const Rest weighed = weigh_rests();
+        Covariance covariance = weighed.covariance;
         breakaway_ = best_breakaway_;
         found.value = best_filled_ = filled_best();
         if (!question_.M && !is_given(Unknown::Re)) {
@@ -1110,15 +1139,18 @@ private:
         if (found.noise > least_noise * record_.range) {
             found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
         }
-        const double spread = found.widening * found.noise;
+        const double spread = found.widening * noise_of_errors();
         judge(found);
-        if (!found.is_noise && !is_left_white()) {
-            const Eigen::MatrixXd J = slopes_at({*best_, best_breakaway_, best_rest_, {}}, found.noise);
+        if (!found.is_noise && !found.wild && !is_rounding()) {
+            const Eigen::MatrixXd& J = weighed.slopes;
             const std::vector<int> columns(question_.t.size(), 0);
-            const Eigen::VectorXd wider = widened_by_memory(J, scale_of(best_filled_).whole, best_->residual, columns,
-                                                            found.noise, found.widening);
-            covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
-            const auto wrong = misfit(J, columns);
+            const bool white = is_white({left.data(), question_.t.size()});
+            if (!white) {
+                const Eigen::VectorXd wider =
+                    widened_by_memory(J, scale_of(best_filled_).whole, left, columns, found.noise, found.widening);
+                covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
+            }
+            const auto wrong = misfit(J, columns, white);
             if (wrong) covariance.matrix += wrong->added_covariance() / (spread * spread);
             if (wrong && wrong->is_sure) {
                 found.misfit = wrong->what;

@@ -3,54 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 
+#include "algebra/decompositions.hpp"
 #include "analysis/least_squares.hpp"
-#include "model/terms/polyline.hpp"
 
 namespace dinal::analysis {
 namespace {
 
-/// Orthogonal columns, and what is left of a vector without them.
-class Subspace {
+/// The products of columns with each other, from which columns are taken out one by one: what is left is that of the
+/// others without what lies in these.
+class Products {
 public:
-    explicit Subspace(Eigen::VectorXd rest) : rest_(std::move(rest)) {}
+    explicit Products(const Eigen::MatrixXd& all) : left_(all.transpose() * all), whole_(left_.diagonal()) {}
 
-    /// Adds the columns. Those that depend on earlier ones up to `least` of their length are left out. Returns how many
-    /// were added.
-    int add(const Eigen::MatrixXd& columns, double least) {
-        int added = 0;
-        for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-            Eigen::VectorXd column = columns.col(i);
-            const double length = column.norm();
-            constexpr int rounds = 2;
-            for (int round = 0; round < rounds; ++round) {
-                for (const Eigen::VectorXd& other : basis_) column -= other.dot(column) * other;
-            }
-            const double left = column.norm();
-            if (!(left > least * length)) continue;
-            column /= left;
-            rest_ -= column.dot(rest_) * column;
-            basis_.push_back(std::move(column));
-            ++added;
-        }
-        return added;
+    /// Of the length of a column, the part that does not lie in those that were taken out.
+    [[nodiscard]] double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
+    [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const { return left_(i, j); }
+    void take_out(Eigen::Index i) {
+        constexpr double dependent = 1e-6;
+        if (!(own(i) > dependent)) return;
+        const Eigen::VectorXd column = left_.col(i);
+        left_ -= column * (column.transpose() / column[i]);
+        ++taken_;
     }
-    [[nodiscard]] const Eigen::VectorXd& rest() const { return rest_; }
-    [[nodiscard]] double left() const { return rest_.squaredNorm(); }
-    [[nodiscard]] int size() const { return static_cast<int>(basis_.size()); }
+    [[nodiscard]] int taken() const { return taken_; }
 
 private:
-    Eigen::VectorXd rest_;
-    std::vector<Eigen::VectorXd> basis_;
+    Eigen::MatrixXd left_;
+    Eigen::VectorXd whole_;
+    int taken_ = 0;
 };
 
-/// A drift is a sum of so many cosines of time.
-constexpr int slow_cosines = 4;
-
-constexpr double dependent = 1e-7, imitated = 1e-3;
+/// In standard deviations: beyond the first a term counts in the errors, beyond the other it is there.
+constexpr double possible = 2.2, beyond_chance = 4;
 
 /// Removes a memory of one step, in each measured column by itself.
 class Filter {
@@ -105,16 +92,88 @@ private:
     double memory_ = 0;
 };
 
-/// Of a likelihood ratio of `more` numbers in standard deviations (Wilson and Hilferty's root of chi squared).
+/// Numbers in columns side by side.
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    Eigen::MatrixXd both(std::max(a.rows(), b.rows()), a.cols() + b.cols());
+    if (a.cols() > 0) both.leftCols(a.cols()) = a;
+    if (b.cols() > 0) both.rightCols(b.cols()) = b;
+    return both;
+}
+
+/// A vector without what lies in the columns, and how long each of these counts in it.
+struct Regression {
+    Eigen::VectorXd parts, rest;
+};
+Regression regression(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
+    const Eigen::VectorXd lengths = columns.colwise().norm().cwiseMax(1e-300);
+    const Eigen::MatrixXd units = columns * lengths.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd parts = algebra::solve_least_squares(units, y);
+    return {parts.cwiseQuotient(lengths), y - units * parts};
+}
+
+/// Looks for the terms of a structure by which a residual is more than noise: the one that stands out most, then what
+/// stands out beside it. Each is one column beside the slopes, so that what the parameters imitate counts for nothing.
+class Search {
+public:
+    Search(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns, const Eigen::MatrixXd& slopes,
+           const Structure& structure)
+        : size_(residual.size()),
+          first_(slopes.cols()),
+          terms_(structure.columns.cols()),
+          last_(first_ + terms_ + structure.faster.cols()),
+          products_(products(residual, is_white, columns, slopes, structure)) {
+        for (Eigen::Index i = 0; i < first_; ++i) products_.take_out(i);
+        double squares = 0;
+        for (Eigen::Index i = first_ + terms_; i < last_; ++i) squares += score(i) * score(i);
+        const auto fast = static_cast<double>(structure.faster.cols());
+        const double unit = fast > 0 ? std::max(1.0, std::sqrt(squares / fast)) : 1;
+        for (double most = 0;;) {
+            Eigen::Index which = -1;
+            most = possible;
+            for (Eigen::Index i = first_; i < first_ + terms_; ++i) {
+                if (score(i) / unit > most) most = score(i) / unit, which = i;
+            }
+            if (which < 0) break;
+            if (found_.empty()) most_ = most;
+            found_.push_back(which - first_);
+            products_.take_out(which);
+        }
+    }
+
+    /// Of the first one, in standard deviations of chance; 0 if there is none.
+    [[nodiscard]] double most() const { return most_; }
+    [[nodiscard]] const std::vector<Eigen::Index>& found() const { return found_; }
+
+private:
+    /// Of the slopes, the terms, the faster ones and, last, the residual, without a memory of one step.
+    static Products products(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
+                             const Eigen::MatrixXd& slopes, const Structure& structure) {
+        const Eigen::MatrixXd known = beside(slopes, structure.columns);
+        const Eigen::MatrixXd all = beside(beside(known, structure.faster), residual);
+        if (is_white) return Products(all);
+        return Products(Filter(columns, regression(known, residual).rest, static_cast<int>(known.cols()))(all));
+    }
+
+    /// By how many standard deviations the column is seen in the residual.
+    [[nodiscard]] double score(Eigen::Index i) const {
+        constexpr double imitated = 0.02, least_spare = 8;
+        if (!(products_.own(i) > imitated)) return 0;
+        const double along = products_(i, last_), square = along * along / products_(i, i);
+        const double spare = static_cast<double>(size_ - products_.taken() - 1),
+                     left = products_(last_, last_) - square;
+        return spare < least_spare || !(left > 0) ? 0 : std::sqrt(square * spare / left);
+    }
+
+    Eigen::Index size_, first_, terms_, last_;
+    Products products_;
+    double most_ = 0;
+    std::vector<Eigen::Index> found_ = {};
+};
+
+/// A chi squared in standard deviations of a Gaussian (Wilson and Hilferty's root).
 double deviations(double chi_squared, int more) {
     const double spread = 2.0 / (9 * more);
     return (std::cbrt(chi_squared / more) - (1 - spread)) / std::sqrt(spread);
-}
-
-/// How far beyond chance `more` columns reduce a sum of squares; `spare` is what the greater model leaves free.
-double significance(double before, double after, int more, double spare) {
-    if (!(after > 0)) return std::numeric_limits<double>::infinity();
-    return deviations((spare + more / 2.0 - 1) * std::log(before / after), more);
 }
 
 double correlated(std::span<const double> x, std::size_t lag) {
@@ -125,112 +184,46 @@ double correlated(std::span<const double> x, std::size_t lag) {
 
 }  // namespace
 
-Eigen::MatrixXd missing_torques(Follows what, std::span<const double> theta, std::span<const double> velocity) {
-    const auto n = static_cast<Eigen::Index>(theta.size());
-    const auto greatest = [](std::span<const double> values) {
-        double most = std::numeric_limits<double>::min();
-        for (const double x : values) most = std::max(most, std::fabs(x));
-        return most;
-    };
-    const double far = greatest(theta), fast = greatest(velocity);
-    Eigen::MatrixXd torques(n, what == Follows::theta ? 3 : 6);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const double x = theta[static_cast<std::size_t>(i)] / far, v = velocity[static_cast<std::size_t>(i)] / fast;
-        const double way = v > 0 ? 1 : v < 0 ? -1 : 0;
-        if (what == Follows::theta) {
-            torques.row(i) << x, x * x, x * x * x;
-        } else {
-            constexpr double slow = 0.08, slower = 0.3;  // of the greatest speed: where friction may fall
-            torques.row(i) << v, way, v * std::fabs(v), v * v, way * std::exp(-std::fabs(v) / slow),
-                way * std::exp(-std::fabs(v) / slower);
-        }
-    }
-    return torques;
-}
-
-std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
-                                         const Eigen::MatrixXd& torques, double whole, double noise) {
-    const auto here = pushed(model::Excitation());
-    if (!here) return {};
-    Eigen::MatrixXd columns(here->size(), torques.cols());
-    double step = 1e-3 * whole;
-    for (Eigen::Index i = 0; i < torques.cols(); ++i) {
-        auto samples = std::make_shared<model::terms::Samples>();
-        samples->t.assign(times.begin(), times.end());
-        samples->M.assign(torques.col(i).begin(), torques.col(i).end());
-        const auto torque = model::Excitation::make(model::terms::Polyline(std::move(samples))).value();
-        constexpr int most_tries = 6;
-        for (int tries = 0; tries < most_tries; ++tries) {
-            const auto there = pushed(torque.scaled(step));
-            if (!there) return {};
-            columns.col(i) = (*there - *here) / step;
-            const double change = (*there - *here).norm();
-            constexpr double least = 0.5, most = 10, widest = 1e3;  // of the noise, all samples together
-            if (change > least * noise && change < most * noise) break;
-            step *= std::clamp(noise / std::max(change, 1e-300), 1 / widest, widest);
-        }
-        step = std::clamp(step, 1e-9 * whole, whole);
-    }
-    return columns;
-}
-
-Structure drift(std::span<const double> times, std::span<const int> columns, int column) {
+Structure drift(std::span<const double> times, std::span<const int> columns, int column, bool is_white) {
+    constexpr Eigen::Index slow = 4, most = 32;
     const auto n = static_cast<Eigen::Index>(times.size());
-    const Eigen::Index slow = slow_cosines, fast = std::min<Eigen::Index>(32, n / 8);
-    Eigen::MatrixXd cosines = Eigen::MatrixXd::Zero(n, slow + fast);
+    const Eigen::Index all = slow + (is_white ? 0 : std::min<Eigen::Index>(most, n / 8));
+    Eigen::MatrixXd drifts = Eigen::MatrixXd::Zero(n, all);
     const double span = times.back() - times.front();
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto place = static_cast<std::size_t>(i);
         if (columns[place] != column) continue;
-        const double part = std::numbers::pi * (times[place] - times.front()) / span;
         // From 0 at the first time on, as the fitted zero is that of the first time.
-        for (Eigen::Index j = 0; j < slow + fast; ++j) cosines(i, j) = 1 - std::cos(static_cast<double>(j + 1) * part);
+        const double angle = std::numbers::pi * (times[place] - times.front()) / span, twice = 2 * std::cos(angle);
+        drifts(i, 0) = angle;
+        double before = 1, now = twice / 2;
+        for (Eigen::Index j = 1; j < all; ++j) {
+            before = std::exchange(now, twice * now - before);
+            drifts(i, j) = 1 - now;
+        }
     }
-    return {Follows::time, cosines.leftCols(slow), cosines.rightCols(fast)};
+    return {Follows::time, drifts.leftCols(slow), drifts.rightCols(all - slow)};
 }
 
-std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, std::span<const int> columns,
-                                const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole,
-                                std::span<const Structure> structures) {
-    constexpr double beyond_chance = 4, possible = 2;
-    std::optional<Misfit> worst;
+std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
+                                const Eigen::MatrixXd& slopes, std::span<const Structure> structures) {
+    Misfit worst;
+    Eigen::MatrixXd all = slopes;
+    double most = 0;
     for (const Structure& structure : structures) {
-        Subspace plain(residual);
-        plain.add(slopes, dependent);
-        const double all = plain.left();
-        plain.add(structure.columns, imitated);
-        const Filter filter(columns, plain.rest(), plain.size());
-
-        Subspace white(filter(residual).col(0));
-        white.add(filter(slopes), dependent);
-        const double before = white.left();
-        const int more = white.add(filter(structure.columns), imitated);
-        const double after = white.left();
-        const double spare = static_cast<double>(residual.size()) - white.size();
-        constexpr double least_spare = 8;
-        if (more == 0 || spare < least_spare) continue;
-        const double likely = significance(before, after, more, spare);
-        double sure = likely;
-        if (structure.faster.cols() > 0) {
-            const int rapid = white.add(filter(structure.faster), imitated);
-            const double noise = after - white.left();
-            sure = rapid < 4 ? 0 : std::min(likely, significance(before - after + noise, noise, more, rapid));
-        }
-        Misfit found{structure.what, sure > beyond_chance, 1 - plain.left() / all, 0, {}, {}};
-        const auto rank = [](const Misfit& one) { return std::pair(one.is_sure, one.share); };
-        if (likely < possible || (worst && rank(found) <= rank(*worst))) continue;
-        found.noise = std::sqrt(plain.left() / spare);
-        const Eigen::Index n = slopes.cols(), k = structure.columns.cols();
-        Eigen::MatrixXd both(residual.size(), n + k);
-        both << slopes, structure.columns;
-        Eigen::VectorXd scale(n + k);
-        for (Eigen::Index i = 0; i < k; ++i) scale[n + i] = residual.norm() / structure.columns.col(i).norm();
-        scale.head(n) = whole;
-        const Covariance covariance = covariance_of(both, scale, found.noise);
-        found.shift = (covariance.matrix * (both.transpose() * residual)).head(n);
-        found.covariance = found.noise * found.noise * covariance.matrix.topLeftCorner(n, n);
-        worst = std::move(found);
+        const Search search(residual, is_white, columns, slopes, structure);
+        if (!(search.most() > most)) continue;
+        most = search.most();
+        worst.what = structure.what;
+        all = slopes;
+        for (const Eigen::Index i : search.found()) all = beside(all, structure.columns.col(i));
     }
+    if (most == 0) return {};
+    const Regression without = regression(all, residual);
+    worst.is_sure = most > beyond_chance;
+    worst.share = 1 - without.rest.squaredNorm() / residual.squaredNorm();
+    worst.noise = without.rest.norm() / std::sqrt(std::max(1.0, static_cast<double>(all.rows() - all.cols())));
+    worst.shift = without.parts.head(slopes.cols());
     return worst;
 }
 
@@ -256,24 +249,6 @@ bool is_white(std::span<const double> residual, double unusual) {
     return lags == 0 || deviations(sum, static_cast<int>(lags)) < unusual;
 }
 
-bool may_drift(std::span<const double> times, std::span<const double> residual) {
-    std::array<double, slow_cosines> products{}, squares{};
-    const double span = times.back() - times.front();
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        const double twice = 2 * std::cos(std::numbers::pi * (times[i] - times.front()) / span);
-        double before = 1, now = twice / 2;
-        for (std::size_t j = 0; j < slow_cosines; ++j) {
-            products[j] += now * residual[i], squares[j] += now * now;
-            before = std::exchange(now, twice * now - before);
-        }
-    }
-    double sum = 0;
-    for (std::size_t j = 0; j < slow_cosines; ++j) sum += products[j] * products[j] / squares[j];
-    const double variance = correlated(residual, 0) / static_cast<double>(residual.size());
-    constexpr double unusual = 2;
-    return variance > 0 && deviations(sum / variance, slow_cosines) > unusual;
-}
-
 bool has_only_memory(std::span<const double> residual) {
     const double memory = correlated(residual, 1) / correlated(residual, 0);
     std::vector<double> filtered;
@@ -289,6 +264,16 @@ double smallest_step(std::span<const double> values) {
         if (apart > 0) step = std::min(step, apart);
     }
     return step;
+}
+
+double step_of_instrument(std::span<const double> values) {
+    const double step = smallest_step(values);
+    constexpr double rounding = 1e-6;
+    const bool is_even = std::all_of(values.begin(), values.end(), [&](double x) {
+        const double steps = (x - values.front()) / step;
+        return std::fabs(steps - std::round(steps)) < rounding * std::max(1.0, std::fabs(steps));
+    });
+    return is_even ? step : 0;
 }
 
 }  // namespace dinal::analysis

@@ -15,6 +15,7 @@
 #include "analysis/general_fit.hpp"
 #include "analysis/identification.hpp"
 #include "analysis/misfit.hpp"
+#include "analysis/missing_torques.hpp"
 #include "analysis/turning_points.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
@@ -438,7 +439,9 @@ public:
             length *= 2;
         }
         question.model = [this](const Eigen::VectorXd& p, Eigen::Index count) { return predicted(p, count); };
-        question.structures = [this](const Eigen::VectorXd& p, double noise) { return structures(p, noise); };
+        question.structures = [this](const Eigen::VectorXd& p, double noise, bool is_white) {
+            return structures(p, noise, is_white);
+        };
         constexpr double rounding = 1e-7;
         for (const MeasuredColumn& column : columns_) {
             question.least_noise = std::max(question.least_noise, rounding * column.range / column.size);
@@ -802,7 +805,7 @@ private:
     };
 
     /// What the model may lack at the joints that are measured or have a fitted number, and drifting zeros.
-    std::vector<analysis::Structure> structures(const Eigen::VectorXd& p, double noise) {
+    std::vector<analysis::Structure> structures(const Eigen::VectorXd& p, double noise, bool is_white) {
         std::vector<analysis::Structure> found;
         std::vector<double> times;
         std::vector<int> columns;
@@ -814,7 +817,7 @@ private:
             }
         }
         for (std::size_t j = 0; j < columns_.size(); ++j) {
-            found.push_back(analysis::drift(times, columns, static_cast<int>(j)));
+            found.push_back(analysis::drift(times, columns, static_cast<int>(j), is_white));
         }
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
@@ -848,11 +851,11 @@ private:
             return changed;
         };
         const double whole = system_.bodies[system_.joints[joint].first()].inertia * speed_ / time_;
-        for (const analysis::Follows what : {analysis::Follows::velocity, analysis::Follows::theta}) {
-            auto columns =
-                analysis::responses(pushed, t_, analysis::missing_torques(what, theta, velocity), whole, noise);
-            if (columns) found.push_back({what, *std::move(columns), {}});
-        }
+        const Eigen::MatrixXd torques = analysis::MissingTorques(theta, velocity).along(theta, velocity);
+        const auto changes = analysis::responses(pushed, t_, torques, whole, noise);
+        if (!changes) return;
+        found.push_back({analysis::Follows::velocity, changes->leftCols(analysis::velocity_torques), {}});
+        found.push_back({analysis::Follows::theta, changes->rightCols(analysis::theta_torques), {}});
     }
 
     /// Pushes M with the torque that is added to it.
@@ -1309,9 +1312,11 @@ constexpr lua::Member fit_members[] = {
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
     {lua::a_value<FitHandle, known_errors>,
      {"fit.std_error -> table",
-      "The standard errors by name: the truth lies within two of them in 19 of 20 records. Given values have 0. They are "
-      "wider if neighbouring residuals are alike or a wrong model moves the values, and nil if the model is so wrong that "
-      "they would mean nothing (fit.misfit).",
+      "The standard errors by name: if the model is right, the truth lies within two of them in 19 of 20 records. Given "
+      "values have 0. They are wider if neighbouring residuals are alike, or if the residual hints at something that the "
+      "model lacks (another law of friction, a nonlinear spring, a drifting zero): by how far that would move each value. "
+      "They are nil if the model is so wrong that they would mean nothing (fit.misfit). What the record cannot show they do "
+      "not contain: friction that falls evenly with the speed looks like more Rd and less C.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_value<FitHandle, silent_names>,
      {"fit.silent -> table",

@@ -1,0 +1,115 @@
+-- identify: how often the truth lies within the errors where the record is not what the model says: a law of friction that
+-- falls with the speed, a zero that drifts, an instrument with steps; and that a record as the model says is left in peace.
+dofile "tests/lua/support.lua"
+
+local function between(a, b) return a + (b - a) * math.random() end
+local function by_ratio(a, b) return a * (b / a) ^ math.random() end
+
+--- A decay by lot: its system, what is true of it, its run, the rows' noise and its standard deviation.
+local function decay(seed, law)
+    math.randomseed(seed)
+    local w0, zeta, dry = by_ratio(1, 10), between(0.005, 0.08), between(0.005, 0.05)
+    local k = w0 ^ 2
+    local parts = { I = 1, k = k, C = 2 * zeta * w0 }
+    if law then
+        parts.friction = friction.stribeck{ Rd = k * dry, Re = k * dry * (1 + by_ratio(0.02, 1)), speed = w0 * by_ratio(0.03, 0.6) }
+    else
+        parts.Rd, parts.Re = k * dry, k * dry * between(1, 1.6)
+    end
+    local truth = { omega0 = w0, zeta = zeta, Rd_over_k = dry, theta0 = 1, velocity0 = w0 * between(-0.3, 0.3), offset = 0.1 }
+    local t_end = between(6, 16) * 2 * math.pi / w0
+    local run = system(parts):simulate{ theta0 = 1, velocity0 = truth.velocity0, t_end = t_end, dt = t_end / math.random(200, 600) }
+    local std = (run.theta:max() - run.theta:min()) * by_ratio(5e-4, 0.03)
+    return truth, run, vector.normal{ n = #run, seed = seed, std = std }, std
+end
+
+--- Counts how many of these numbers lie within 1 and 1.96 of their errors, of the fits that have errors.
+local function counted(names)
+    local one, two, all = 0, 0, 0
+    return function(fit, truth)
+        for _, name in ipairs(names) do
+            local error = fit.std_error[name]
+            if error and error > 0 then
+                local z = math.abs(fit[name] - truth[name]) / error
+                one, two, all = one + (z < 1 and 1 or 0), two + (z < 1.96 and 1 or 0), all + 1
+            end
+        end
+        return one / all, two / all
+    end
+end
+
+local every = { "omega0", "zeta", "Rd_over_k", "theta0", "velocity0", "offset" }
+
+test("a record as the model says is not accused, and its errors are those of its noise", function()
+    local count, accused, n, one, two = counted(every), 0, lots(200)
+    for seed = 1, n do
+        local truth, run, noise = decay(seed)
+        local fit = identify{ data = { t = run.t, theta = run.theta + noise + 0.1 } }
+        if fit.misfit then accused = accused + 1 end
+        one, two = count(fit, truth)
+    end
+    assert(accused <= math.max(1, n / 100), accused)
+    if n == 200 then assert(one > 0.64 and one < 0.75 and two > 0.92 and two < 0.98, one .. " " .. two) end
+end)
+
+test("friction that falls with the speed is told or widens the errors of what it moves", function()
+    local count, n, told, one, two = counted{ "zeta", "Rd_over_k" }, lots(200), 0
+    for seed = 1, n do
+        local truth, run, noise = decay(seed, "stribeck")
+        local fit = identify{ data = { t = run.t, theta = run.theta + noise + 0.1 } }
+        if fit.misfit then told = told + 1 end
+        one, two = count(fit, truth)
+    end
+    -- Most of the rest cannot be seen: over a part of its speeds such a law is a line, which Rd and C imitate.
+    if n == 200 then assert(told > 45 and one > 0.4 and two > 0.6, told .. " " .. one .. " " .. two) end
+end)
+
+test("a zero that drifts is told or widens the errors, most of all that of the offset at the first time", function()
+    local count, offset, n, one, two, three, four = counted(every), counted{ "offset" }, lots(200)
+    for seed = 1, n do
+        local truth, run, noise, std = decay(seed)
+        local far = std * by_ratio(0.05, 5) * (seed % 2 == 0 and 1 or -1)
+        local fit = identify{ data = { t = run.t, theta = run.theta + noise + 0.1 + run.t * (far / run.t[#run]) } }
+        one, two = count(fit, truth)
+        three, four = offset(fit, truth)
+    end
+    if n == 200 then assert(one > 0.66 and two > 0.91 and three > 0.5 and four > 0.82, one .. " " .. two .. " " .. three .. " " .. four) end
+end)
+
+test("steps of an instrument do not hide where the mass rests, which is where the zero is fitted to them", function()
+    local count, n, one, two = counted(every), lots(100)
+    for seed = 1, n do
+        local truth, run = decay(seed)
+        local step = by_ratio(0.002, 0.04) * (run.theta:max() - run.theta:min())
+        local fit = identify{ data = { t = run.t, theta = ((run.theta + 0.1) / step):map(function(x) return math.floor(x + 0.5) * step end) } }
+        equal(fit.misfit, nil)
+        one, two = count(fit, truth)
+    end
+    if n == 100 then assert(one > 0.66 and two > 0.92, one .. " " .. two) end
+end)
+
+test("a driven record of friction that falls with the speed is told or its errors are wider", function()
+    local count, n, one, two = counted{ "I", "k", "C", "Rd" }, lots(30)
+    for seed = 1, n do
+        math.randomseed(seed)
+        local w0, A = by_ratio(1, 10), between(0.3, 0.8)
+        local M = excitation.harmonic{ amplitude = A * w0 ^ 2, omega = w0 * between(0.3, 0.9), phase = between(0, 6) }
+            + excitation.harmonic{ amplitude = A * w0 ^ 2 * between(0.2, 0.6), omega = w0 * between(1.3, 2.5), phase = between(0, 6) }
+        local truth = { I = 1, k = w0 ^ 2, C = 2 * between(0.005, 0.08) * w0, Rd = A * w0 ^ 2 * between(0.05, 0.35) }
+        local law = friction.stribeck{ Rd = truth.Rd, Re = truth.Rd * (1 + by_ratio(0.02, 1)), speed = A * w0 * by_ratio(0.03, 0.6) }
+        local t_end = 10 * 2 * math.pi / w0
+        local run = system{ I = 1, k = truth.k, C = truth.C, friction = law }:simulate{ M = M, theta0 = A * between(-1, 1), t_end = t_end, dt = t_end / 300 }
+        local noise = vector.normal{ n = #run, seed = seed, std = A * by_ratio(1e-3, 0.05) }
+        one, two = count(identify{ data = { t = run.t, theta = run.theta + noise }, M = M }, truth)
+    end
+    if n == 30 then assert(one > 0.55 and two > 0.84, one .. " " .. two) end
+end)
+
+test("a law of friction that another one made is told under a feedback, too", function()
+    local function M(t, theta) return 1.2 * math.sin(1.7 * t) + 0.5 * math.sin(4 * t) - 0.5 * theta end
+    local law = friction.stribeck{ Rd = 0.2, Re = 0.4, speed = 0.3 }
+    local run = system{ I = 0.96, k = 3.2, C = 0.27, friction = law }:simulate{ M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
+    equal(identify{ data = record(run, 1, 0.003), M = M }.misfit, "velocity")
+end)
+
+finish()
