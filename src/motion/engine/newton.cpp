@@ -134,7 +134,8 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
         const double clear = std::clamp(way, least_difference * spread, most_difference * spread);
         const double rough =
             c < 2 * groups ? s.h * noise / frame.inertia[c % groups] : s.h * floor.noise[n + (c - 2 * groups)];
-        const double d = spread > 0 ? std::max(clear, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
+        const double d =
+            spread > 0 ? std::max({clear, clear_of_noise * (c < groups ? s.h * rough : rough), smallest}) : 1e-9;
         const std::vector<double> kept = y;
         for (const auto& [k, by] : moved) y[k] = kept[k] + by * d;
         if (!torques(above)) return false;
