@@ -94,9 +94,13 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
                                       .omega = sign * a.power(1),
                                       .phase = sign * a.power(0) + quarter}}};
         }
-        case Op::exp:
-            if (!a.is_line()) return {};
-            return TermSum{.exponentials = {{std::exp(a.power(0)), a.power(1)}}};
+        case Op::exp: {
+            // What grows from next to nothing would have lost its digits, or itself, in its first value.
+            constexpr double faintest = 1e-200;
+            const double first = std::exp(a.power(0)), rate = a.power(1);
+            if (!a.is_line() || (rate > 0 && first < faintest)) return {};
+            return TermSum{.exponentials = {{first, rate}}};
+        }
         default:
             return {};
     }

@@ -138,5 +138,5 @@ TEST_CASE("a short run that is kept takes a few kilobytes", "[allocation]") {
     const std::size_t taken = bytes_held - before;
     REQUIRE(run);
     REQUIRE(run->size() == 3);
-    CHECK(taken <= 6200);  // three stretches of some 700 bytes each, the joint, and the run
+    CHECK(taken <= 6300);  // three stretches of some 700 bytes each, the joint, and the run; malloc rounds up
 }

@@ -120,6 +120,30 @@ test("an M of few digits is followed within its noise when the motion has died o
     near(run.theta[2], 0, 1e-9)
 end)
 
+test("a motion ends neither where a state has died out below all normal numbers, nor where its rate is rounding", function()
+    local function ends(system_of, o)
+        local run = system(system_of):simulate(o)
+        assert(run.t_end == o.t_end, run.outcome)
+        assert(math.abs((run:at(o.t_end))) < 1e-14)
+    end
+    ends({ I = 1, k = .136 }, { theta0 = 1e-13, velocity0 = .26, t_end = 1000, dt = 100,
+        states = { a = { start = 0, rate = function(t, q, v, z) return math.log(1 + v * v) - z.a end } },
+        M = function(t, q, v, z) return -.793 * v * (1 + .5 * math.sin(3 * t)) - .01 * z.a end })
+    ends({ I = 1, k = .19657774982341, C = .044337089419966 }, { theta0 = 1.2014094659082, t_end = 1000, dt = 100,
+        states = { a = { start = 0, rate = function(t, q, v, z) return -math.log(1 + math.max(-.9, z.a)) + .1 * v end } },
+        M = function(t, q, v, z)
+            local drag = .052853609697943144 * (math.exp(v / .071863615163351449) - 1) * .071863615163351449
+            return -drag - .19550351079119926 * q * (1 + q * q) ^ -.5 - .2 * .19550351079119926 * z.a
+        end })
+    -- Which digits a function that is not read rounds off is not known.
+    local D, S, K = 2.2139972440996836, .26735504281679573, .12430373535487814
+    ends({ I = 1, k = .1260774757387395 }, { theta0 = 1, t_end = 1700, dt = 100, states = { a = { start = 0,
+        rate = function(t, q, v, z) return -math.log(1 + math.max(-.9, z.a)) + .1 * v end } },
+        M = function(t, q, v, z)
+            return -D * S * ((1 + v / S) - 1 / (1 + math.max(-.9, v / S))) / 2 - K * math.tanh(q) - .2 * K * z.a
+        end })
+end)
+
 test("steady finds the rest to which a smooth motion dies out, whatever other starts fail", function()
     -- A slider with rate and state friction (Erickson, Birnir and Lavallee 2008): by Routh and Hurwitz its rest is stable
     -- up to eps = 0.4975.

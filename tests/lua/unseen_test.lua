@@ -168,6 +168,69 @@ test("a pulse before a condition is found where the formula has no value beyond 
     end
 end)
 
+test("a push as short as a ten millionth of the way changes the energy by its work", function()
+    local function left_over(k, a, w, area, kind)
+        local b = a + w
+        local push = area / (b - a)
+        local function window(theta) return theta > a and theta < b and push or 0 end
+        local of, o = { I = 1, k = k }, { velocity0 = 5.4, t_end = 1.4 / math.sqrt(math.max(k, 1)), dt = 1 }
+        if kind == "spring" then
+            of.spring = function(theta) return -window(theta) end
+        else
+            o.M = function(t, theta) return window(theta) end
+        end
+        local run = system(of):simulate(o)
+        local theta, velocity = run:at(o.t_end)
+        assert(theta > a + w)
+        return (velocity ^ 2 + k * theta ^ 2) / 2 - 5.4 ^ 2 / 2 - area
+    end
+    for _, kind in ipairs { "M", "spring" } do
+        for _ = 1, 20 do
+            local k, a, w = lot(.5, 30), lot(.05, .8), 10 ^ lot(-7, -6)
+            local off = left_over(k, a, w, lot(-5, 5), kind)
+            assert(math.abs(off) < 5e-8, ("%s, k %g, at %.17g, w %.17g: %g"):format(kind, k, a, w, off))
+        end
+    end
+    -- So great that what it would do in a whole stretch hides its end.
+    near(left_over(.5, .3667, 1.3e-7, 7.4, "M"), 0, 5e-8)
+end)
+
+test("a rise from next to nothing to a peak is no native term", function()
+    local swings = system { I = 1, k = 1 }
+    local function after(M) return select(2, swings:simulate { M = M, t_end = 3, dt = 1 }:at(3)) end
+    for _, w in ipairs { 1e-2, 1e-3, 1e-4, 1e-5 } do
+        local one = after(function(t) return t < 2 and exp((t - 2) / w) / w or 0 end)
+        near(one, (math.cos(1) - w * math.sin(1)) / (1 + w ^ 2), 1e-11)
+        near(after(function(t) return exp(-math.abs(t - 2) / w) / w end), 2 * math.cos(1) / (1 + w ^ 2), 1e-11)
+    end
+end)
+
+test("a push in the spring of a link changes the energy by its work", function()
+    for _ = 1, 20 do
+        local a, w = lot(.05, .2), 10 ^ lot(-7, -4)
+        local b, area = a + w, lot(-.1, .1)
+        local push = area / (b - a)
+        local function spring(angle) return 8 * angle ^ 3 - (angle > a and angle < b and push or 0) end
+        local rig = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { l = { "a", "b", spring = spring } } }
+        local run = rig:simulate { velocity0 = { a = 2, b = .5 }, t_end = .2, dt = 1 }
+        local theta, v = run:at(.2)
+        assert(theta.a - theta.b > b)
+        near(v.a ^ 2 / 2 + v.b ^ 2 + 2 * (theta.a - theta.b) ^ 4, 2.25 + area, 1e-9)
+    end
+end)
+
+test("a window of the velocity in which a formula stands that has no bounds beyond it", function()
+    local S = system { I = 1, k = 17, C = .1 }
+    local function after(M) return select(2, S:simulate { velocity0 = 6.8, t_end = .3, dt = 1, M = M }:at(.3)) end
+    local alone = after()
+    for _, w in ipairs { 1e-6, 1e-5, 1e-4 } do
+        local off = after(function(t, x, v)
+            return -1e-3 * (math.abs(v - 4.4) < w and (1 - ((v - 4.4) / w) ^ 2) ^ 3 or 0)
+        end) - alone
+        assert(math.abs(off) < 1e-3 * w + 1e-11, ("w %g: %g"):format(w, off))
+    end
+end)
+
 test("what could not be proven is told as the gap", function()
     local S = system { I = 1, k = 4, C = .2 }
     local function gap(M, o)

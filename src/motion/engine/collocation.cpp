@@ -8,7 +8,8 @@ namespace dinal::motion::engine {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int many_iterations = 4;       // slopes that need so many no longer serve, and are asked anew
+constexpr int many_iterations = 4;  // slopes that need so many no longer serve, and are asked anew
+constexpr double much = 16;
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 
 }  // namespace
@@ -192,6 +193,7 @@ void Collocation::begin_at_first_node(Segment& s, const Frame& frame) {
 /// Newton's iteration with these slopes. Returns shorten if it does not converge.
 Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame, Slopes slopes) {
     const std::size_t count = unknown_.size();
+    const bool from_before = slopes == Slopes::known && newton_.known();
     double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i < most_iterations; ++i) {
         if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
@@ -217,6 +219,9 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
         const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
         const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                (i >= 2 && change <= stalls && rate > 0.3);
+        // Slopes that are too great, as those of a piece of a function that was left, make every step small.
+        const bool doubtful = from_before && left > std::max(much * change, tolerance_);
+        if (converged && doubtful) return Attempt::shorten;
         if (converged && left <= std::max(most_left_over, stalls)) {
             if (i >= many_iterations) newton_.forget();
             return Attempt::resolved;

@@ -22,6 +22,7 @@ public:
         Piecewise* function;
         std::size_t condition;
         double within;
+        bool blurred;  ///< it is clear of zero at the beginning, beside the rounding of the motion there
     };
     ConditionSearch(const Segment& segment, double before)
         : segment_(segment), before_(before), earliest_(std::min(1.0, before)) {}
@@ -80,7 +81,7 @@ bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, do
     auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
     if (x && !whole) x = part.place(*x);
     if (x && *x < before_) {
-        crossings_.push_back({*x, &function, c, within});
+        crossings_.push_back({*x, &function, c, within, whole && values[0] > 16 * rounded});
         earliest_ = std::min(earliest_, *x);
     }
     return true;
@@ -201,8 +202,9 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     // Each function crosses its first step only: later ones follow from it, as |v| > 0 from the sign of v, and may not
     // change at all.
     std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
-    for (const auto& [x, function, condition, within] : search.crossings()) {
+    for (const auto& [x, function, condition, within, blurred] : search.crossings()) {
         if (x > ending.x + one_instant) continue;
+        ending.blurred = ending.blurred || blurred;
         within_ = std::max(within_, within);
         const auto same =
             std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });

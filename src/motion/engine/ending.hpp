@@ -19,6 +19,7 @@ struct Ending {
     int side = 0;           ///< of a wall, a stop (0: it is left) or a corner, or the way of a release; or which relay
     std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
     std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};  ///< of functions that were read
+    bool blurred = false;  ///< one of them is clear of zero at the beginning, but for what rounds in the stretch
     /// Events of the user and conditions that pass zero so near to a standstill or a release come after it.
     [[nodiscard]] double before() const {
         constexpr double beside_standstill = 1e-12;

@@ -43,6 +43,7 @@ private:
     Ending watch(const Frame& frame);
     void hold_again(std::size_t joint, double torques);
     bool ends_before(double x);
+    bool comes_early(const Ending& ending);
     bool end_at(double x, const Frame& frame, SampledLoads& sampled);
     bool arrive(double x, bool whole);
     bool sample_controllers();

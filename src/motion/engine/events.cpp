@@ -35,6 +35,7 @@ bool Engine::handle(const Ending& ending) {
             return goes_on();
         }
         case By::condition: {
+            pace_.go_on();
             const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
             result_.jumps += crossed.count;
             if (crossed.work != 0)

@@ -40,8 +40,12 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
     find_sizes_at_start(s, begin);
     const Attempt attempt = find(s, mode, frame, departing);
-    if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
+    if (attempt != Attempt::resolved) {
+        // Rates that kept it from being found may be noise.
+        for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = found_[groups + k];
+        return attempt;
+    }
     for (std::size_t i = 0; i < n_; ++i) {
         Nodes rates = offsets_.rates[i];
         for (const auto& [group, by] : frame.bodies[i]) add(rates, unknown_[group], by);

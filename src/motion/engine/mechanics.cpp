@@ -642,7 +642,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
     double size = std::fabs(own.stiffness * q);
-    if (!own.spring.none()) size += std::fabs(own.spring.torque(q));
+    if (!own.spring.none()) size += std::fabs(spring_torque(joint, q));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
@@ -650,11 +650,14 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
         double known = 0;
         for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
-        constexpr double ulps = 1024 * rounding;
         size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
-        if (!own.spring.none()) {
-            size += std::fabs(own.spring.torque(q + ulps * known) - own.spring.torque(q - ulps * known)) / (2 * ulps);
-        }
+        const auto by_steepness = [&](double part) {
+            return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
+                   (2 * part);
+        };
+        // A jump is no steepness: it is far less steep over a wider part.
+        constexpr double ulps = 1024 * rounding, wider = 1e-4;
+        if (!own.spring.none()) size += std::min(by_steepness(ulps), by_steepness(wider));
     }
     if (rubs(joint)) {
         const double forward = std::fabs(holding(joint, Motion::forward, at));

@@ -9,7 +9,8 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double clear_of_noise = 1e4;  // differences over so much motion tell a slope
+constexpr double clear_of_noise = 1e4;                             // differences over so much motion tell a slope
+constexpr double least_difference = 1e-8, most_difference = 1e-4;  // of what is moved
 constexpr std::size_t most_factors = 24;
 constexpr Eigen::Index few_unknowns = 8;    // their matrices are dense, also in a chain
 constexpr Eigen::Index many_unknowns = 64;  // their matrix is sparse, if it has no narrow band
@@ -212,15 +213,18 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
         } else {
             moved.emplace_back(2 * n + (c - 2 * groups), 1);
         }
-        double spread = 0;
+        double spread = 0, way = 0;
         for (const auto& [k, by] : moved) {
             const double rate = k < n ? s.y[n + k][node] : s.f[k][node];
+            way = std::max(way, s.h * std::fabs(rate) / std::fabs(by));
             spread = std::max(spread, (std::fabs(y[k]) + s.h * std::fabs(rate)) / std::fabs(by));
         }
+        // Farther than the motion of the stretch a function may be another, as a narrow pulse.
+        const double clear = std::clamp(way, least_difference * spread, most_difference * spread);
         const double rough =
             c < 2 * groups ? s.h * noise / frame.inertia[c % groups] : s.h * floor.noise[n + (c - 2 * groups)];
         const double d =
-            spread > 0 ? std::max(1e-4 * spread, clear_of_noise * (c < groups ? s.h * rough : rough)) : 1e-9;
+            spread > 0 ? std::max({clear, clear_of_noise * (c < groups ? s.h * rough : rough), smallest}) : 1e-9;
         const std::vector<double> kept = y;
         for (const auto& [k, by] : moved) y[k] = kept[k] + by * d;
         if (!torques(above)) return false;

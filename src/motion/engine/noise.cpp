@@ -81,8 +81,10 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             continue;
         }
         if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
-        if (is_rounding()) {  // also where it has steps, on which shorter stretches are smooth
-            noise = std::max(2 * tail, known[i]), any = true;
+        // Also where it has steps, on which shorter stretches are smooth. What is not read may round as much as the
+        // greatest that has acted.
+        if (tail <= rounding * ever || is_rounding()) {
+            noise = std::max(2 * tail, known.empty() ? 0 : known[i]), any = true;
             continue;
         }
         const auto here = [&](double t) {

@@ -15,6 +15,7 @@ void Pace::shorten(double half, double unresolved, double longest_now) {
 
 void Pace::lengthen(double half, double factor, double longest_now) {
     h = std::min(longest_now / 2, std::max(h, half * factor));
+    if (h >= whole_) whole_ = 0;
     if (limited_for_ > 0 && --limited_for_ > 0) h = std::min(h, short_enough_);
 }
 

@@ -1,6 +1,9 @@
 // The length of the stretches of a run.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+
 #include "model/excitation.hpp"
 #include "motion/engine/nodes.hpp"
 
@@ -27,9 +30,14 @@ struct Pace {
     void shorten(double half, double unresolved, double longest_now);
     /// After one that was, and may be longer by a factor; no longer than `longest_now`.
     void lengthen(double half, double factor, double longest_now);
+    /// The next stretch is a short part of this one, which is made again.
+    void make_again(double part, double half) { h = part, whole_ = std::max(whole_, half); }
+    /// What was to be seen in the short one is behind.
+    void go_on() { h = std::max(h, std::exchange(whole_, 0)); }
 
 private:
     double searched_from_ = model::never, searched_half_ = 0;
+    double whole_ = 0;         ///< half the length of a stretch that is made again; 0: none
     double short_enough_ = 0;  ///< half the length that replaced one with a slightly too large error
     int limited_for_ = 0;      ///< the number of the next stretches that are not longer than that
 };

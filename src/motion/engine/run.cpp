@@ -157,7 +157,7 @@ bool Engine::advance() {
     sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
-    if (ending.by == By::condition && ends_before(ending.x)) return true;
+    if (ending.by == By::condition && (ends_before(ending.x) || comes_early(ending))) return true;
     if (ending.by == By::condition && problem_.step == 0 &&
         !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
         again(Flow::Attempt::shorten);
@@ -278,6 +278,18 @@ bool Engine::ends_before(double x) {
     if (t - now_.t.hi <= nothing || segment_.end - t <= nothing) return false;
     breaks_.add(t);
     conditions_->crosses_at(t);
+    return true;
+}
+
+/// A stretch is far longer than the window of a function in which it begins: what acts there would take the motion far
+/// away, beside which the window's end is lost to rounding. Then the stretch is made again, not much longer than that.
+bool Engine::comes_early(const Ending& ending) {
+    constexpr double early = 1.0 / 64, least = 1.0 / 1024;
+    const double part = 1 + ending.x, late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
+    if (problem_.step > 0 || part > early || (part <= 0 && !ending.blurred)) return false;
+    const double h = segment_.h * std::max(part, least);
+    if (2 * h <= std::max(shortest * pace_.unit, 16 * rounding * late)) return false;
+    pace_.make_again(h, segment_.h);
     return true;
 }
 
