@@ -170,7 +170,7 @@ bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
     return true;
 }
 
-void Recorder::put_row(double t, const model::State& y, double M, double friction) {
+void Recorder::put_row(double t, const model::State& y, double M, double friction, std::span<const double> states) {
     double* cell = cells_ + next_row_;
     const std::size_t stride = problem_.rows.count();
     const double damping = -problem_.system.joints[0].damping * y.velocity;
@@ -179,6 +179,7 @@ void Recorder::put_row(double t, const model::State& y, double M, double frictio
         cell += stride;
     };
     for (const double value : {t, y.theta, y.velocity, M, friction, damping}) put(value);
+    std::for_each(states.begin(), states.end(), put);
     const double all = M + friction + damping - problem_.system.joints[0].stiffness * y.theta;
     if (!problem_.joined_elsewhere) put(all / problem_.system.bodies[0].inertia);
     ++next_row_;
