@@ -463,12 +463,7 @@ bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
     block_.theta[i + 1] = y1.theta, block_.velocity[i + 1] = y1.velocity;
     if (affine_ && m_ > 0 && !step_states(of, i, false)) return false;
     if (calm_until(of, i, i + 1) == i) return false;
-    // The interpolant is more accurate than the cubic: one secant step towards its zero.
-    const double e = 1e-4 * h;
-    const double slope =
-        (motion(std::min(*zero + e, h)).velocity - motion(std::max(*zero - e, 0.0)).velocity) / (2 * e);
-    const double better = *zero - motion(*zero).velocity / slope;
-    const double x = better > 0 && better <= h ? better : *zero, t = steps_.time(n + i) + x;
+    const double x = TurnInStep(motion, h, *zero).x, t = steps_.time(n + i) + x;
     const model::State there{motion(x).theta, 0};
     of.recorder.tell({.event = {.t = t, .kind = model::EventKind::turn, .theta = there.theta, .M = M_at(i, t, there)}});
     of.recorder.head(0, -direction);
@@ -492,18 +487,15 @@ void PlainSteps::put_state(std::size_t i, double t, const model::State& y) {
     }
 }
 
-/// Stands while the pull is well within the limits, also between the samples: a parabola through three of them exceeds
-/// the highest by at most an eighth of their second difference; a quarter is safe.
+/// Stands while the pull is well within the limits.
 std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) {
     const Moment here = of.now.here();
     const double forward = mechanics_.holding(0, Motion::forward, here);
     const double backward = mechanics_.holding(0, Motion::backward, here);
     if (!std::isfinite(forward + backward)) return begin;
-    const double limit = (forward + backward) / 2 * (1 - 1e-9);
     const double theta = of.now.y[0];
     const double held = joint_.stiffness * theta + joint_.spring.torque(theta);
-    const double middle_of_hold = held + (forward - backward) / 2;
-    double e = std::fabs(end_.M - middle_of_hold);
+    Hold hold(forward, backward, held, end_.M);
     std::size_t i = begin;
     const auto stand_at = [&](std::size_t k) {
         block_.theta[k] = theta, block_.velocity[k] = 0;
@@ -516,11 +508,8 @@ std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) 
         for (const int half : {1, 2}) {
             if (!affine_) block_.samples[2 * i + half - 1] = M_at(i, time(i) + half * steps_.h / 2, {theta, 0});
         }
-        const double em = std::fabs(block_.samples[2 * i] - middle_of_hold),
-                     e1 = std::fabs(block_.samples[2 * i + 1] - middle_of_hold);
-        if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
+        if (!hold.lasts(block_.samples[2 * i], block_.samples[2 * i + 1])) break;
         block_.M[i + 1] = block_.samples[2 * i + 1];
-        e = e1;
     }
     i = rows(of, sampled_.from, begin, calm_until(of, begin, i), true);
     keep(of, begin, i, true);
