@@ -140,6 +140,26 @@ test("a break of M during a slide is no event", function()
     near(run.theta[#run], from.theta * math.exp(-2 * (4 - from.t)), 1e-12)
 end)
 
+test("another condition of the load changes during a slide", function()
+    local function sgn(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    local sys = system { I = 1, k = 0.6, C = 0.2 }
+    -- At velocity 0.4 the surface needs M = 0.6 theta + 0.08; the load allows 0.9 on either side of its rest.
+    local function go(M) return sys:simulate { M = M, theta0 = -0.1, velocity0 = 0.4, t_end = 3.9 } end
+    local run = go(function(_, theta, v) return -0.2 - 0.9 * sgn(v - 0.4) - 0.3 * sgn(theta - 1) end)
+    local left = switches(run)
+    equal(#left, 1)
+    near(left[1].t, 2.75, 1e-13)  -- theta = 1, from where at most 0.4 is left for the 0.68
+    local free = sys:simulate { M = 0.4, theta0 = 1, velocity0 = 0.4, t_start = 2.75, t_end = 3.9 }
+    near(run:at(3.9), free:at(3.9), 1e-13)
+    closes(run)
+    for _, at in ipairs { 0.5, 0.1 + 0.2, 0.7 } do
+        run = go(function(_, theta, v) return 0.3 - 0.9 * sgn(v - 0.4) - 0.3 * sgn(theta - at) end)
+        left = switches(run)
+        equal(#left, 1)
+        near(left[1].theta, 0.82 / 0.6, 1e-13)  -- it slides on over the change, without an event
+    end
+end)
+
 test("a run that goes on slides on, without an event", function()
     local task = { M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.5 * math.sin(t) end, theta0 = 3, t_end = 8 }
     local whole = system { I = 1, k = 1 }:simulate(task)

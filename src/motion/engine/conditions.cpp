@@ -225,8 +225,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
     bool all_small = true;
     const Moment here = now.here();
     for (const auto& [function, condition] : ending.conditions) {
-        if (const auto change = slides_.leave(*function, condition)) {
-            crossed.slides.push_back(*change), crossed.jumps = true, all_small = false;
+        if (slides_.leave(*function, condition, now, crossed.slides)) {
+            crossed.jumps = true, all_small = false;
             continue;
         }
         const auto [step, beyond, of] = function->conditions()[condition];

@@ -26,16 +26,18 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<dou
     return true;
 }
 
-void Piecewise::watch_others(const Moment& at, double near) {
-    std::vector<double> margins;
+void Piecewise::watch_others(const Moment& one_side, const Moment& other_side, double near) {
+    constexpr double across = 0.1;  // the surface changes by more from side to side than it is away in the middle
+    std::vector<double> margins, others;
     for (const auto side : {Slide::Side::own, Slide::Side::beyond}) {
         const model::terms::Piece& piece = side == Slide::Side::own ? piece_ : slide_->beyond;
         model::terms::Piece& apart = slide_->apart[side == Slide::Side::own ? 0 : 1];
         apart = piece;
         apart.conditions.clear();
-        (void)on(piece, at, &margins);
+        (void)on(piece, one_side, &margins), (void)on(piece, other_side, &others);
         for (std::size_t c = 0; c < margins.size(); ++c) {
-            if (!(std::fabs(margins[c]) > near)) continue;
+            const double away = std::fabs(margins[c] + others[c]) / 2;
+            if (!(away > near || away > across * std::fabs(margins[c] - others[c]))) continue;
             slide_->others.emplace_back(side, c);
             slide_->conditions.push_back(piece.conditions[c]);
             apart.conditions.push_back(piece.conditions[c]);

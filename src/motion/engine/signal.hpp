@@ -153,8 +153,9 @@ public:
     /// Slides along the condition that changes between two places, one on either side of it. Returns false if there is
     /// none.
     bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share);
-    /// Watches the other conditions, too, unless one is so near to zero that it is the same.
-    void watch_others(const Moment& at, double near);
+    /// Watches the other conditions, too. One is the same if it is nearer to zero than this and changes from one side
+    /// of the surface to the other.
+    void watch_others(const Moment& one_side, const Moment& other_side, double near);
     [[nodiscard]] bool slides() const { return slide_ != nullptr; }
     [[nodiscard]] Slide& sliding() { return *slide_; }
     /// Ends the slide at one of its conditions.

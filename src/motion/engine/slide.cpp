@@ -9,6 +9,29 @@ namespace dinal::motion::engine {
 
 using Which = Piecewise::Slide::Side;
 
+namespace {
+
+constexpr double near = 1e-9;  // part of a time unit: so far from the surface both sides are asked
+
+}
+
+bool Slides::Sides::differ() const {
+    return beyond.rate - own.rate > 1e-9 * (std::fabs(own.rate) + std::fabs(beyond.rate));
+}
+
+bool Slides::Sides::drive_back() const {
+    constexpr double clearly = 1e-12;  // of the difference between both sides
+    const double least = clearly * (std::fabs(own.rate) + std::fabs(beyond.rate));
+    return own.rate < -least && beyond.rate > least;
+}
+
+std::vector<double> Slides::Sides::mixed() const {
+    const double share = own.rate / (own.rate - beyond.rate);
+    std::vector<double> rates = own.rates;
+    for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += share * (beyond.rates[k] - own.rates[k]);
+    return rates;
+}
+
 /// How the motion leaves the surface while the load is that of one side.
 Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
@@ -35,16 +58,12 @@ Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) cons
     return side;
 }
 
-bool Slides::drives_back(const Side& own, const Side& beyond) {
-    return beyond.rate - own.rate > 1e-9 * (std::fabs(own.rate) + std::fabs(beyond.rate));
-}
-
 /// What rounding has moved off the surface comes back.
 double Slides::share(Piecewise& function, const Moment& at) const {
     const double back = 4 / unit_;
     const Side own = on(function, Which::own, at), beyond = on(function, Which::beyond, at);
     // Where contacts hold the velocities of the surface, the motion leaves it to one side.
-    if (!drives_back(own, beyond)) return own.rate < 0 ? 1 : 0;
+    if (!Sides{own, beyond}.differ()) return own.rate < 0 ? 1 : 0;
     return (own.rate + back * own.margin) / (own.rate - beyond.rate);
 }
 
@@ -60,8 +79,9 @@ std::optional<Slides::Sliding> Slides::owner_of(Piecewise& function, double t) c
 }
 
 /// Moves velocities and states the way in which both sides differ.
-void Slides::put_on_surface(const Side& own, const Side& beyond, Now& now, double& work) const {
+void Slides::put_on_surface(const Sides& sides, Now& now, double& work) const {
     const std::size_t n = mechanics_.bodies();
+    const auto& [own, beyond] = sides;
     const double by = own.margin / (beyond.rate - own.rate);
     for (std::size_t k = n; k < now.y.size(); ++k) {
         const double change = -by * (beyond.rates[k] - own.rates[k]);
@@ -70,59 +90,80 @@ void Slides::put_on_surface(const Side& own, const Side& beyond, Now& now, doubl
     }
 }
 
-std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now) {
-    constexpr std::size_t most = 2;    // each asks the others
-    constexpr double clearly = 1e-12;  // of the difference between both sides
-    constexpr double near = 1e-9;      // part of a time unit
-    if (mechanics_.has_belts() || sliding_.size() >= most) return {};
-    const auto owner = owner_of(function, now.t.hi);
-    if (!owner) return {};
-    const Piecewise before = function;
-    const auto share_at = [this, &function](const Moment& at) { return share(function, at); };
-    const auto no = [&] {
-        function = before;
-        return std::nullopt;
-    };
+/// Where the rates are known, both places are a little later: a condition that is 0 here, as one that was just crossed,
+/// is what it becomes.
+std::optional<Slides::Sides> Slides::decide(const Sliding& of, const Now& now, const std::vector<double>& rates) {
+    const double later = rates.empty() ? 0 : 10 * near;
     const std::size_t n = mechanics_.bodies();
-    std::vector<double> one_side = now.y, other_side = now.y;
+    std::vector<double> one_side = now.y;
+    for (std::size_t k = 0; k < rates.size(); ++k) one_side[k] += later * unit_ * rates[k];
+    std::vector<double> other_side = one_side;
     const auto apart = [&](std::size_t k, double by) {
-        const double away = near * unit_ * by * jump;
+        const double away = near * unit_ * by * of.jump;
         one_side[k] += away, other_side[k] -= away;
     };
-    if (owner->joint) {
-        for (const auto& [body, by] : mechanics_.system().joints[*owner->joint].of) {
+    if (of.joint) {
+        for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
             apart(n + body, by / mechanics_.system().bodies[body].inertia);
         }
     } else {
-        apart(2 * n + *mechanics_.state_of(function), 1);
+        apart(2 * n + *mechanics_.state_of(*of.function), 1);
     }
     const Moment here = now.here();
-    if (!function.slide({here.t, here.side, one_side}, {here.t, here.side, other_side}, share_at)) return no();
+    const double t = here.t + later * unit_;
+    const auto share_at = [this, &function = *of.function](const Moment& at) { return share(function, at); };
+    if (!of.function->slide({t, here.side, one_side}, {t, here.side, other_side}, share_at)) return {};
+    Sides sides{on(*of.function, Which::own, here), on(*of.function, Which::beyond, here)};
+    const double fastest = std::max(std::fabs(sides.own.rate), std::fabs(sides.beyond.rate));
+    of.function->watch_others({t, here.side, one_side}, {t, here.side, other_side}, near * unit_ * fastest);
+    return sides;
+}
+
+std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now,
+                                           const std::vector<double>& rates) {
+    constexpr std::size_t most = 2;  // each asks the others
+    if (mechanics_.has_belts() || sliding_.size() >= most) return {};
+    auto owner = owner_of(function, now.t.hi);
+    if (!owner) return {};
+    owner->jump = jump;
+    const Piecewise before = function;
+    const std::vector<double> y = now.y;
+    const auto no = [&] {
+        function = before, now.y = y;
+        return std::nullopt;
+    };
     mode_ = now.mode;
-    const Side own = on(function, Which::own, now.here()), beyond = on(function, Which::beyond, now.here());
-    // Both rates are those of the margin of one side: there it must fall, and beyond the surface it must rise.
-    const double least = clearly * (std::fabs(own.rate) + std::fabs(beyond.rate));
-    if (!(own.rate < -least && beyond.rate > least)) return no();
+    const auto first = decide(*owner, now, rates);
+    if (!first || !first->drive_back()) return no();
     Begun begun{owner->joint, 0};
-    put_on_surface(own, beyond, now, begun.work);
-    function.watch_others(now.here(), near * unit_ * std::max(-own.rate, beyond.rate));
+    put_on_surface(*first, now, begun.work);
+    const auto sides = decide(*owner, now, first->mixed());
+    if (!sides || !sides->drive_back()) return no();
     sliding_.push_back(*owner);
     return begun;
 }
 
-std::optional<SlideChange> Slides::leave(Piecewise& function, std::size_t condition) {
+bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes) {
     const auto found = std::find_if(sliding_.begin(), sliding_.end(),
                                     [&](const Sliding& sliding) { return sliding.function == &function; });
-    if (found == sliding_.end()) return {};
-    function.leave(condition);
-    const SlideChange change{found->joint, false};
+    if (found == sliding_.end()) return false;
+    const Sliding was = *found;
+    const Sides before{on(function, Which::own, now.here()), on(function, Which::beyond, now.here())};
     sliding_.erase(found);
-    return change;
+    if (condition > 1 && before.differ()) {  // the function has another piece on either side, on which it may go on
+        const std::vector<double> rates = before.mixed();
+        if (begin(function, was.jump, now, rates)) return true;
+        const auto sides = decide(was, now, rates);
+        if (sides) condition = sides->own.rate < 0 ? 1 : 0;
+    }
+    function.leave(condition);
+    changes.push_back({was.joint, false});
+    return true;
 }
 
 bool Slides::lost(const Moment& here) const {
     return std::any_of(sliding_.begin(), sliding_.end(), [&](const Sliding& sliding) {
-        return !drives_back(on(*sliding.function, Which::own, here), on(*sliding.function, Which::beyond, here));
+        return !Sides{on(*sliding.function, Which::own, here), on(*sliding.function, Which::beyond, here)}.differ();
     });
 }
 

@@ -27,15 +27,17 @@ public:
         std::optional<std::size_t> joint;  ///< of the load; none: a rate
         double work;                       ///< of the load on the velocities, which are put on the surface
     };
-    /// Slides along the condition of a function that was crossed to and fro and jumps by so much. Returns none if that
-    /// is not possible, or both sides do not drive the motion back.
-    std::optional<Begun> begin(Piecewise& function, double jump, Now& now);
+    /// Slides along the condition of a function that was crossed to and fro and jumps by so much; `rates` of y: of the
+    /// motion along it, if they are known. Returns none if that is not possible, or both sides do not drive the motion
+    /// back.
+    std::optional<Begun> begin(Piecewise& function, double jump, Now& now, const std::vector<double>& rates = {});
     /// Contacts have, or may have, this mode.
     void follow(const Mode& mode) { mode_ = mode; }
     /// Returns whether contacts now hold the velocities of a surface, so that the load does not move them.
     [[nodiscard]] bool lost(const Moment& here) const;
-    /// Ends a slide at one of its conditions. Returns none if this function does not slide.
-    std::optional<SlideChange> leave(Piecewise& function, std::size_t condition);
+    /// One of the conditions of a slide has changed: it ends, or goes on if another one than its own has. Returns false
+    /// if this function does not slide.
+    bool leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes);
     /// All functions are decided anew. Returns those that have slid.
     std::vector<SlideChange> end();
 
@@ -45,8 +47,15 @@ private:
         std::vector<double> rates{};  ///< of y
     };
     [[nodiscard]] Side on(Piecewise& function, Piecewise::Slide::Side which, const Moment& at) const;
-    /// Returns whether the load beyond drives the motion back more than that on the own side.
-    [[nodiscard]] static bool drives_back(const Side& own, const Side& beyond);
+    /// Both rates are those of the margin of the own side: there it must fall, and beyond the surface it must rise.
+    struct Sides {
+        Side own, beyond;
+        /// Returns whether the load beyond drives the motion back more than that on the own side.
+        [[nodiscard]] bool differ() const;
+        [[nodiscard]] bool drive_back() const;
+        /// Returns the rates of y along the surface.
+        [[nodiscard]] std::vector<double> mixed() const;
+    };
     [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
 
     Mechanics& mechanics_;
@@ -56,9 +65,13 @@ private:
     struct Sliding {
         Piecewise* function;
         std::optional<std::size_t> joint;  ///< of the load
+        double jump = 0;                   ///< of the function at the surface
     };
     [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
-    void put_on_surface(const Side& own, const Side& beyond, Now& now, double& work) const;
+    /// Lets the function slide along the condition that differs between both sides, on the pieces that it has a little
+    /// later in a motion with these rates of y, or here if there are none. Returns none if no condition differs.
+    [[nodiscard]] std::optional<Sides> decide(const Sliding& of, const Now& now, const std::vector<double>& rates);
+    void put_on_surface(const Sides& sides, Now& now, double& work) const;
     std::vector<Sliding> sliding_;
 };
 
