@@ -188,6 +188,9 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     // Rows of a named body have accelerations, which are made of the torques of an affine step.
     possible_ = possible_ && !remembers && !mechanics.may_open(0) && !mechanics.has_normal(0) && !joint_.rigid &&
                 !mechanics.has_belts() && !mechanics.has_base() && (affine_ || problem.joined_elsewhere);
+    for (const model::WantedEvent& event : problem.drive.events) {
+        possible_ = possible_ && event.when->read() != nullptr;  // otherwise nobody knows where it stays clear of zero
+    }
     if (!possible_) return;
     if (!affine_) accelerations_.resize(AffineBlock::most + 1);
     states_.resize(m_ * (AffineBlock::most + 1)), rates_.resize(states_.size());
@@ -318,7 +321,6 @@ bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
         if (leaves(point_[1])) return false;
         const double at = stage + 1 < along.size() ? t + h / 2 : time(i + 1);
         if (!find_rates(of.now.mode, {at, Side::at, point_}, slopes_.data() + stage * size, M)) return false;
-        if (stage == 2) block_.samples[2 * i] = M;
     }
     const double* k = slopes_.data();
     for (std::size_t j = 0; j < size; ++j)
