@@ -246,6 +246,15 @@ test("rk4 integrates states beside the motion, beside rest, and between its step
     end
 end)
 
+test("rk4 tells the first turn of a body that starts from rest, also under functions of the motion", function()
+    local free = system { I = 1, k = 40, C = 0.2 }
+    local more = { states = { z = { start = 0, rate = function(_, theta) return theta end } } }
+    local plain = free:simulate { theta0 = 0.2, t_end = 3, integrator = steps }
+    same_events(free:simulate(merged({ theta0 = 0.2, t_end = 3, integrator = steps }, more)), plain, 1e-9)
+    local fed = { M = function(_, theta) return 0 * theta end, theta0 = 0.2, t_end = 3, integrator = steps }
+    same_events(free:simulate(merged(fed, { belt = 0 })), plain, 1e-9)
+end)
+
 test("rk4 locates events and conditions among steps that it makes in blocks", function()
     local wanted = {
         { when = function(_, theta) return theta - 0.12 end, name = "place" },

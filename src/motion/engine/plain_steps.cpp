@@ -183,11 +183,17 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     const Signal& load = mechanics.loads().front();
     const model::Friction& law = joint_.friction.law;
     even_friction_ = mechanics.is_native(0) && !law.depends_on_speed() && joint_.spring.none() && !joint_.stops;
-    affine_ = even_friction_ && !load.asks_the_motion();
+    ranges_.t = model::bounds::anything, ranges_.y.assign(2 + m_, model::bounds::anything);
+    for (std::size_t k = 0; possible_ && k < m_; ++k) {
+        const auto range = ranges_.of(mechanics.asked_rate(k).function->read(), nullptr, problem.system.named);
+        if (range && range->is_one() && std::isfinite(range->lo)) constant_rates_.push_back(range->lo);
+    }
+    if (constant_rates_.size() < m_) constant_rates_.clear();
+    affine_ = even_friction_ && !load.asks_the_motion() && constant_rates_.size() == m_;
     const bool remembers = load.relays() > 0 || !load.delays().empty() || load.has_sampled();
-    // Rows of a named body have accelerations, which are made of the torques of an affine step.
+    // Rows of a named body have accelerations, which are made of those torques only.
     possible_ = possible_ && !remembers && !mechanics.may_open(0) && !mechanics.has_normal(0) && !joint_.rigid &&
-                !mechanics.has_belts() && !mechanics.has_base() && (affine_ || problem.joined_elsewhere);
+                !mechanics.has_belts() && !mechanics.has_base() && (even_friction_ || problem.joined_elsewhere);
     for (const model::WantedEvent& event : problem.drive.events) {
         possible_ = possible_ && event.when->read() != nullptr;  // otherwise nobody knows where it stays clear of zero
     }
@@ -196,12 +202,6 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     states_.resize(m_ * (AffineBlock::most + 1)), rates_.resize(states_.size());
     slopes_.resize(4 * (2 + m_));
     point_.resize(2 + m_);
-    ranges_.t = model::bounds::anything, ranges_.y.assign(2 + m_, model::bounds::anything);
-    for (std::size_t k = 0; k < m_; ++k) {
-        const auto range = ranges_.of(mechanics.asked_rate(k).function->read(), nullptr, problem.system.named);
-        if (range && range->is_one() && std::isfinite(range->lo)) constant_rates_.push_back(range->lo);
-    }
-    if (constant_rates_.size() < m_) constant_rates_.clear();
 }
 
 bool PlainSteps::may_begin(const Now& now) const {
@@ -280,8 +280,8 @@ bool PlainSteps::find_rates(const Mode& mode, const Moment& at, double* rates, d
         M = mechanics_.loads().front().value(at);
         const double torque = even_friction_ ? friction_ + joint_.damping * at.y[1] + joint_.stiffness * at.y[0]
                                              : mechanics_.joint_torque(0, at, mode, 0);
-        rates[1] = (M - torque) * block_.inverse_inertia;
-        if (!std::isfinite(rates[1])) return false;
+        rates[1] = mode.holds(0) ? 0 : (M - torque) * block_.inverse_inertia;
+        if (!std::isfinite(rates[1] + M)) return false;
     }
     if (m_ > 0) mechanics_.rates(at, rates + 2, &mode);
     return std::all_of(rates + 2, rates + 2 + m_, [](double rate) { return std::isfinite(rate); });
@@ -335,37 +335,10 @@ bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
     return true;
 }
 
-/// Makes step i of the states beside an affine step of the body, or beside a body that stands.
-bool PlainSteps::step_states(const Of& of, std::size_t i, bool stands) {
-    const std::size_t size = 2 + m_;
-    const double h = steps_.h;
-    if (!constant_rates_.empty()) {
-        for (std::size_t k = 0; k < m_; ++k)
-            states(i + 1)[k] = states(i)[k] + h * constant_rates_[k], rates(i + 1)[k] = constant_rates_[k];
-        return true;
-    }
-    model::State y = block_.at(i);
-    const double middle = (block_.samples[2 * i] - friction_) * block_.inverse_inertia;
-    double a = stands ? 0 : block_.acceleration(i, y), M = 0;
-    std::copy_n(rates(i), m_, slopes_.begin() + 2);
-    const std::array<double, 4> along{0, h / 2, h / 2, h};
-    for (std::size_t stage = 1; stage < along.size(); ++stage) {
-        const double* before = slopes_.data() + (stage - 1) * size;
-        y = {block_.theta[i] + along[stage] * y.velocity, block_.velocity[i] + along[stage] * a};
-        a = stands ? 0 : middle - block_.map.c * y.velocity - block_.map.w * y.theta;
-        point_[0] = y.theta, point_[1] = y.velocity;
-        for (std::size_t k = 2; k < size; ++k) point_[k] = states(i)[k - 2] + along[stage] * before[k];
-        const double at = stage + 1 < along.size() ? time(i) + h / 2 : time(i + 1);
-        if (!find_rates(of.now.mode, {at, Side::at, point_}, slopes_.data() + stage * size, M)) return false;
-    }
-    const double* k = slopes_.data();
-    for (std::size_t j = 2; j < size; ++j)
-        point_[j] = states(i)[j - 2] + h / 6 * (k[j] + 2 * k[size + j] + 2 * k[2 * size + j] + k[3 * size + j]);
-    point_[0] = block_.theta[i + 1], point_[1] = block_.velocity[i + 1];
-    if (!find_rates(of.now.mode, {time(i + 1), Side::at, point_}, slopes_.data(), M)) return false;
-    std::copy_n(point_.begin() + 2, m_, states(i + 1));
-    std::copy_n(slopes_.begin() + 2, m_, rates(i + 1));
-    return true;
+/// Beside an affine step the states have constant rates.
+void PlainSteps::step_states(std::size_t i) {
+    for (std::size_t k = 0; k < m_; ++k)
+        states(i + 1)[k] = states(i)[k] + steps_.h * constant_rates_[k], rates(i + 1)[k] = constant_rates_[k];
 }
 
 /// The motion does not come nearer to a wall than it may go in a step.
@@ -425,11 +398,9 @@ std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, 
         const std::size_t from = i;
         if (affine_) {
             i = block_.step(i, stop, direction);
-            for (std::size_t k = from; m_ > 0 && k < i; ++k) {
-                if (!step_states(of, k, false)) i = k;
-            }
+            for (std::size_t k = from; m_ > 0 && k < i; ++k) step_states(k);
         } else {
-            while (i < stop && step_functions(of, i, direction)) ++i;
+            while (direction != 0 && i < stop && step_functions(of, i, direction)) ++i;
         }
         const auto fastest = [&](std::size_t since) {
             double most = 0;
@@ -463,7 +434,7 @@ bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
     const auto zero = first_velocity_zero(direction, h, y.velocity, a, y1.velocity, a1);
     if (!zero) return false;
     block_.theta[i + 1] = y1.theta, block_.velocity[i + 1] = y1.velocity;
-    if (affine_ && m_ > 0 && !step_states(of, i, false)) return false;
+    if (affine_) step_states(i);
     if (calm_until(of, i, i + 1) == i) return false;
     const double x = TurnInStep(motion, h, *zero).x, t = steps_.time(n + i) + x;
     const model::State there{motion(x).theta, 0};
@@ -505,10 +476,12 @@ std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) 
     };
     stand_at(i), block_.M[i] = end_.M;
     for (; i < stop; ++i) {
+        if (affine_) step_states(i);
+        if (!affine_ && m_ > 0 && !step_functions(of, i, 0)) break;
         stand_at(i + 1);
-        if (m_ > 0 && !step_states(of, i, true)) break;
-        for (const int half : {1, 2}) {
-            if (!affine_) block_.samples[2 * i + half - 1] = M_at(i, time(i) + half * steps_.h / 2, {theta, 0});
+        if (!affine_) {
+            block_.samples[2 * i] = M_at(i, time(i) + steps_.h / 2, {theta, 0});
+            block_.samples[2 * i + 1] = M_at(i, time(i) + steps_.h, {theta, 0});
         }
         if (!hold.lasts(block_.samples[2 * i], block_.samples[2 * i + 1])) break;
         block_.M[i + 1] = block_.samples[2 * i + 1];

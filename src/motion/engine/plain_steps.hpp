@@ -56,7 +56,7 @@ private:
     bool find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const;
     bool begin_functions(const Of& of, std::size_t i);
     bool step_functions(const Of& of, std::size_t i, double direction);
-    bool step_states(const Of& of, std::size_t i, bool stands);
+    void step_states(std::size_t i);
     [[nodiscard]] double time(std::size_t i) const { return steps_.time(sampled_.from + i); }
     [[nodiscard]] double acceleration(std::size_t i, const model::State& y) const {
         return affine_ ? block_.acceleration(i, y) : accelerations_[i];
@@ -83,7 +83,7 @@ private:
     } end_;  ///< of the last step
     // Of functions, at the beginning of each step.
     std::vector<double> accelerations_, states_, rates_;
-    std::vector<double> constant_rates_;  ///< of all states, if they are constant
+    std::vector<double> constant_rates_;  ///< of all states, if these are constant
     std::size_t tries_ = 8;               ///< steps at once, where something may happen in any of them
     bool is_rest_of_step_ = false;
     std::vector<double> point_, slopes_;
