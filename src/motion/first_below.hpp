@@ -69,6 +69,22 @@ public:
         return by_slope > by_bend ? by_slope : by_bend;  // a NaN decides nothing
     }
 
+    /// The curve divided by 1 + x, if it is known to be zero at -1: what it has left are its other zeros. Its own
+    /// rounding is nearly that of a slope there, and more than that of the curve farther away.
+    [[nodiscard]] Bounded divided() const {
+        constexpr double nearest = 32;  // so much greater is the rounding that values have after the division
+        Series<n> quotient{};
+        for (std::size_t k = n - 1; k > 0; --k) {
+            quotient[k - 1] = 2 * (f_[k] - quotient[k]) - (k + 1 < n ? quotient[k + 1] : 0);
+        }
+        quotient[0] /= 2;
+        Bounded divided(1, quotient, derivative(quotient), at_nodes_);
+        divided.at_nodes_[0] = slope(-1);
+        for (std::size_t j = 1; j < points; ++j) divided.at_nodes_[j] /= 1 + nodes[j];
+        divided.floor_ = std::max(slope_floor_, nearest * floor_);
+        return divided;
+    }
+
 private:
     static constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
@@ -126,6 +142,22 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
     return search(f, middle, fm, b, fb, confirm);
 }
 
+/// The place up to the next node at which f, which is known to be zero at -1, falls below zero; -1 if it does so at
+/// once. The known zero is divided out. If it is a double one, as where a motion only grazes, the quotient is zero
+/// there, too, within rounding: then f itself tells by its first value that is not.
+template <class F, class Confirm>
+std::optional<double> behind_zero(const F& f, const Confirm& confirm) {
+    const F divided = f.divided();
+    const double first = divided.at_nodes()[0], right = nodes[1], f_right = f.at_nodes()[1];
+    if (first < -divided.floor()) return -1;
+    if (first > divided.floor()) return search(divided, -1, first, right, divided.at_nodes()[1], confirm);
+    double d = (right + 1) * 0x1p-46;
+    while (d < right + 1 && std::fabs(f(d - 1)) <= f.floor()) d *= 2;
+    const double left = std::min(d - 1, right), f_left = f(left);
+    if (f_left < -f.floor()) return -1;
+    return right > left ? search(f, left, f_left, right, f_right, confirm) : std::nullopt;
+}
+
 }  // namespace detail
 
 /// Curves that only touch zero do not count.
@@ -134,29 +166,25 @@ struct NoTouch {
 };
 
 /// The first x in [from, 1] at which f falls below zero. If f touches zero within rounding without clearly crossing it,
-/// confirm(x) decides whether that counts. If f(from) is known to be `zero`, f should become positive; if it does not,
-/// the result is -1 or `from`. A bound of f'' proves that no zero lies between two values; otherwise the
-/// interval is halved, so that pairs of close zeros are not missed.
+/// confirm(x) decides whether that counts. If f(-1) is known to be `zero`, f should become positive; if it does not,
+/// the result is -1. A bound of f'' proves that no zero lies between two values; otherwise the interval is halved, so
+/// that pairs of close zeros are not missed.
 template <class F, class Confirm = NoTouch>
 std::optional<double> first_below(const F& f, double from, bool zero = false, const Confirm& confirm = {}) {
     const Samples& at_node = f.at_nodes();
     std::size_t j = 1;
     while (j < degree && nodes[j] <= from) ++j;
     double left = from;
-    double f_left = zero ? 0 : from == -1 ? at_node[0] : f(from);
+    double f_left = from == -1 ? at_node[0] : f(from);
     if (zero) {
-        const double right = nodes[j], far = from == -1 ? f.leaves_upward() : 0;
-        if (far >= right - from) {
-            while (j < degree && nodes[j + 1] - from <= far) ++j;
-            left = nodes[j], f_left = at_node[j], ++j;
-            if (f_left <= 0) f_left = f.floor();  // positive and tiny
-        } else {
-            // Steps outwards from the rounding error until the direction of the curve is clear.
-            double d = (right - from) * 0x1p-46;
-            while (d < right - from && std::fabs(f(from + d)) <= f.floor()) d *= 2;
-            left = std::min(from + d, right), f_left = f(left);
-            if (f_left < -f.floor()) return from;
+        const double far = f.leaves_upward();
+        if (far >= nodes[1] + 1) {
+            while (j < degree && nodes[j + 1] + 1 <= far) ++j;
+        } else if (const auto x = detail::behind_zero(f, confirm)) {
+            return x;
         }
+        left = nodes[j], f_left = at_node[j], ++j;
+        if (far >= nodes[1] + 1 && f_left <= 0) f_left = f.floor();  // positive and tiny
     }
     for (; j <= degree; ++j) {
         if (nodes[j] > left && !f.stays_above(f_left, at_node[j], nodes[j] - left)) {

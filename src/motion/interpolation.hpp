@@ -1,6 +1,8 @@
 // The motion inside one smooth step, from position, velocity and acceleration at both ends, and its zeros.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -33,6 +35,19 @@ private:
     model::State y0_;
     double a0_;
     double c3_, c4_, c5_;
+};
+
+/// A zero of the velocity, which a cubic has found, made more accurate by one secant step of the interpolant; and the
+/// acceleration there.
+struct TurnInStep {
+    double x, slope;
+
+    TurnInStep(const StepInterpolant& motion, double h, double zero) : x(zero) {
+        const double e = 1e-4 * h;
+        slope = (motion(std::min(zero + e, h)).velocity - motion(std::max(zero - e, 0.0)).velocity) / (2 * e);
+        const double better = slope != 0 ? zero - motion(zero).velocity / slope : zero;
+        if (std::fabs(better - zero) < 0.1 * h && better > 0 && better <= h) x = better;
+    }
 };
 
 /// Neighbours a < b, at most `width` or one ulp apart, with f(a) <= 0 < f(b), from a bracket with this property. Uses

@@ -40,4 +40,22 @@ TEST_CASE("a value that begins beyond zero within its rounding, and comes back, 
     CHECK_FALSE(leaves(back, 1).has_value());
 }
 
+TEST_CASE("a zero right behind the one at which a curve begins is found where it is") {
+    // A bounce of 1e-7 of a stretch: the curve is below its own rounding between both.
+    const auto always = [](double) { return true; };
+    for (const double length : {1e-7, 1e-5, 1e-3}) {
+        CAPTURE(length);
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            const double x = 1 + cheb::nodes[j];
+            values[j] = x * (length - x) * (1 + 0.3 * std::sin(x));
+        }
+        const Series series = cheb::fit(values);
+        const cheb::Bounded<node_count> curve(1, series, cheb::derivative(series), values);
+        const auto zero = cheb::first_below(curve, -1, true, always);
+        REQUIRE(zero.has_value());
+        CHECK(std::fabs(*zero + 1 - length) < 1e-13);
+    }
+}
+
 }  // namespace dinal::crossing_test

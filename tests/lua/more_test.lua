@@ -196,4 +196,83 @@ test("a mass that stands is torn off by a base as quick as one likes when I a = 
     near(sys:simulate { base = bump, t_end = 5, dt = 5 }.events[1].t, 2.123 - 0.1 * math.sqrt(2 * math.log(30)), 1e-12)
 end)
 
+-- Steps of rk4 on which nothing happens are made in blocks, whatever else a run has.
+
+local steps = integrator.rk4 { h = 0.002 }
+local stick_slip = system { I = 1, k = 40, C = 0.3, Rd = 4, Re = 5 }
+local loads = {
+    ["of the time"] = function(t) return 8 * math.sin(5 * t) end,
+    ["of the motion"] = function(t, theta, velocity) return 8 * math.sin(5 * t) - 0.2 * velocity * theta end,
+    ["with a condition"] = function(t, theta)
+        if theta > 0.1 then return 8 * math.sin(5 * t) - 1 end
+        return 8 * math.sin(5 * t)
+    end,
+}
+
+local function same(run, plain, what)
+    same_events(run, plain, 1e-9, what)
+    for i = 1, #plain do near(run.theta[i], plain.theta[i], 1e-9) end
+end
+
+test("what acts on nothing leaves the motion of rk4 as it is", function()
+    local far = merged({ walls = { lower = -50, upper = 50 } }, { I = 1, k = 40, C = 0.3, Rd = 4, Re = 5 })
+    for name, M in pairs(loads) do
+        local own = { M = M, theta0 = 0.7, t_end = 9.9, dt = 0.0371, integrator = steps }
+        local plain = stick_slip:simulate(merged(own, { events = { { when = function(t) return t - 100 end } } }))
+        assert(#plain.events > 8)
+        local idle = {
+            ["an event far away"] = { events = { { when = function(_, theta) return theta - 50 end } } },
+            ["a state"] = { states = { z = { start = 3, rate = function() return 0 end } } },
+            ["a state that moves"] = { states = { z = { start = 3, rate = function(_, theta) return theta end } } },
+            ["a belt that stands"] = { belt = 0 },
+        }
+        for what, more in pairs(idle) do
+            local run = stick_slip:simulate(merged(own, more))
+            same(run, plain, name .. " " .. what)
+        end
+        same(system(far):simulate(own), plain, name .. " walls far away")
+    end
+end)
+
+test("rk4 integrates states beside the motion, beside rest, and between its steps", function()
+    local beside = { z = { start = 0, rate = function(t) return math.cos(t) end } }
+    for _, sys in ipairs { stick_slip, system { I = 1, k = 0, Rd = 20, Re = 20 } } do
+        for _, M in pairs(loads) do
+            local run = sys:simulate { M = M, theta0 = 0.7, states = beside, t_end = 7, dt = 0.0317, integrator = steps }
+            for i = 1, #run, 10 do near(run.z[i], math.sin(run.t[i]), 1e-12) end
+            local _, _, z = run:at(4.5678)
+            near(z.z, math.sin(4.5678), 1e-12)
+        end
+    end
+end)
+
+test("rk4 tells the first turn of a body that starts from rest, also under functions of the motion", function()
+    local free = system { I = 1, k = 40, C = 0.2 }
+    local more = { states = { z = { start = 0, rate = function(_, theta) return theta end } } }
+    local plain = free:simulate { theta0 = 0.2, t_end = 3, integrator = steps }
+    same_events(free:simulate(merged({ theta0 = 0.2, t_end = 3, integrator = steps }, more)), plain, 1e-9)
+    local fed = { M = function(_, theta) return 0 * theta end, theta0 = 0.2, t_end = 3, integrator = steps }
+    same_events(free:simulate(merged(fed, { belt = 0 })), plain, 1e-9)
+end)
+
+test("rk4 locates events and conditions among steps that it makes in blocks", function()
+    local wanted = {
+        { when = function(_, theta) return theta - 0.12 end, name = "place" },
+        { when = function(_, _, velocity) return velocity - 0.5 end, direction = "up", name = "speed" },
+    }
+    for name, M in pairs(loads) do
+        local runs = {}
+        for i, method in ipairs { steps, integrator.spectral {} } do
+            runs[i] = stick_slip:simulate { M = M, theta0 = 0.7, t_end = 6, integrator = method, events = wanted }
+        end
+        local found, expected = runs[1].events, runs[2].events
+        equal(#found, #expected, name)
+        for i = 1, #found do
+            equal(found[i].kind, expected[i].kind)
+            near(found[i].t, expected[i].t, 1e-7)
+        end
+        near(runs[1]:energy().total.error, 0, 1e-7)
+    end
+end)
+
 finish()

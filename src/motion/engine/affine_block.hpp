@@ -1,7 +1,9 @@
 // A block of steps of one body by the classical Runge-Kutta method, as affine maps.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "model/excitation.hpp"
@@ -22,6 +24,26 @@ struct StepTimes {
     }
     /// Returns the step in which t lies, or which begins there.
     [[nodiscard]] std::size_t at(double t) const;
+};
+
+/// The hold of friction on a mass that stands, from step to step of a load.
+class Hold {
+public:
+    /// `held` is the torque of springs, M the load now.
+    Hold(double forward, double backward, double held, double M)
+        : middle_(held + (forward - backward) / 2),
+          limit_((forward + backward) / 2 * (1 - 1e-9)),
+          off_(std::fabs(M - middle_)) {}
+    /// Returns whether the load of the next step is well within the limits, also between its samples: a parabola
+    /// through three of them exceeds the highest by at most an eighth of their second difference; a quarter is safe.
+    bool lasts(double M_middle, double M_end) {
+        const double before = off_, halfway = std::fabs(M_middle - middle_);
+        off_ = std::fabs(M_end - middle_);
+        return std::max({before, halfway, off_}) + std::fabs(before - 2 * halfway + off_) / 4 < limit_;
+    }
+
+private:
+    double middle_, limit_, off_;
 };
 
 struct AffineBlock {

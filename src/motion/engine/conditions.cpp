@@ -161,6 +161,21 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     forgotten_ = false;
 }
 
+bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
+    if (!any_) return true;
+    bool clear = !forgotten_;
+    std::vector<double> margins;
+    mechanics_.for_each_piecewise(from.t, [&](Piecewise& function) {
+        if (!clear || function.conditions().empty()) return;
+        clear = !function.is_law();
+        if (clear) function.margins(from, margins);
+        for (std::size_t c = 0; clear && c < margins.size(); ++c) {
+            clear = margins[c] > 0 && function.keeps(c, ranges, mechanics_.system().named);
+        }
+    });
+    return clear;
+}
+
 void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
     ConditionSearch search(segment, ending.before());
     std::vector<double> y, margins;

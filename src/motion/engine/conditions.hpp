@@ -8,6 +8,7 @@
 #include "motion/engine/chatter.hpp"
 #include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
+#include "motion/engine/ranges.hpp"
 #include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"
 
@@ -39,6 +40,9 @@ public:
     /// Decides them at a moment, if a contact begins to hold a velocity there or is about to let it leave 0: then the
     /// velocity is exact. Other decisions stay, because rounding would reverse those that have just passed zero.
     void decide(const Moment& at, const Mode& mode, const Segment& last);
+    /// Returns whether all are decided, and certainly stay so from here on where the motion is within these ranges.
+    [[nodiscard]] bool stay_clear(const Ranges& ranges, const Moment& from);
+    [[nodiscard]] bool slides() const { return slides_.any(); }
     /// Ends the stretch where the first one changes, if that is before its end.
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 

@@ -73,7 +73,9 @@ public:
         constexpr double clearly = 1e-9;
         if (from == -1 && half * values_[0] < -std::max(floor_, clearly * size_)) return from;
         if (!at_zero) return smooth_ ? of_series(half, from) : of_values(half, from);
-        // Steps outwards until the value is clear of rounding.
+        // Steps outwards until the value is clear of rounding. A zero at the start is not divided out, as that of a
+        // curve in first_below(): the function itself decides here, whose value there is rounding, and it may have no
+        // series.
         double d = 0x1p-46;
         while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
         const double start = std::min(1.0, from + d);

@@ -388,7 +388,8 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
         const bool touches = rubs_.back() != 0 || bends || !friction.sliders.empty() || joint.rigid;
-        belts_.emplace_back(touches ? drive.belts[j] : model::Excitation(), &asking);
+        const bool stands = drive.belts[j].most() == 0;
+        belts_.emplace_back(touches && !stands ? drive.belts[j] : model::Excitation(), &asking);
         has_belts_ |= !belts_.back().none();
     }
     for (std::size_t j = 0; j < joints(); ++j) {

@@ -12,53 +12,129 @@ namespace dinal::motion::engine {
 
 using model::Motion;
 
+/// The motion and the torques on some steps, at the beginning of each and at the end of the last.
+struct Made {
+    std::vector<model::State> y;
+    std::vector<double> accelerations, M, friction;  ///< friction as a torque against the motion
+    std::vector<double> middle_M, middle_friction;   ///< in the middle of each step
+    std::size_t m = 0;                               ///< states
+    std::vector<double> states{}, rates{};
+
+    [[nodiscard]] StepInterpolant between(std::size_t i, double h) const {
+        return {h, y[i], accelerations[i], y[i + 1], accelerations[i + 1]};
+    }
+    /// M and friction are parabolas through their samples.
+    void add_work(std::size_t i, double h, double length, double damping, Work& sum) const {
+        constexpr std::array<std::pair<double, double>, 5> gauss{{{0.046910077030668004, 0.11846344252809454},
+                                                                  {0.23076534494715845, 0.23931433524968324},
+                                                                  {0.5, 0.28444444444444444},
+                                                                  {0.76923465505284155, 0.23931433524968324},
+                                                                  {0.953089922969332, 0.11846344252809454}}};
+        const StepInterpolant motion = between(i, h);
+        const auto parabola = [](double first, double middle, double last, double s) {
+            return first + s * ((4 * middle - 3 * first - last) + s * 2 * (first - 2 * middle + last));
+        };
+        for (const auto& [place, weight] : gauss) {
+            const double x = place * length, s = x / h;
+            const double v = motion(x).velocity, dt = weight * length;
+            sum.input += parabola(M[i], middle_M[i], M[i + 1], s) * v * dt, sum.viscous += damping * v * v * dt;
+            sum.dry += parabola(friction[i], middle_friction[i], friction[i + 1], s) * v * dt;
+        }
+    }
+};
+
 namespace {
 
-/// Steps that are made again from their beginning when their motion is asked for.
-class StepsAgain final : public Remade {
+/// A value at the part s of a step of length h, from values and rates at both ends.
+double cubic(double s, double h, double z0, double r0, double z1, double r1) {
+    const double d = z1 - z0, v0 = h * r0, v1 = h * r1;
+    return z0 + s * (v0 + s * ((3 * d - 2 * v0 - v1) + s * (v0 + v1 - 2 * d)));
+}
+
+/// The steps n, n + 1, ... of a run.
+class StepsOfRun : public Remade {
 public:
-    /// The steps first to last of a block that begins with step n of the run.
-    StepsAgain(const AffineBlock& block, const StepTimes& steps, std::size_t n, std::size_t first, std::size_t last,
-               double friction, const model::Excitation& M)
-        : map_(block.map),
-          inertia_(1 / block.inverse_inertia),
-          steps_(steps),
-          n_(n + first),
-          count_(last - first),
-          begin_(block.at(first)),
-          friction_(friction),
-          M_begin_(block.M[first]),
-          M_(M) {
-        if (!M.has_script()) return;  // a function may have changed since
-        const auto* samples = block.samples.data();
-        samples_.assign(samples + 2 * first, samples + 2 * last);
-    }
+    StepsOfRun(const StepTimes& steps, std::size_t n, std::size_t count, double damping)
+        : steps_(steps), n_(n), count_(count), damping_(damping) {}
 
     [[nodiscard]] std::vector<double> at(double since) const override {
-        const double t = steps_.time(n_) + since;
-        const std::size_t step = std::min(std::max(steps_.at(t), n_) - n_, count_ - 1);
-        const AffineBlock block = made(step + 1);
-        const model::State y = between(block, step)(t - steps_.time(n_ + step));
-        return {y.theta, y.velocity};
+        const double t = steps_.time(n_) + since, h = steps_.h;
+        const std::size_t i = std::min(std::max(steps_.at(t), n_) - n_, count_ - 1);
+        const auto made = first_steps(i + 1);
+        const double x = t - steps_.time(n_ + i);
+        const model::State y = made->between(i, h)(x);
+        std::vector<double> all{y.theta, y.velocity};
+        for (std::size_t k = i * made->m; k < (i + 1) * made->m; ++k) {
+            all.push_back(
+                cubic(x / h, h, made->states[k], made->rates[k], made->states[k + made->m], made->rates[k + made->m]));
+        }
+        return all;
     }
     [[nodiscard]] std::function<Work(double)> works() const override {
-        const auto block = std::make_shared<const AffineBlock>(made(count_));
+        const auto made = first_steps(count_);
         std::vector<Work> sums(count_ + 1);  // up to each step
-        for (std::size_t i = 0; i < count_; ++i) sums[i + 1] = sums[i], add(*block, i, map_.h, sums[i + 1]);
-        return [this, block, sums](double since) {
+        for (std::size_t i = 0; i < count_; ++i) {
+            sums[i + 1] = sums[i];
+            made->add_work(i, steps_.h, steps_.h, damping_, sums[i + 1]);
+        }
+        return [this, made, sums](double since) {
             const double from = steps_.time(n_);
             const std::size_t step = std::min(std::max(steps_.at(from + since), n_) - n_, count_);
             Work sum = sums[step];
             const double more = since - (steps_.time(n_ + step) - from);
-            if (step < count_ && more > 0) add(*block, step, std::min(more, map_.h), sum);
+            if (step < count_ && more > 0) made->add_work(step, steps_.h, std::min(more, steps_.h), damping_, sum);
             return sum;
         };
     }
-    [[nodiscard]] std::size_t bytes() const override { return sizeof(*this) + samples_.size() * sizeof(double); }
+
+protected:
+    [[nodiscard]] virtual std::shared_ptr<const Made> first_steps(std::size_t count) const = 0;
+
+    StepTimes steps_;
+    std::size_t n_, count_;
+    double damping_;
+};
+
+/// Steps of functions are kept: these may have changed since.
+class StepsKept final : public StepsOfRun {
+public:
+    StepsKept(const StepTimes& steps, std::size_t n, std::size_t count, double damping, Made made)
+        : StepsOfRun(steps, n, count, damping), made_(std::make_shared<const Made>(std::move(made))) {}
+    [[nodiscard]] std::size_t bytes() const override {
+        return sizeof(*this) + sizeof(Made) + (count_ + 1) * (7 + 2 * made_->m) * sizeof(double);
+    }
 
 private:
-    /// The first steps.
-    [[nodiscard]] AffineBlock made(std::size_t count) const {
+    [[nodiscard]] std::shared_ptr<const Made> first_steps(std::size_t /*count*/) const override { return made_; }
+
+    std::shared_ptr<const Made> made_;
+};
+
+/// Affine steps are made again from their beginning when their motion is asked for.
+class StepsAgain final : public StepsOfRun {
+public:
+    /// The steps first to last of a block that begins with step n of the run.
+    StepsAgain(const AffineBlock& block, const StepTimes& steps, std::size_t n, std::size_t first, std::size_t last,
+               double friction, const model::Excitation& M, std::vector<double> states, std::vector<double> rates)
+        : StepsOfRun(steps, n + first, last - first, block.map.c / block.inverse_inertia),
+          map_(block.map),
+          inertia_(1 / block.inverse_inertia),
+          begin_(block.at(first)),
+          friction_(friction),
+          M_begin_(block.M[first]),
+          M_(M),
+          states_(std::move(states)),
+          rates_(std::move(rates)) {
+        if (!M.has_script()) return;  // a function may have changed since
+        const auto* samples = block.samples.data();
+        samples_.assign(samples + 2 * first, samples + 2 * last);
+    }
+    [[nodiscard]] std::size_t bytes() const override {
+        return sizeof(*this) + (samples_.size() + 2 * states_.size()) * sizeof(double);
+    }
+
+private:
+    [[nodiscard]] std::shared_ptr<const Made> first_steps(std::size_t count) const override {
         AffineBlock block(map_, inertia_);
         if (samples_.empty()) {
             block.sample(M_, steps_, n_, count);
@@ -66,100 +142,203 @@ private:
             std::copy_n(samples_.begin(), 2 * count, block.samples.begin());
         }
         block.begin(0, count, begin_, M_begin_, friction_);
-        for (std::size_t i = 0; i < count; ++i) {
-            const model::State y = block.end_of(i);
-            block.theta[i + 1] = y.theta, block.velocity[i + 1] = y.velocity;
+        Made made{.friction = std::vector(count + 1, friction_),
+                  .middle_friction = std::vector(count, friction_),
+                  .m = states_.size()};
+        for (std::size_t i = 0; i <= count; ++i) {
+            const model::State y = i == 0 ? begin_ : block.end_of(i - 1);
+            block.theta[i] = y.theta, block.velocity[i] = y.velocity;
+            made.y.push_back(y), made.accelerations.push_back(block.acceleration(i, y)), made.M.push_back(block.M[i]);
+            if (i < count) made.middle_M.push_back(block.samples[2 * i]);
+            for (std::size_t k = 0; k < states_.size(); ++k) {
+                made.states.push_back(states_[k] + static_cast<double>(i) * map_.h * rates_[k]);
+                made.rates.push_back(rates_[k]);
+            }
         }
-        return block;
-    }
-    static StepInterpolant between(const AffineBlock& block, std::size_t i) {
-        const model::State y = block.at(i), y1 = block.at(i + 1);
-        return {block.map.h, y, block.acceleration(i, y), y1, block.acceleration(i + 1, y1)};
-    }
-    /// M is the parabola through its samples.
-    void add(const AffineBlock& block, std::size_t i, double length, Work& sum) const {
-        constexpr std::array<std::pair<double, double>, 5> gauss{{{0.046910077030668004, 0.11846344252809454},
-                                                                  {0.23076534494715845, 0.23931433524968324},
-                                                                  {0.5, 0.28444444444444444},
-                                                                  {0.76923465505284155, 0.23931433524968324},
-                                                                  {0.953089922969332, 0.11846344252809454}}};
-        const StepInterpolant motion = between(block, i);
-        const double M0 = block.M[i], middle = block.samples[2 * i], M1 = block.M[i + 1];
-        const double damping = map_.c * inertia_;
-        for (const auto& [place, weight] : gauss) {
-            const double x = place * length, s = x / map_.h;
-            const double v = motion(x).velocity, dt = weight * length;
-            const double M = M0 + s * ((4 * middle - 3 * M0 - M1) + s * 2 * (M0 - 2 * middle + M1));
-            sum.input += M * v * dt, sum.viscous += damping * v * v * dt, sum.dry += friction_ * v * dt;
-        }
+        return std::make_shared<const Made>(std::move(made));
     }
 
     AffineStep map_;
     double inertia_;
-    StepTimes steps_;
-    std::size_t n_, count_;
     model::State begin_;
     double friction_, M_begin_;
     model::Excitation M_;
-    std::vector<double> samples_;
+    std::vector<double> samples_, states_, rates_;  ///< states at the beginning; their rates are constant
 };
 
 }  // namespace
 
-PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics, const Conditions& conditions)
+PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     : problem_(problem),
       mechanics_(mechanics),
       joint_(problem.system.joints.front()),
       M_(problem.drive.loads.front()),
-      possible_(problem.step > 0 && mechanics.joints() == 1 && mechanics.size() == 2),
+      m_(mechanics.states()),
+      possible_(problem.step > 0 && mechanics.joints() == 1 && m_ == mechanics.states_of_user()),
+      watches_(!problem.drive.events.empty()),
       steps_(problem.window, possible_ ? problem.step : 1),
       block_({joint_.stiffness / problem.system.bodies.front().inertia,
               joint_.damping / problem.system.bodies.front().inertia, steps_.h},
              problem.system.bodies.front().inertia) {
-    if (!possible_) return;
     const Signal& load = mechanics.loads().front();
-    const bool by_time = !load.asks_the_motion() && load.relays() == 0 && load.delays().empty() && !load.has_sampled();
-    possible_ = by_time && mechanics.all_linear() && mechanics.is_native(0) && !mechanics.may_open(0) &&
-                !joint_.rigid && !mechanics.has_belts() && !mechanics.has_base() && !conditions.any() &&
-                problem.drive.events.empty();
+    const model::Friction& law = joint_.friction.law;
+    even_friction_ = mechanics.is_native(0) && !law.depends_on_speed() && joint_.spring.none() && !joint_.stops;
+    ranges_.t = model::bounds::anything, ranges_.y.assign(2 + m_, model::bounds::anything);
+    for (std::size_t k = 0; possible_ && k < m_; ++k) {
+        const auto range = ranges_.of(mechanics.asked_rate(k).function->read(), nullptr, problem.system.named);
+        if (range && range->is_one() && std::isfinite(range->lo)) constant_rates_.push_back(range->lo);
+    }
+    if (constant_rates_.size() < m_) constant_rates_.clear();
+    affine_ = even_friction_ && !load.asks_the_motion() && constant_rates_.size() == m_;
+    const bool remembers = load.relays() > 0 || !load.delays().empty() || load.has_sampled();
+    // Rows of a named body have accelerations, which are made of those torques only.
+    possible_ = possible_ && !remembers && !mechanics.may_open(0) && !mechanics.has_normal(0) && !joint_.rigid &&
+                !mechanics.has_belts() && !mechanics.has_base() && (even_friction_ || problem.joined_elsewhere);
+    for (const model::WantedEvent& event : problem.drive.events) {
+        possible_ = possible_ && event.when->read() != nullptr;  // otherwise nobody knows where it stays clear of zero
+    }
+    if (!possible_) return;
+    if (!affine_) accelerations_.resize(AffineBlock::most + 1);
+    states_.resize(m_ * (AffineBlock::most + 1)), rates_.resize(states_.size());
+    slopes_.resize(4 * (2 + m_));
+    point_.resize(2 + m_);
 }
 
 bool PlainSteps::may_begin(const Now& now) const {
     const Slipping& how = now.mode.friction[0];
-    return possible_ && now.t.lo == 0 && now.mode.leans[0] == 0 && now.mode.presses[0] == 0 && !how.riding &&
-           how.creeps == Motion::stuck && now.t.hi == steps_.time(steps_.at(now.t.hi));
+    return possible_ && now.mode.leans[0] == 0 && now.mode.presses[0] == 0 && !how.riding &&
+           how.creeps == Motion::stuck && how.beside == 0 && !how.driven_back &&
+           (!now.mode.holds(0) || mechanics_.is_native(0));
 }
 
 bool PlainSteps::take(const Of& of, double until) {
+    const double t = of.now.t.hi;
+    return t == steps_.time(steps_.at(t)) ? of.now.t.lo == 0 && take_steps(of, until) : take_rest_of_step(of, until);
+}
+
+/// After an event: to the end of its step, by a step of that length.
+bool PlainSteps::take_rest_of_step(const Of& of, double until) {
+    const double t = of.now.t.hi, end = steps_.time(steps_.at(t) + 1);
+    if (!(end - t > 1e-3 * steps_.h) || !(end < until)) return false;
+    const StepTimes whole = std::exchange(steps_, StepTimes({t, end}, end - t));
+    const AffineStep map = std::exchange(block_.map, AffineStep(block_.map.w, block_.map.c, end - t));
+    const auto sampled = std::exchange(sampled_, {0, 0});
+    is_rest_of_step_ = true;
+    const bool took = take_steps(of, until);
+    is_rest_of_step_ = false;
+    steps_ = whole, block_.map = map;
+    // The samples of this step are gone.
+    sampled_ = steps_.at(t) > sampled.from ? sampled : decltype(sampled_){0, 0};
+    return took;
+}
+
+bool PlainSteps::take_steps(const Of& of, double until) {
     Now& now = of.now;
-    if (!may_begin(now)) return false;
+    const bool waits = watches_ || of.conditions.any();
+    const std::size_t most = waits ? tries_ : AffineBlock::most;
     const std::size_t n = steps_.at(now.t.hi);
     if (!(n >= sampled_.from && n < sampled_.to &&
           steps_.time(sampled_.to) < until)) {  // an event leaves samples that are still good
         std::size_t count = std::min(AffineBlock::most, steps_.count - n);
-        if (n + count == steps_.count) --count;  // the last step may be shorter
+        if (n + count == steps_.count && !is_rest_of_step_) --count;  // the last step may be shorter
         while (count > 0 && !(steps_.time(n + count) < until)) count /= 2;
-        sampled_ = {n, n + block_.sample(M_, steps_, n, count)};
+        sampled_ = {n, n + (affine_ ? block_.sample(M_, steps_, n, count) : count)};
     }
     if (sampled_.to == n) return false;
-    if (now.after_break || end_.t != now.t.hi) {
+    if (affine_ && (now.after_break || end_.t != now.t.hi)) {
         end_ = {now.t.hi, now.after_break ? M_.value_after(now.t.hi) : M_.value(now.t.hi)};
     }
-    if (!std::isfinite(end_.M)) return false;
-    const Slipping& how = now.mode.friction[0];
+    const std::size_t begin = n - sampled_.from;
     const bool stands = now.mode.holds(0);
-    const Motion way = stands ? Motion::stuck : now.rubs(0) ? how.way : model::motion_of(now.y[1]);
-    const std::size_t begin = n - sampled_.from, end = stands ? rest(of, begin) : move(of, begin, way);
+    const Motion way = stands ? Motion::stuck : now.rubs(0) ? now.mode.friction[0].way : model::motion_of(now.y[1]);
+    friction_ =
+        !stands && now.rubs(0) && even_friction_ ? model::sign_of(way) * joint_.friction.law.sliding(way, 0) : 0;
+    const model::Friction& law = joint_.friction.law;
+    const bool has_corners = !stands && now.rubs(0) && law.ranges() > 1 && joint_.friction.function == nullptr;
+    range_ = has_corners ? law.range(now.mode.friction[0].range) : model::SpeedRange{.from = 0, .to = model::never};
+    if (!begin_functions(of, begin) || !std::isfinite(end_.M)) return false;
+    const std::size_t stop = std::min(begin + most, sampled_.to - sampled_.from);
+    const std::size_t end = stands ? rest(of, begin, stop) : move(of, begin, stop, way);
+    if (waits && end == stop) tries_ = std::min(2 * tries_, AffineBlock::most);
     if (end == begin) return false;
-    now.y = {block_.theta[end], block_.velocity[end]};
+    now.y[0] = block_.theta[end], now.y[1] = block_.velocity[end];
+    std::copy_n(states(end), m_, now.y.begin() + 2);
     now.low[0] = 0;
-    now.t = {steps_.time(sampled_.from + end), 0};
+    now.t = {time(end), 0};
     now.after_break = false;
     end_ = {now.t.hi, block_.M[end]};
     Slipping& left = now.mode.friction[0];
     left.leaving = false, left.blunt = 0;
     of.contacts.of[0].edge = 0, of.contacts.of[0].leaves_wall = false;
     return true;
+}
+
+/// Returns whether all that functions give is finite: the acceleration, the rates of states, M.
+bool PlainSteps::find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const {
+    rates[0] = at.y[1];
+    if (!affine_) {
+        M = mechanics_.loads().front().value(at);
+        const double torque = even_friction_ ? friction_ + joint_.damping * at.y[1] + joint_.stiffness * at.y[0]
+                                             : mechanics_.joint_torque(0, at, mode, 0);
+        rates[1] = mode.holds(0) ? 0 : (M - torque) * block_.inverse_inertia;
+        if (!std::isfinite(rates[1] + M)) return false;
+    }
+    if (m_ > 0) mechanics_.rates(at, rates + 2, &mode);
+    return std::all_of(rates + 2, rates + 2 + m_, [](double rate) { return std::isfinite(rate); });
+}
+
+/// The values at the beginning of a step, from which others follow.
+bool PlainSteps::begin_functions(const Of& of, std::size_t i) {
+    if (affine_ && m_ == 0) return true;
+    const Moment at{of.now.t.hi, of.now.side(), of.departing};
+    if (!find_rates(of.now.mode, at, slopes_.data(), affine_ ? end_.M : block_.M[i])) return false;
+    std::copy_n(of.now.y.begin() + 2, m_, states(i));
+    std::copy_n(slopes_.begin() + 2, m_, rates(i));
+    if (affine_) return true;
+    block_.theta[i] = of.now.y[0], block_.velocity[i] = of.now.y[1];
+    accelerations_[i] = slopes_[1], end_.M = block_.M[i];
+    return true;
+}
+
+/// Makes step i of the classical method. Returns false if something is not finite or, with a direction, if the velocity
+/// may not keep it, or reach a corner of the law of friction.
+bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
+    const std::size_t size = 2 + m_;
+    const double h = steps_.h, t = time(i);
+    const std::array<double, 4> along{0, h / 2, h / 2, h};
+    const auto value = [&](std::size_t k) {
+        return k == 0 ? block_.theta[i] : k == 1 ? block_.velocity[i] : states(i)[k - 2];
+    };
+    slopes_[0] = block_.velocity[i], slopes_[1] = accelerations_[i];
+    std::copy_n(rates(i), m_, slopes_.begin() + 2);
+    double M = 0;
+    const auto leaves = [&](double v) {
+        return direction != 0 && !(direction * v > range_.from && direction * v < range_.to);
+    };
+    for (std::size_t stage = 1; stage < along.size(); ++stage) {
+        const double* before = slopes_.data() + (stage - 1) * size;
+        for (std::size_t k = 0; k < size; ++k) point_[k] = value(k) + along[stage] * before[k];
+        if (leaves(point_[1])) return false;
+        const double at = stage + 1 < along.size() ? t + h / 2 : time(i + 1);
+        if (!find_rates(of.now.mode, {at, Side::at, point_}, slopes_.data() + stage * size, M)) return false;
+    }
+    const double* k = slopes_.data();
+    for (std::size_t j = 0; j < size; ++j)
+        point_[j] = value(j) + h / 6 * (k[j] + 2 * k[size + j] + 2 * k[2 * size + j] + k[3 * size + j]);
+    if (leaves(point_[1])) return false;
+    if (!find_rates(of.now.mode, {time(i + 1), Side::at, point_}, slopes_.data(), M)) return false;
+    if (direction * accelerations_[i] < 0 && direction * slopes_[1] > 0) return false;  // it may have dipped below zero
+    block_.theta[i + 1] = point_[0], block_.velocity[i + 1] = point_[1];
+    accelerations_[i + 1] = slopes_[1], block_.M[i + 1] = block_.samples[2 * i + 1] = M;
+    std::copy_n(point_.begin() + 2, m_, states(i + 1));
+    std::copy_n(slopes_.begin() + 2, m_, rates(i + 1));
+    return true;
+}
+
+/// Beside an affine step the states have constant rates.
+void PlainSteps::step_states(std::size_t i) {
+    for (std::size_t k = 0; k < m_; ++k)
+        states(i + 1)[k] = states(i)[k] + steps_.h * constant_rates_[k], rates(i + 1)[k] = constant_rates_[k];
 }
 
 /// The motion does not come nearer to a wall than it may go in a step.
@@ -170,27 +349,69 @@ bool PlainSteps::clear_of_walls(std::size_t i, double reach) const {
     return block_.theta[i] + far < walls->upper && block_.theta[i] - far > walls->lower;
 }
 
+/// Returns whether certainly nothing happens on these steps but their motion: no event of the user, no change of a
+/// condition. Between their ends values change by no more than twice what their rates there say.
+bool PlainSteps::is_calm(const Of& of, std::size_t first, std::size_t last) {
+    const double h = steps_.h;
+    const bool stands = of.now.mode.holds(0);
+    ranges_.t = {time(first), time(last)};
+    const auto range = [&](auto&& value, auto&& rate) {
+        double low = value(first), high = low, fastest = 0;
+        for (std::size_t i = first; i <= last; ++i) {
+            low = std::min(low, value(i)), high = std::max(high, value(i));
+            fastest = std::max(fastest, std::fabs(rate(i)));
+        }
+        return model::bounds::Interval{low - h * fastest, high + h * fastest};
+    };
+    const auto velocity = [&](std::size_t i) { return block_.velocity[i]; };
+    ranges_.y[0] = range([&](std::size_t i) { return block_.theta[i]; }, velocity);
+    ranges_.y[1] = range(velocity, [&](std::size_t i) { return stands ? 0 : acceleration(i, block_.at(i)); });
+    for (std::size_t k = 0; k < m_; ++k) {
+        ranges_.y[2 + k] =
+            range([&](std::size_t i) { return states(i)[k]; }, [&](std::size_t i) { return rates(i)[k]; });
+    }
+    return of.users.stay_clear(ranges_) && of.conditions.stay_clear(ranges_, of.now.here());
+}
+
+/// Returns the step up to which nothing happens from `first` on.
+std::size_t PlainSteps::calm_until(const Of& of, std::size_t first, std::size_t last) {
+    if (first == last || (!watches_ && !of.conditions.any()) || is_calm(of, first, last)) return last;
+    std::size_t calm = first, busy = last;
+    while (busy - calm > 1) {
+        const std::size_t middle = calm + (busy - calm) / 2;
+        (is_calm(of, calm, middle) ? calm : busy) = middle;
+    }
+    tries_ = std::max<std::size_t>(1, calm - first);
+    return calm;
+}
+
 /// Moves in one direction from step `begin` of the block on; without dry friction it also turns. Returns the step at
-/// which it stops.
-std::size_t PlainSteps::move(const Of& of, std::size_t begin, Motion way) {
-    const std::size_t n = sampled_.from, count = sampled_.to - n;
+/// which it stops, `stop` at the latest.
+std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, Motion way) {
+    const std::size_t n = sampled_.from;
     const bool rubs = of.now.rubs(0);
-    friction_ = rubs ? model::sign_of(way) * joint_.friction.law.sliding(way, 0) : 0;
-    block_.begin(begin, count, {of.now.y[0], of.now.y[1]}, end_.M, friction_);
+    if (affine_) block_.begin(begin, stop, {of.now.y[0], of.now.y[1]}, end_.M, friction_);
     if (!rubs && of.recorder.heading()[0] == Motion::stuck) of.recorder.head(0, of.now.y[1]);
     std::size_t first = begin, i = begin;  // rows are written up to step `first`
     for (;;) {
         const double direction = rubs ? model::sign_of(way) : model::sign_of(model::motion_of(block_.velocity[i]));
-        i = block_.step(i, count, direction);
-        const auto fastest = [&](std::size_t from) {
+        const std::size_t from = i;
+        if (affine_) {
+            i = block_.step(i, stop, direction);
+            for (std::size_t k = from; m_ > 0 && k < i; ++k) step_states(k);
+        } else {
+            while (direction != 0 && i < stop && step_functions(of, i, direction)) ++i;
+        }
+        const auto fastest = [&](std::size_t since) {
             double most = 0;
-            for (std::size_t k = from; k <= i; ++k) most = std::max(most, std::fabs(block_.velocity[k]));
+            for (std::size_t k = since; k <= i; ++k) most = std::max(most, std::fabs(block_.velocity[k]));
             return most;
         };
         const double reach = joint_.any_walls() != nullptr ? 2 * fastest(first) : 0;
         while (i > first && !(clear_of_walls(i, reach) && std::isfinite(block_.theta[i] + block_.velocity[i]))) --i;
+        if (i > from) i = calm_until(of, from, i);
         const std::size_t good = rows(of, n, first, i, false);
-        if (std::exchange(i, good) != good || rubs || i == count || !clear_of_walls(i, reach) || !turn(of, n, i)) break;
+        if (std::exchange(i, good) != good || rubs || i == stop || !clear_of_walls(i, reach) || !turn(of, n, i)) break;
         first = i++;
     }
     keep(of, begin, i, false);
@@ -200,49 +421,72 @@ std::size_t PlainSteps::move(const Of& of, std::size_t begin, Motion way) {
 /// Without dry friction a step in which the velocity clearly changes its sign once is a step like any other, and a turn
 /// is recorded.
 bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
-    const model::State y = block_.at(i), y1 = block_.end_of(i);
-    const double h = steps_.h, a = block_.acceleration(i, y), a1 = block_.acceleration(i + 1, y1);
+    if (!affine_ && !step_functions(of, i, 0)) return false;
+    const model::State y = block_.at(i), y1 = affine_ ? block_.end_of(i) : block_.at(i + 1);
+    const double h = steps_.h, a = acceleration(i, y), a1 = acceleration(i + 1, y1);
     const double direction = model::sign_of(model::motion_of(y.velocity));
     constexpr double clearly = 1e-9;  // of what it is the sum of
-    const double least = clearly * (block_.map.w * std::fabs(y.theta) + std::fabs(block_.forcing[i])) + 1e-280;
+    const double M = affine_ ? std::fabs(block_.forcing[i]) : std::fabs(block_.M[i]) * block_.inverse_inertia;
+    const double least = clearly * (block_.map.w * std::fabs(y.theta) + M) + 1e-280;
     const bool once = direction * a < -least && direction * a1 < -least && direction * y1.velocity < 0;
     if (!once || of.recorder.heading()[0] != model::motion_of(direction)) return false;
     const StepInterpolant motion(h, y, a, y1, a1);
     const auto zero = first_velocity_zero(direction, h, y.velocity, a, y1.velocity, a1);
     if (!zero) return false;
-    // The interpolant is more accurate than the cubic: one secant step towards its zero.
-    const double e = 1e-4 * h;
-    const double slope =
-        (motion(std::min(*zero + e, h)).velocity - motion(std::max(*zero - e, 0.0)).velocity) / (2 * e);
-    const double better = *zero - motion(*zero).velocity / slope;
-    const double x = better > 0 && better <= h ? better : *zero, t = steps_.time(n + i) + x;
-    of.recorder.tell({.event = {.t = t, .kind = model::EventKind::turn, .theta = motion(x).theta, .M = M_.value(t)}});
-    of.recorder.head(0, -direction);
     block_.theta[i + 1] = y1.theta, block_.velocity[i + 1] = y1.velocity;
+    if (affine_) step_states(i);
+    if (calm_until(of, i, i + 1) == i) return false;
+    const double x = TurnInStep(motion, h, *zero).x, t = steps_.time(n + i) + x;
+    const model::State there{motion(x).theta, 0};
+    of.recorder.tell({.event = {.t = t, .kind = model::EventKind::turn, .theta = there.theta, .M = M_at(i, t, there)}});
+    of.recorder.head(0, -direction);
     return true;
 }
 
-/// Stands while the pull is well within the limits, also between the samples: a parabola through three of them exceeds
-/// the highest by at most an eighth of their second difference; a quarter is safe.
-std::size_t PlainSteps::rest(const Of& of, std::size_t begin) {
-    const std::size_t count = sampled_.to - sampled_.from;
+/// M within step i.
+double PlainSteps::M_at(std::size_t i, double t, const model::State& y) {
+    if (affine_) return M_.value(t);
+    put_state(i, t, y);
+    return mechanics_.loads().front().value({t, Side::at, point_});
+}
+
+/// Makes `point_` the state within step i, where the motion is this one.
+void PlainSteps::put_state(std::size_t i, double t, const model::State& y) {
+    const double h = steps_.h, s = (t - time(i)) / h;
+    point_[0] = y.theta, point_[1] = y.velocity;
+    for (std::size_t k = 0; k < m_; ++k) {
+        point_[2 + k] =
+            s > 0 ? cubic(s, h, states(i)[k], rates(i)[k], states(i + 1)[k], rates(i + 1)[k]) : states(i)[k];
+    }
+}
+
+/// Stands while the pull is well within the limits.
+std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) {
     const Moment here = of.now.here();
     const double forward = mechanics_.holding(0, Motion::forward, here);
     const double backward = mechanics_.holding(0, Motion::backward, here);
     if (!std::isfinite(forward + backward)) return begin;
-    const double limit = (forward + backward) / 2 * (1 - 1e-9);
-    const double theta = of.now.y[0], middle_of_hold = joint_.stiffness * theta + (forward - backward) / 2;
-    double e = std::fabs(end_.M - middle_of_hold);
+    const double theta = of.now.y[0];
+    const double held = joint_.stiffness * theta + joint_.spring.torque(theta);
+    Hold hold(forward, backward, held, end_.M);
     std::size_t i = begin;
-    block_.theta[i] = theta, block_.velocity[i] = 0, block_.M[i] = end_.M;
-    for (; i < count; ++i) {
-        const double em = std::fabs(block_.samples[2 * i] - middle_of_hold),
-                     e1 = std::fabs(block_.samples[2 * i + 1] - middle_of_hold);
-        if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
-        block_.theta[i + 1] = theta, block_.velocity[i + 1] = 0, block_.M[i + 1] = block_.samples[2 * i + 1];
-        e = e1;
+    const auto stand_at = [&](std::size_t k) {
+        block_.theta[k] = theta, block_.velocity[k] = 0;
+        if (!affine_) accelerations_[k] = 0;
+    };
+    stand_at(i), block_.M[i] = end_.M;
+    for (; i < stop; ++i) {
+        if (affine_) step_states(i);
+        if (!affine_ && m_ > 0 && !step_functions(of, i, 0)) break;
+        stand_at(i + 1);
+        if (!affine_) {
+            block_.samples[2 * i] = M_at(i, time(i) + steps_.h / 2, {theta, 0});
+            block_.samples[2 * i + 1] = M_at(i, time(i) + steps_.h, {theta, 0});
+        }
+        if (!hold.lasts(block_.samples[2 * i], block_.samples[2 * i + 1])) break;
+        block_.M[i + 1] = block_.samples[2 * i + 1];
     }
-    i = rows(of, sampled_.from, begin, i, true);
+    i = rows(of, sampled_.from, begin, calm_until(of, begin, i), true);
     keep(of, begin, i, true);
     return i;
 }
@@ -258,36 +502,79 @@ std::size_t PlainSteps::rows(const Of& of, std::size_t n, std::size_t first, std
         }
         model::State y = block_.at(i);
         double M = block_.M[i];
-        if (t > steps_.time(n + i)) {
+        const double x = t - steps_.time(n + i);
+        if (x > 0) {
             const model::State y1 = block_.at(i + 1);
-            if (!stands) {
-                y = StepInterpolant(steps_.h, y, block_.acceleration(i, y), y1,
-                                    block_.acceleration(i + 1, y1))(t - steps_.time(n + i));
-            }
-            M = M_.value(t);
+            if (!stands) y = StepInterpolant(steps_.h, y, acceleration(i, y), y1, acceleration(i + 1, y1))(x);
+            M = M_at(i, t, y);
             if (!std::isfinite(M)) return i;
         }
-        const double friction = stands ? joint_.stiffness * y.theta - M : 0.0 - friction_;
-        of.recorder.put_row(t, y, M, friction);
+        if (m_ > 0 || !affine_) put_state(i, t, y);
+        double friction = stands ? joint_.stiffness * y.theta + joint_.spring.torque(y.theta) - M : 0.0 - friction_;
+        if (!stands && !even_friction_) friction = mechanics_.friction(0, {t, Side::at, point_}, of.now.mode, 0);
+        of.recorder.put_row(t, y, M, friction, std::span(point_).subspan(2));
     }
     return last;
 }
 
 /// Keeps these steps of the block.
-void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool stands) const {
+void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool stands) {
     if (first == last || !problem_.limits.dense) return;
     const std::size_t n = sampled_.from;
     const double from = steps_.time(n + first), length = steps_.time(n + last) - from;
     Kept kept{
         .start = {from, 0}, .h = length / 2, .length = length, .begin = {block_.theta[first], block_.velocity[first]}};
-    if (stands) {
-        kept.series.resize(2);
+    kept.begin.insert(kept.begin.end(), states(first), states(first) + m_);
+    const bool constant = m_ == 0 || !constant_rates_.empty();  // rates
+    if (stands && constant) {
+        kept.series.resize(2 + m_);
+        for (std::size_t k = 0; k < m_; ++k)
+            kept.series[2 + k][0] = kept.series[2 + k][1] = constant_rates_[k] * length / 2;
         kept.acting.resize(1);
         kept.acting[0].holds = true;
+    } else if (affine_ && constant) {
+        kept.remade = std::make_shared<StepsAgain>(block_, steps_, n, first, last, friction_, M_,
+                                                   std::vector(states(first), states(first) + m_), constant_rates_);
     } else {
-        kept.remade = std::make_shared<StepsAgain>(block_, steps_, n, first, last, friction_, M_);
+        kept.remade =
+            std::make_shared<StepsKept>(steps_, n + first, last - first, joint_.damping, made(of, first, last, stands));
     }
     of.recorder.keep(std::move(kept));
+}
+
+Made PlainSteps::made(const Of& of, std::size_t first, std::size_t last, bool stands) {
+    Made made{.m = m_};
+    for (auto* each : {&made.accelerations, &made.M, &made.friction, &made.middle_M, &made.middle_friction}) {
+        each->reserve(last - first + 1);
+    }
+    made.y.reserve(last - first + 1);
+    const auto friction_at = [&](std::size_t i, double t, const model::State& y) {
+        if (stands || even_friction_) return friction_;
+        put_state(i, t, y);
+        return -mechanics_.friction(0, {t, Side::at, point_}, of.now.mode, 0);
+    };
+    const double h = steps_.h;
+    for (std::size_t i = first; i <= last; ++i) {
+        const model::State y = block_.at(i);
+        const double a = stands ? 0 : acceleration(i, y);
+        made.y.push_back(y), made.accelerations.push_back(a), made.M.push_back(block_.M[i]);
+        made.friction.push_back(friction_at(i, time(i), y));
+        if (i == last) break;
+        const model::State y1 = block_.at(i + 1);
+        const double a1 = stands ? 0 : acceleration(i + 1, y1), t = time(i) + h / 2;
+        const model::State middle = StepInterpolant(h, y, a, y1, a1)(h / 2);
+        made.middle_friction.push_back(friction_at(i, t, middle));
+        // The stages of a step are beside the motion: M there is what makes it.
+        const double between = 1.5 * (y1.velocity - y.velocity) / h - (a + a1) / 4;
+        made.middle_M.push_back(affine_ || stands
+                                    ? block_.samples[2 * i]
+                                    : between / block_.inverse_inertia + joint_.damping * middle.velocity +
+                                          joint_.stiffness * middle.theta + joint_.spring.torque(middle.theta) +
+                                          made.middle_friction[i - first]);
+    }
+    made.states.assign(states(first), states(last) + m_);
+    made.rates.assign(rates(first), rates(last) + m_);
+    return made;
 }
 
 }  // namespace dinal::motion::engine

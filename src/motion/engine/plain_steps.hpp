@@ -1,54 +1,93 @@
-// Steps of rk4 on which nothing happens, of one body on its spring under a torque of the time: blocks of affine maps.
+// Steps of rk4 on which nothing happens, of one body: blocks of affine maps where the torque is one of the time and the
+// spring a straight line, and otherwise steps of functions of the motion.
 #pragma once
+
+#include <vector>
 
 #include "motion/engine/affine_block.hpp"
 #include "motion/engine/breaks.hpp"
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/recorder.hpp"
+#include "motion/engine/user_events.hpp"
 #include "motion/engine/walls.hpp"
 
 namespace dinal::motion::engine {
 
+struct Made;
+
 /// Goes on from step to step until something may happen in the next one: that is left to the loop, with all decisions.
 class PlainSteps {
 public:
-    PlainSteps(const Request& problem, const Mechanics& mechanics, const Conditions& conditions);
+    PlainSteps(const Request& problem, const Mechanics& mechanics);
 
     struct Of {
         Now& now;
+        const std::vector<double>& departing;  ///< the state for functions that jump at slip 0
         Contacts& contacts;
         Walls& walls;
+        UserEvents& users;
+        Conditions& conditions;
         Recorder& recorder;
     };
+    /// Returns whether it may take steps from here.
+    [[nodiscard]] bool may_begin(const Now& now) const;
     /// Takes steps that end before the time `until`. Returns whether it took any.
     bool take(const Of& of, double until);
     /// Returns the longest time between two looks at M.
     [[nodiscard]] double gap() const { return steps_.h / 2; }
 
 private:
-    [[nodiscard]] bool may_begin(const Now& now) const;
-    std::size_t move(const Of& of, std::size_t begin, model::Motion way);
+    std::size_t move(const Of& of, std::size_t begin, std::size_t stop, model::Motion way);
     bool turn(const Of& of, std::size_t n, std::size_t i);
-    std::size_t rest(const Of& of, std::size_t begin);
+    std::size_t rest(const Of& of, std::size_t begin, std::size_t stop);
     [[nodiscard]] bool clear_of_walls(std::size_t i, double reach) const;
+    [[nodiscard]] bool is_calm(const Of& of, std::size_t first, std::size_t last);
+    std::size_t calm_until(const Of& of, std::size_t first, std::size_t last);
     std::size_t rows(const Of& of, std::size_t n, std::size_t first, std::size_t last, bool stands);
-    void keep(const Of& of, std::size_t first, std::size_t last, bool stands) const;
+    void keep(const Of& of, std::size_t first, std::size_t last, bool stands);
+    Made made(const Of& of, std::size_t first, std::size_t last, bool stands);
+    double M_at(std::size_t i, double t, const model::State& y);
+    void put_state(std::size_t i, double t, const model::State& y);
+
+    bool take_steps(const Of& of, double until);
+    bool take_rest_of_step(const Of& of, double until);
+    // Steps of functions.
+    bool find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const;
+    bool begin_functions(const Of& of, std::size_t i);
+    bool step_functions(const Of& of, std::size_t i, double direction);
+    void step_states(std::size_t i);
+    [[nodiscard]] double time(std::size_t i) const { return steps_.time(sampled_.from + i); }
+    [[nodiscard]] double acceleration(std::size_t i, const model::State& y) const {
+        return affine_ ? block_.acceleration(i, y) : accelerations_[i];
+    }
+    [[nodiscard]] double* states(std::size_t i) { return states_.data() + i * m_; }
+    [[nodiscard]] double* rates(std::size_t i) { return rates_.data() + i * m_; }
 
     const Request& problem_;
     const Mechanics& mechanics_;
     const model::Joint& joint_;
     const model::Excitation& M_;
-    bool possible_;
+    std::size_t m_;  ///< states
+    bool possible_, affine_, watches_;
+    bool even_friction_;  ///< constant in one direction, and the spring is a straight line
     StepTimes steps_;
     AffineBlock block_;
     struct {
         std::size_t from = 0, to = 0;
-    } sampled_;            ///< the steps of the block
-    double friction_ = 0;  ///< torque of the present motion
+    } sampled_;                ///< the steps of the block
+    double friction_ = 0;      ///< torque of the present motion
+    model::SpeedRange range_;  ///< of the law of friction, in which steps of functions stay
     struct {
         double t = -model::never, M = 0;
     } end_;  ///< of the last step
+    // Of functions, at the beginning of each step.
+    std::vector<double> accelerations_, states_, rates_;
+    std::vector<double> constant_rates_;  ///< of all states, if these are constant
+    std::size_t tries_ = 8;               ///< steps at once, where something may happen in any of them
+    bool is_rest_of_step_ = false;
+    std::vector<double> point_, slopes_;
+    Ranges ranges_;
 };
 
 }  // namespace dinal::motion::engine

@@ -176,7 +176,7 @@ bool Recorder::rows_until(const Stretch& of, double end, bool to_the_end) {
     return true;
 }
 
-void Recorder::put_row(double t, const model::State& y, double M, double friction) {
+void Recorder::put_row(double t, const model::State& y, double M, double friction, std::span<const double> states) {
     double* cell = cells_ + next_row_;
     const std::size_t stride = problem_.rows.count();
     const AtRow at{t, y, M, friction, problem_.system.joints[0].damping};
@@ -185,6 +185,7 @@ void Recorder::put_row(double t, const model::State& y, double M, double frictio
         cell += stride;
     };
     for_each_column<body_columns>([&](std::size_t /*c*/, auto value) { put(value(at)); });
+    std::for_each(states.begin(), states.end(), put);
     const double all = M + friction + column::damping.value(at) - problem_.system.joints[0].stiffness * y.theta;
     if (!problem_.joined_elsewhere) put(all / problem_.system.bodies[0].inertia);
     ++next_row_;

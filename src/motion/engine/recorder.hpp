@@ -60,7 +60,7 @@ public:
         return next_row_ < problem_.rows.count() ? problem_.rows.time(next_row_) : model::never;
     }
     /// The row of a plain step of one body.
-    void put_row(double t, const model::State& y, double M, double friction);
+    void put_row(double t, const model::State& y, double M, double friction, std::span<const double> states);
 
     // History.
     /// Keeps what was used of a stretch.

@@ -79,7 +79,7 @@ Engine::Engine(const Request& problem, Run& result)
     }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
-    plain_steps_.emplace(problem, mechanics_, *conditions_);
+    plain_steps_.emplace(problem, mechanics_);
 }
 
 // ---- the loop
@@ -171,9 +171,16 @@ bool Engine::advance() {
 
 /// Steps on which nothing happens need no segment.
 bool Engine::take_plain_steps() {
-    if (pace_.bad_time < model::never) return false;
-    const double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
-    if (!plain_steps_->take({now_, contacts_, walls_, *recorder_}, breaks)) return false;
+    if (pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides()) return false;
+    double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
+    for (const model::WantedEvent& event : problem_.drive.events) {
+        breaks = std::min(breaks, event.when->next_break(now_.t.hi));
+    }
+    const std::vector<double>& departing = now_.departing(problem_.system, departing_);
+    conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
+    if (!plain_steps_->take({now_, departing, contacts_, walls_, users_, *conditions_, *recorder_}, breaks)) {
+        return false;
+    }
     walls_.follow(problem_.system, now_);
     if (!mechanics_.has_functions()) return true;
     result_.gap = std::max(result_.gap, plain_steps_->gap());

@@ -70,16 +70,19 @@ Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame,
         return x * (v0 + x * ((3 * z[k] - 2 * v0 - v1) + x * (v0 + v1 - 2 * z[k])));
     };
     std::vector<double> change(size);
+    std::vector<StepInterpolant> motions;
+    for (std::size_t g = 0; g < groups && quintic; ++g) {
+        const std::size_t v = groups + g;
+        motions.emplace_back(h, model::State{0, a[g]}, a[v], model::State{z[g], e[g]}, e[v]);
+    }
     for (std::size_t j = 1; j < last; ++j) {
         const double x = (1 + cheb::nodes[j]) / 2;
         for (std::size_t k = 0; k < size; ++k) change[k] = cubic(k, x);
         for (std::size_t k = 0; k < size && pair_ != nullptr; ++k)
             change[k] += x * x * (1 - x) * (1 - x) * last_.bulge[k];
         for (std::size_t g = 0; g < groups && quintic; ++g) {
-            const std::size_t v = groups + g;
-            const StepInterpolant motion(h, {0, a[g]}, a[v], {z[g], e[g]}, e[v]);
-            const model::State between = motion(x * h);
-            change[g] = between.theta, change[v] = between.velocity - a[g];
+            const model::State between = motions[g](x * h);
+            change[g] = between.theta, change[groups + g] = between.velocity - a[g];
         }
         put(j, change);
     }

@@ -78,6 +78,16 @@ std::pair<double, double> Piecewise::margin(const Moment& at, std::span<const do
                                                              asking_->states(rates).first(count))};
 }
 
+bool Piecewise::keeps(std::size_t condition, const Ranges& ranges, bool named) const {
+    const model::Formula* read = function_->read();
+    if (read == nullptr || slide_) return false;
+    const std::size_t step = piece_.conditions[condition].step;
+    const model::Op op = read->steps()[step].op;
+    if (op != model::Op::less && op != model::Op::less_equal && op != model::Op::abs) return false;
+    const auto range = ranges.of(read, &piece_, named, delay_, step);
+    return range && (range->lo > 0 || range->hi < 0);
+}
+
 Signal::Signal(const model::Excitation& excitation, const Asking* asking)
     : excitation_(excitation), asking_(asking), memory_(excitation.components().size()) {
     for (const model::Component& c : excitation_.components()) {

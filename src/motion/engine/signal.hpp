@@ -21,6 +21,7 @@
 #include "model/formula.hpp"
 #include "model/system.hpp"
 #include "motion/engine/nodes.hpp"
+#include "motion/engine/ranges.hpp"
 
 namespace dinal::motion::engine {
 
@@ -136,6 +137,9 @@ public:
             function_->value_on(piece_, t, state, states, &out);
         });
     }
+    /// Returns whether a condition that is a comparison, or a sign, certainly does not change where the motion is
+    /// within these ranges.
+    [[nodiscard]] bool keeps(std::size_t condition, const Ranges& ranges, bool named) const;
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
     void let_go() { piece_ = {}, slide_ = nullptr; }

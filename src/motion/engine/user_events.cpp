@@ -50,6 +50,18 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
     return {};
 }
 
+bool UserEvents::stay_clear(const Ranges& ranges) {
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
+        const Mechanics::Asked asked = mechanics_.asked_when(e);
+        const auto range = ranges.of(asked.function->read(), asked.piece, mechanics_.system().named);
+        if (!range || !(range->lo > 0 || range->hi < 0)) return false;
+        const Half half = range->lo > 0 ? 1 : -1;
+        if (watches_[e].half != 0 && watches_[e].half != half) return false;
+        watches_[e].half = half, watches_[e].sent_back = false;
+    }
+    return true;
+}
+
 std::vector<double> UserEvents::values(const Moment& at) const {
     std::vector<double> all;
     for (std::size_t e = 0; e < watches_.size(); ++e) all.push_back(value(e, at));

@@ -8,6 +8,7 @@
 #include "motion/engine/balance.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/ending.hpp"
+#include "motion/engine/ranges.hpp"
 
 namespace dinal::motion::engine {
 
@@ -28,6 +29,8 @@ public:
     };
     /// Ends the stretch at the first of them, if that is before its end.
     [[nodiscard]] Seen watch(const Segment& segment, Ending& ending);
+    /// Returns whether each is read, and certainly stays on its side of zero where the motion is within these ranges.
+    [[nodiscard]] bool stay_clear(const Ranges& ranges);
 
     [[nodiscard]] std::vector<double> values(const Moment& at) const;
     /// These are about to act.

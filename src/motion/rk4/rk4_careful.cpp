@@ -211,14 +211,10 @@ void Rk4Engine::record_turns(double t, double h, double direction, const model::
     while (direction != 0) {
         const auto zero = first_velocity_zero(direction, h - from, y.velocity, a, y1.velocity, a1);
         if (!zero || (*zero <= 0 && y.velocity == 0)) break;
-        double x = from + *zero;
-        // The interpolant is more accurate than the cubic: one secant step towards its zero.
-        const double e = 1e-4 * h;
-        const double slope = (motion(std::min(x + e, h)).velocity - motion(std::max(x - e, 0.0)).velocity) / (2 * e);
-        const double better = slope != 0 ? x - motion(x).velocity / slope : x;
-        if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
+        const TurnInStep turn(motion, h, from + *zero);
+        const double x = turn.x > from ? turn.x : from + *zero;
         y = {motion(x).theta, 0};
-        a = slope;
+        a = turn.slope;
         contact_.set_direction(model::motion_of(direction));
         contact_.turned({t + x, y.theta, excitation_.value(t + x, y)});
         direction = -direction;

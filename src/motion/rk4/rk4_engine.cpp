@@ -173,22 +173,15 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 }
 
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
-    // Well within the limit also between the samples: a parabola through three of them exceeds the highest by at most
-    // an eighth of their second difference; a quarter is safe.
-    const double forward = contact_.limit(model::Motion::forward);
-    const double backward = contact_.limit(model::Motion::backward);
-    const double limit = (forward + backward) / 2 * (1 - 1e-9);
-    const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
-    double e = std::fabs(M_ - middle_of_hold);
+    engine::Hold hold(contact_.limit(model::Motion::forward), contact_.limit(model::Motion::backward),
+                      system_.stiffness() * y_.theta, M_);
     for (; i < count; ++i) {
-        const double em = std::fabs(block_.samples[2 * i] - middle_of_hold),
-                     e1 = std::fabs(block_.samples[2 * i + 1] - middle_of_hold);
-        if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
+        if (!hold.lasts(block_.samples[2 * i], block_.samples[2 * i + 1])) break;
         if (rows_.next_time() < time(n + i + 1)) {
             t_ = time(n + i);
             rows_standing_until(time(n + i + 1));
         }
-        M_ = block_.samples[2 * i + 1], e = e1;
+        M_ = block_.samples[2 * i + 1];
     }
     t_ = time(n + i);
     return i;
