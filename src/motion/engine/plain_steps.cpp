@@ -14,10 +14,10 @@ using model::Motion;
 
 /// The motion and the torques on some steps, at the beginning of each and at the end of the last.
 struct Made {
-    std::vector<model::State> y;
-    std::vector<double> accelerations, M, friction;  ///< friction as a torque against the motion
-    std::vector<double> middle_M, middle_friction;   ///< in the middle of each step
-    std::size_t m = 0;                               ///< states
+    std::vector<model::State> y{};
+    std::vector<double> accelerations{}, M{}, friction{};  ///< friction as a torque against the motion
+    std::vector<double> middle_M{}, middle_friction{};     ///< in the middle of each step
+    std::size_t m = 0;                                     ///< states
     std::vector<double> states{}, rates{};
 
     [[nodiscard]] StepInterpolant between(std::size_t i, double h) const {
