@@ -134,7 +134,7 @@ std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, con
     const bool holds = of.joint && sticks(*of.joint, now);
     for (const model::Motion way : {model::Motion::forward, model::Motion::backward}) {
         if (holds) mode_.friction[*of.joint].way = way;
-        const auto sides = decide(of, now, rates);
+        auto sides = decide(of, now, rates);
         if (!sides || !sides->drive_back()) continue;
         if (!holds) return sides;
         const std::vector<double> mixed = sides->mixed();
