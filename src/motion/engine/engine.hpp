@@ -144,11 +144,13 @@ private:
     // Room, so that a stretch need not allocate it.
     DecisionRoom room_;
     TorqueSizes sizes_;
-    std::vector<double> departing_;
     struct {
-        std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
-    } standing_;
-    Mode before_;  ///< the decision
+        std::vector<double> departing;
+        Mode before;  ///< the decision
+        struct {
+            std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
+        } standing;
+    } scratch_;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

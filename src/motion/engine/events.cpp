@@ -80,11 +80,12 @@ bool Engine::come_to_a_stop(std::size_t j) {
 /// A joint has come to its limit.
 bool Engine::release(const Ending& ending) {
     const std::size_t j = ending.which;
-    before_ = now_.mode;
+    Mode& before = scratch_.before;
+    before = now_.mode;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
-    bool same = now_.mode.leans == before_.leans;
+    bool same = now_.mode.leans == before.leans;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
-        const Slipping &is = now_.mode.friction[i], &was = before_.friction[i];
+        const Slipping &is = now_.mode.friction[i], &was = before.friction[i];
         same = is.way == was.way && is.riding == was.riding && is.creeps == was.creeps;
     }
     // A joint that only touched its limit must pass it clearly the next time.

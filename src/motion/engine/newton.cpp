@@ -373,6 +373,24 @@ bool Newton::factor_band(double h, Eigen::Index groups, Factors& made) const {
     return true;
 }
 
+/// One small matrix for each eigenvalue of the matrix that integrates.
+void Newton::factor_modes(double h, Eigen::Index groups, Factors& made) const {
+    const Eigen::Index rows = slopes_.rows();
+    made.of_modes.clear();
+    made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
+    for (const std::complex<double>& value : integration_modes().values) {
+        const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
+        if (rows == 1 && groups == 1) {
+            made.of_modes.push_back(1.0 / (1.0 - once_by * slopes_(0, 1) - twice_by * slopes_(0, 0)));
+            continue;
+        }
+        Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
+        A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
+        const Eigen::MatrixXcd inverse = algebra::inverse(A);
+        made.of_modes.insert(made.of_modes.end(), inverse.data(), inverse.data() + rows * rows);
+    }
+}
+
 const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     constexpr Eigen::Index few = 3;
     constexpr int often = 4;
@@ -427,19 +445,7 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
         rows >= few_unknowns && (4 * band_ < rows || (rows >= many_unknowns && 2 * band_ < many_unknowns));
     if (narrow && factor_band(h, groups, made)) return made;
     if (rows < many_unknowns) {
-        made.of_modes.clear();
-        made.of_modes.reserve(integration_modes().values.size() * static_cast<std::size_t>(rows * rows));
-        for (const std::complex<double>& value : integration_modes().values) {
-            const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
-            if (rows == 1 && groups == 1) {
-                made.of_modes.push_back(1.0 / (1.0 - once_by * slopes_(0, 1) - twice_by * slopes_(0, 0)));
-                continue;
-            }
-            Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
-            A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
-            const Eigen::MatrixXcd inverse = algebra::inverse(A);
-            made.of_modes.insert(made.of_modes.end(), inverse.data(), inverse.data() + rows * rows);
-        }
+        factor_modes(h, groups, made);
         return made;
     }
     std::vector<algebra::Entry> entries;

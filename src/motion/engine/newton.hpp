@@ -70,6 +70,7 @@ private:
     const Factors& factors(double h, const Frame& frame);
     void find_order(Eigen::Index groups);
     bool factor_band(double h, Eigen::Index groups, Factors& made) const;
+    void factor_modes(double h, Eigen::Index groups, Factors& made) const;
 
     const Mechanics& mechanics_;
     Eigen::MatrixXd slopes_;

@@ -176,7 +176,7 @@ bool Engine::take_plain_steps() {
     for (const model::WantedEvent& event : problem_.drive.events) {
         breaks = std::min(breaks, event.when->next_break(now_.t.hi));
     }
-    const std::vector<double>& departing = now_.departing(problem_.system, departing_);
+    const std::vector<double>& departing = now_.departing(problem_.system, scratch_.departing);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     if (!plain_steps_->take({now_, departing, contacts_, walls_, users_, *conditions_, *recorder_}, breaks)) {
         return false;
@@ -191,7 +191,7 @@ bool Engine::take_plain_steps() {
 /// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.
 bool Engine::solve(const Frame& frame) {
     using Attempt = Flow::Attempt;
-    const std::vector<double>& departing = now_.departing(problem_.system, departing_);
+    const std::vector<double>& departing = now_.departing(problem_.system, scratch_.departing);
     for (const SlideChange& change : conditions_->ceased(now_)) recorder_->tell_slide(now_, change);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
@@ -312,7 +312,7 @@ bool Engine::stands_for_good(const Frame& present) {
         if (!constant && (now_.mode.leans[j] != 0 || now_.mode.friction[j].creeps != Motion::stuck)) return false;
     }
     if (constant) return true;
-    auto& [greatest_pull, lacking, held, belts, loads, torques] = standing_;
+    auto& [greatest_pull, lacking, held, belts, loads, torques] = scratch_.standing;
     greatest_pull.assign(mechanics_.joints(), 0), held.assign(mechanics_.joints(), 0);
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         const double most = mechanics_.loads()[i].most();
