@@ -91,11 +91,11 @@ inline constexpr text::Call continue_call{
 
 inline constexpr text::FixedText<760> simulate_summary{
     "Runs the system. The default integrator is ", motion::default_integrator.c_str(),
-    " for one body, and integrator.spectral{} for others, all of whose sticking contacts are decided "
-    "together. With states, M is called with (t, theta, velocity, z), and their columns are run.states.NAME. M must "
-    "depend only on its arguments, because it is evaluated out of order and repeatedly; a run that detects a "
-    "memory ends with a message. Put memory into states or excitation.sampled, relay or delayed, and random "
-    "numbers into a table. If M fails or Ctrl-C is pressed, dinal.partial has the run so far."};
+    ", which decides all sticking contacts together. With states, M is called with (t, theta, velocity, z), and "
+    "their columns are run.states.NAME. M must depend only on its arguments, because it is evaluated out of order "
+    "and repeatedly; a run that detects a memory ends with a message. Put memory into states or excitation.sampled, "
+    "relay or delayed, and random numbers into a table. If M fails or Ctrl-C is pressed, dinal.partial has the run so "
+    "far."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
     simulate_summary.c_str(),
