@@ -151,7 +151,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
             t = at.t + little_later * unit_;
         }
     }
-    if (mechanics_.next_break(at.t) <= t) t = at.t;
+    if (t > at.t && mechanics_.next_break(at.t) <= t) t = at.t;
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // What has passed zero at a standstill and lets the velocity leave does not wait for that speed to decide it.

@@ -30,7 +30,7 @@ struct Moment {
     double t;
     Side side;
     std::span<const double> y;
-    bool freely = false;  ///< whether functions are evaluated here, not on the pieces that hold on the stretch
+    bool freely = false;  ///< whether functions that do not slide are evaluated here, not on the pieces of the stretch
 };
 
 /// The calling convention of user functions.
