@@ -136,6 +136,24 @@ test("a mass that leans on a wall has no acceleration", function()
     equal(run.acceleration[#run], 0.0)
 end)
 
+test("a body that leaned on another goes on when that one stops dead at a wall", function()
+    -- The loads press b2 against b1 and leave both their common velocity -1. b1 stops at t = 1, and b2 goes on under its
+    -- own load, from -0.7.
+    local pair = system {
+        bodies = { b1 = { I = 1, walls = { lower = -1, restitution = 0 } }, b2 = { I = 1 } },
+        links = { l = { "b1", "b2", walls = { lower = -0.3, restitution = 0 } } },
+    }
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        local run = pair:simulate {
+            M = { b1 = -0.5, b2 = 0.5 }, theta0 = { b1 = 0, b2 = 0.3 }, velocity0 = { b1 = -1, b2 = -1 },
+            t_end = 2, dt = 0.5, integrator = method,
+        }
+        near(run.b1.theta[#run], -1, 1e-14)
+        near(run.b2.theta[#run], -0.7 - 1 + 0.5 * 0.5, 1e-12)
+        equal(run.outcome, "reached the end")
+    end
+end)
+
 test("rk4 makes the same steps where walls are out of reach as without any, and knows their energy", function()
     local far = { lower = -50, upper = 50 }
     local cases = {

@@ -97,14 +97,15 @@ bool Engine::hit(std::size_t joint, int wall) {
             for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
             now_.t = now_.t.later(rest);
         }
+    }
+    leave_walls();
+    if (rests) {
         now_.mode.leans[joint] = wall;
         if (now_.rubs(joint)) {
             Slipping& how = now_.mode.friction[joint];
             if (how.way != Motion::stuck) contacts_.of[joint].arrived = how.way;
             how.leaving = false;
         }
-    } else {
-        leave_walls();
     }
     if (!restart_contacts(Because::impact, joint)) return false;
     if (rests) stands();
