@@ -38,6 +38,21 @@ test("a freewheel is a contact with a huge friction backward", function()
     equal(block.theta:max(), block.theta[#block])
 end)
 
+test("a freewheel behind a body that stops dead at a wall holds the whole train", function()
+    -- b1 would run on backward. Pressed by its load it stays where it was stopped, at -1.3 of the angle of b2.
+    for _, inertia in ipairs { 1, 0.4, 2 } do
+        local train = system {
+            bodies = { b1 = { I = inertia, k = 1 }, b2 = { I = 2, walls = { lower = -1, restitution = 0 } } },
+            links = { l = { "b1", "b2", ratio = 1.3, friction = friction.freewheel { Rd = 0.1 } } },
+        }
+        local run = train:simulate {
+            M = { b1 = -2, b2 = 0.65 }, velocity0 = { b1 = -1.3, b2 = -1 }, t_end = 3, dt = 0.5 }
+        equal(run.outcome, "at rest")
+        near(run.b1.theta[#run], -1.3, 1e-12)
+        near(run.b2.theta[#run], -1, 1e-15)
+    end
+end)
+
 test("an impact that would turn a freewheel backward stops it", function()
     -- c strikes b, which may not fall behind a: all three go on as one mass would.
     local rig = system { bodies = { a = { I = 2 }, b = { I = 1 }, c = { I = 1 } },

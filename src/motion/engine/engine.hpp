@@ -76,11 +76,11 @@ private:
     bool open_and_close();
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
-    void restart_contact(std::size_t joint, Because why, std::size_t at);
+    void restart_contact(std::size_t joint, Because why, std::size_t at, double caught);
     [[nodiscard]] double rounding_of_slip(std::size_t joint, Because why) const;
     void let_slide(std::size_t slider, model::Motion way);
     bool turn_sliders();
-    void catch_freewheels();
+    std::vector<double> catch_freewheels();
     bool press_stops();
     void press(std::size_t joint, int side);
     void touch_walls();

@@ -173,20 +173,20 @@ bool Engine::open_and_close() {
 /// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
 bool Engine::restart_contacts(Because why, std::size_t at) {
     open_and_close();
-    catch_freewheels();
+    const std::vector<double> caught = catch_freewheels();
     press_stops();
     turn_sliders();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        restart_contact(j, why, at);
+        restart_contact(j, why, at, caught.empty() ? 0 : caught[j]);
     }
     return decide(true);
 }
 
-void Engine::restart_contact(std::size_t j, Because why, std::size_t at) {
+void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double caught) {
     if (!now_.rubs(j) || now_.mode.leans[j] != 0) return;
     Slipping& how = now_.mode.friction[j];
     const double s = now_.slip(mechanics_, j);
-    const double corner = rounding_of_slip(j, why);
+    const double corner = std::max(rounding_of_slip(j, why), caught);
     if (std::fabs(s) <= corner) {
         if (how.way == Motion::stuck || how.riding) return;
         if (why == Because::act) {
@@ -286,11 +286,15 @@ bool Engine::turn_sliders() {
 }
 
 /// A freewheel that something throws backward stops, and so does what leans on a wall and is thrown into it: one after
-/// the other, until all have.
-void Engine::catch_freewheels() {
+/// the other, until what is left is the rounding of the velocities that were stopped. Returns this rounding for the
+/// slip of each joint; empty if there is no freewheel.
+std::vector<double> Engine::catch_freewheels() {
     bool any = false;
     for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
-    const std::size_t most = any ? 500 * mechanics_.joints() : 0;
+    if (!any) return {};
+    std::vector<double> rounded(mechanics_.joints());
+    for (std::size_t j = 0; j < rounded.size(); ++j) rounded[j] = 16 * rounding * mechanics_.speed_scale(j, now_.y);
+    const std::size_t most = 500 * mechanics_.joints();
     for (std::size_t k = 0; k < most; ++k) {
         std::size_t worst = mechanics_.joints();
         double least = 0;
@@ -298,16 +302,17 @@ void Engine::catch_freewheels() {
             const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && now_.rubs(j);
             if (!one_way && now_.mode.leans[j] == 0) continue;
             const double v = one_way ? now_.slip(mechanics_, j) : -now_.mode.leans[j] * mechanics_.velocity(j, now_.y);
-            if (v < -16 * rounding * mechanics_.speed_scale(j, now_.y) && v < least) worst = j, least = v;
+            if (v < -rounded[j] && v < least) worst = j, least = v;
         }
-        if (worst == mechanics_.joints()) return;
+        if (worst == mechanics_.joints()) break;
         const Impulses::Thrown thrown = impulses_.along(worst, now_);
-        if (!(thrown.lightness > 0)) return;
+        if (!(thrown.lightness > 0)) break;
         const double before = mechanics_.velocity(worst, now_.y);
         const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
         Impulses::apply(thrown, after, now_);
         recorder_->add_jump(now_.t.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
     }
+    return rounded;
 }
 
 /// A joint that stands at a wall, and does not move away from it, leans there.
