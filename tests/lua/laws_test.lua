@@ -53,6 +53,16 @@ test("a freewheel behind a body that stops dead at a wall holds the whole train"
     end
 end)
 
+test("a freewheel and a wall that would stop a train by ever smaller impacts stop it at once", function()
+    local train = system {
+        bodies = { b1 = { I = 0.4, walls = { upper = 0.3, restitution = 0 } }, b2 = { I = 1.6 } },
+        links = { l = { "b1", "b2", ratio = 0.33, friction = friction.freewheel {} } },
+    }
+    local run = train:simulate { velocity0 = { b1 = 0.66, b2 = 2 }, t_end = 1, dt = 0.1 }
+    near(run.b2.theta[#run], 2 * 0.3 / 0.66, 1e-13)
+    near(run:energy().total.impacts, 0.2 * 0.66 ^ 2 + 0.8 * 4, 1e-13)
+end)
+
 test("an impact that would turn a freewheel backward stops it", function()
     -- c strikes b, which may not fall behind a: all three go on as one mass would.
     local rig = system { bodies = { a = { I = 2 }, b = { I = 1 }, c = { I = 1 } },

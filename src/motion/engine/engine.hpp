@@ -81,6 +81,7 @@ private:
     void let_slide(std::size_t slider, model::Motion way);
     bool turn_sliders();
     std::vector<double> catch_freewheels();
+    double stop_together(const std::vector<char>& joints);
     bool press_stops();
     void press(std::size_t joint, int side);
     void touch_walls();

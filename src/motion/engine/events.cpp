@@ -285,34 +285,63 @@ bool Engine::turn_sliders() {
     return turned;
 }
 
-/// A freewheel that something throws backward stops, and so does what leans on a wall and is thrown into it: one after
-/// the other, until what is left is the rounding of the velocities that were stopped. Returns this rounding for the
-/// slip of each joint; empty if there is no freewheel.
+/// A freewheel that is thrown backward stops, and so does a joint that leans on a wall and is thrown into it, the
+/// fastest first. If a joint is thrown back once more, all that have stopped since then stop together, as they would
+/// after ever smaller impacts of one after the other. Returns the rounding of the slip of each joint; empty if there is
+/// no freewheel.
 std::vector<double> Engine::catch_freewheels() {
     bool any = false;
     for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
     if (!any) return {};
-    std::vector<double> rounded(mechanics_.joints());
-    for (std::size_t j = 0; j < rounded.size(); ++j) rounded[j] = 16 * rounding * mechanics_.speed_scale(j, now_.y);
-    const std::size_t most = 500 * mechanics_.joints();
+    const std::size_t joints = mechanics_.joints(), most = 50 * joints;
+    std::vector<double> rounded(joints);
+    for (std::size_t j = 0; j < joints; ++j) rounded[j] = 16 * rounding * mechanics_.speed_scale(j, now_.y);
+    std::vector<char> stopped(joints, 0);
     for (std::size_t k = 0; k < most; ++k) {
-        std::size_t worst = mechanics_.joints();
+        std::size_t worst = joints;
         double least = 0;
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        for (std::size_t j = 0; j < joints; ++j) {
             const bool one_way = problem_.system.joints[j].friction.law.is_one_way() && now_.rubs(j);
             if (!one_way && now_.mode.leans[j] == 0) continue;
             const double v = one_way ? now_.slip(mechanics_, j) : -now_.mode.leans[j] * mechanics_.velocity(j, now_.y);
             if (v < -rounded[j] && v < least) worst = j, least = v;
         }
-        if (worst == mechanics_.joints()) break;
+        if (worst == joints) break;
         const Impulses::Thrown thrown = impulses_.along(worst, now_);
         if (!(thrown.lightness > 0)) break;
-        const double before = mechanics_.velocity(worst, now_.y);
-        const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
-        Impulses::apply(thrown, after, now_);
-        recorder_->add_jump(now_.t.hi, worst, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+        double lost = 0;
+        if (stopped[worst] != 0) {
+            lost = stop_together(stopped);
+            stopped.assign(joints, 0);
+        } else {
+            const double before = mechanics_.velocity(worst, now_.y);
+            const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
+            Impulses::apply(thrown, after, now_);
+            lost = (before - after) * (before + after) / thrown.lightness / 2;
+            stopped[worst] = 1;
+        }
+        recorder_->add_jump(now_.t.hi, worst, {.impacts = lost});
     }
     return rounded;
+}
+
+/// Changes velocities by the impulses that stop these joints at once. Returns the kinetic energy lost.
+double Engine::stop_together(const std::vector<char>& joints) {
+    const std::vector<double> before = now_.y;
+    Mode held = now_.mode;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        held.friction[j].way = Motion::stuck;
+        if (joints[j] == 0) held.rubs[j] = 0, held.leans[j] = 0;
+    }
+    std::swap(now_.mode, held);
+    projection_.apply(now_, Frame(problem_.system, now_.mode), now_.side());
+    std::swap(now_.mode, held);
+    double lost = 0;
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double old = before[n() + i], now = now_.y[n() + i];
+        if (now != old) lost += mechanics_.own_inertia(i) * (old - now) * (old + now) / 2;
+    }
+    return lost;
 }
 
 /// A joint that stands at a wall, and does not move away from it, leans there.
