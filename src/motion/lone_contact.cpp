@@ -10,7 +10,7 @@ namespace {
 
 /// More successive decisions than this count as chatter.
 constexpr int most_at_once = 200;
-/// A velocity that only shows a direction.
+/// A tiny velocity that only indicates a direction.
 constexpr double hair = std::numeric_limits<double>::min();
 
 }  // namespace
