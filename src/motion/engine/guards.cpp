@@ -25,7 +25,7 @@ Ending Guards::first() {
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j);
     }
     for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
-        // The slip of a contact that others hold is rounding.
+        // The slip of a contact held by other joints is only rounding.
         if (!frame_.keeps(mechanics_.sliders()[s].joint)) watch_slider(s);
     }
     watch_relays();
@@ -42,7 +42,7 @@ void Guards::watch(const Series& left, double floor, bool zero, By by, std::size
     see(cheb::first_below(curve, -1, zero), by, which, side);
 }
 
-/// Returns the size of the velocities whose difference is the slip of a joint.
+/// Returns the magnitude of the velocities whose difference is the slip of a joint.
 double Guards::fastest(std::size_t joint) const {
     double sum = greatest(segment_.belts[joint]);
     for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * greatest(segment_.y[n() + body]);
@@ -70,8 +70,8 @@ void Guards::watch_slip(std::size_t joint) {
     for (const auto& [body, by] : own.of) {
         inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
     }
-    // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
-    // the angle.
+    // The joint may creep if its motion over the stretch is slower than rounding of its torques explains, or too small
+    // to change the angle.
     const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
     const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, now_.y));
     const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
@@ -98,12 +98,12 @@ void Guards::watch_slip(std::size_t joint) {
     const auto always = [](double) { return true; };
     auto zero = cheb::first_below(curve, -1, how.leaving, always);
     if (how.leaving && zero && *zero <= -1 &&
-        !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
+        !mechanics_.has_belt(joint)) {  // the error of the motion may exceed its rounding
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
-    // A slip that only touches zero does so at its lowest place.
+    // A slip that only touches zero counts at its lowest point.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
     }
@@ -114,20 +114,20 @@ void Guards::watch_slip(std::size_t joint) {
     stay_.push_back(joint);
 }
 
-/// Returns whether the torques at a joint are known as well as their rounding: it has no belt, and no function of its
-/// motion acts.
+/// Returns whether the torques at a joint are accurate to rounding: everything is linear, there is no belt, and no
+/// wall.
 bool Guards::may_creep(std::size_t joint) const {
     return mechanics_.all_linear() && !mechanics_.has_belt(joint) && now_.mode.leans[joint] == 0;
 }
 
-/// The torque that holds a joint passes its limit.
+/// Watches whether the torque of a sticking joint exceeds its limit.
 void Guards::watch_release(std::size_t joint) {
     const double beside_zero = now_.mode.friction[joint].beside;
     const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
     Nodes pull{};
-    Series series = segment_.holding_series[joint];  // of the pull
+    Series series = segment_.holding_series[joint];  // series of the pull
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j], series[j] = -series[j];
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
@@ -137,7 +137,7 @@ void Guards::watch_release(std::size_t joint) {
             good_ = false;
             return;
         }
-        if (std::isinf(most[0])) continue;  // a freewheel, backward
+        if (std::isinf(most[0])) continue;  // the backward side of a freewheel
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
             return of_.balances.on_stretch(segment_, x,
@@ -163,7 +163,7 @@ void Guards::watch_release(std::size_t joint) {
         if (cheb::least_bound(left) > 2 * doubt) continue;
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
-        left = cheb::fit(values);  // beside zero it has digits that a difference of series has not
+        left = cheb::fit(values);  // near zero this has more digits than the difference of two series
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
@@ -183,14 +183,15 @@ void Guards::watch_release(std::size_t joint) {
             }
             return touch.has_value();
         };
-        // A jump that was passed over may have taken it far beyond.
+        // An undetected jump may have taken the torque far beyond its limit.
         auto x = values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, false, touches);
         if (x && touch) x = first_true(lets_go, *touch);
         if (x && segment_.time(*x) < segment_.end) see(x, By::release, joint, static_cast<int>(side));
     }
 }
 
-/// Returns the torques that hold a joint at most against a pull to this side, at the nodes; NaN if one is not finite.
+/// Returns the greatest torques with which a joint resists a pull to this side, at the nodes; NaN if a value is not
+/// finite.
 Nodes Guards::limit(std::size_t joint, Motion side) const {
     const Slipping& how = now_.mode.friction[joint];
     Nodes most{};
@@ -217,10 +218,10 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
         if (!std::isfinite(place)) continue;
         const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
-        constexpr double between_nodes = 3;  // so many times the values at nodes a series is there at most
+        constexpr double between_nodes = 3;  // bound of a series relative to its greatest value at the nodes
         if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * of_.walls.reach[joint]) continue;
         for (double& way : change) way *= -wall;
-        // The gap of a motion that begins at the wall is known as well as its way from there.
+        // If the motion begins at the wall, the gap is as accurate as the displacement.
         const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
         const double far =
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
@@ -230,15 +231,15 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
     }
 }
 
-/// An elastic wall is pressed while its depth and its torque are both positive. Before it is, the depth is, or, where
-/// it was left before the motion came back to its place, the torque will be.
+/// Watches an elastic wall, which pushes while depth and torque are both positive. The depth becomes positive first,
+/// except when a wall was left while still deformed: then the torque does.
 void Guards::watch_stop(std::size_t joint) {
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
     const double begin = mechanics_.angle(joint, segment_.moment(0, point_).y);
     const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops, By::stop);
-    if (pressed == 0) {  // it may come to the other wall before
+    if (pressed == 0) {  // it may reach the opposite wall first
         model::Walls other = stops;
         (deep > 0 ? other.upper : other.lower) = deep * model::never;
         watch_walls(joint, other, By::stop);
@@ -254,7 +255,7 @@ void Guards::watch_stop(std::size_t joint) {
         pressed != 0 ? 0 : deep);
 }
 
-/// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
+/// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses.
 void Guards::watch_slider(std::size_t slider) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
     Half half = 1;
@@ -271,7 +272,7 @@ void Guards::watch_slider(std::size_t slider) {
     }
 }
 
-/// A law of friction goes on with another formula.
+/// Watches whether the speed leaves the present range of the friction law.
 void Guards::watch_corner(std::size_t joint) {
     const Joint& own = mechanics_.system().joints[joint];
     const model::Friction& law = own.friction.law;
@@ -292,7 +293,7 @@ void Guards::watch_corner(std::size_t joint) {
     }
 }
 
-/// Returns the place at which the slip of a joint leaves its half.
+/// Returns the point at which the slip of a joint leaves this half.
 std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
     const auto slip = [&](const Moment& at) {
         return mechanics_.velocity(joint, at.y) - mechanics_.belt(joint, at.t, at.side);
@@ -300,7 +301,7 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
     return leaves(mechanics_.slips(joint, segment_.y, segment_.belts[joint]), slip, half);
 }
 
-/// The rate of bristles has a corner where the slip is 0: a stretch ends there.
+/// Ends the stretch at slip 0, where the rate of bristles has a corner.
 void Guards::watch_bristles(std::size_t joint) {
     Half& half = of_.normal_halves[joint];
     const auto x = slip_leaves(joint, half);
@@ -309,12 +310,12 @@ void Guards::watch_bristles(std::size_t joint) {
     half = -half;
 }
 
-/// A normal load that passes zero ends a stretch: what is negative counts as none.
+/// Ends the stretch where the normal load crosses zero, because negative loads count as zero.
 void Guards::watch_normal(std::size_t joint) {
     const auto pressing = [&](const Moment& at) { return mechanics_.pressing(joint, at); };
     const Nodes values = segment_.at_nodes(pressing, point_);
     if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
-        // Nothing presses at the start, where the load may be its rounding, or 0 for long.
+        // The contact is open at the start, where the load may be rounding or 0 for some time.
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
         const auto exact = segment_.anywhere(pressing, point_);
@@ -330,7 +331,7 @@ void Guards::watch_normal(std::size_t joint) {
     half = -half;
 }
 
-/// Returns the place at which an angle, a velocity or a state comes to a relay's level.
+/// Returns the point at which an angle, velocity or state reaches a relay's level.
 std::optional<double> Guards::switches(double sign, double level, std::size_t k) const {
     Nodes values = segment_.y[k];
     Series series = segment_.series[k];

@@ -1,4 +1,4 @@
-// The guards of a stretch: everything whose zero ends it before its time.
+// The guards of a stretch: quantities whose zero ends it early.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,7 @@
 
 namespace dinal::motion::engine {
 
-/// Searches one stretch for its first end. It decides nothing: it notes only the signs of normal loads, and which
-/// contacts creep.
+/// Finds the first end of one stretch. Makes no decision, but notes the signs of normal loads and which contacts creep.
 class Guards {
 public:
     struct Of {
@@ -26,24 +25,25 @@ public:
         const Flow& solver;
         Balances& balances;
         Contacts& contacts;
-        std::vector<Half>& normal_halves;  ///< of each joint: the sign of its normal load, or of the slip of bristles
+        std::vector<Half>& normal_halves;  ///< for each joint: sign of its normal load, or of the slip of its bristles
     };
     explicit Guards(const Of& of)
         : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}
 
-    /// Returns the first end by a contact, a wall or a relay.
+    /// Returns the first end caused by a contact, a wall or a relay.
     Ending first();
-    /// Joints that were let go and do not leave: they hold, and must be pulled clearly farther.
+    /// The released joints that do not move: they stick again, and need a clearly larger pull.
     [[nodiscard]] const std::vector<std::size_t>& stay() const { return stay_; }
     /// Returns false if a limit was not finite.
     [[nodiscard]] bool good() const { return good_; }
 
 private:
-    /// The stretch ends here, if nothing ends it before.
+    /// Ends the stretch at x if nothing ends it earlier.
     void see(std::optional<double> x, By by, std::size_t which, int side = 0);
-    /// Watches a curve that is positive, or begins at a known `zero`, until it ends the stretch. `floor`: its rounding.
+    /// Ends the stretch at the first zero of a curve that is positive, or starts from a known `zero`. `floor` is its
+    /// rounding.
     void watch(const Series& left, double floor, bool zero, By by, std::size_t which, int side);
-    /// Returns the place at which a function of the moment with these values at the nodes leaves its half.
+    /// Returns the point at which a function of the moment, given its values at the nodes, leaves its half.
     template <class Value>
     std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
         return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
