@@ -21,7 +21,7 @@ BeltSlope belt_slope(const model::Excitation& belt, double t, double stretch) {
     constexpr double roundings = 256;    // factor of rounding in the slope at the end of a polynomial of this degree
     const double next = belt.next_break(t);
     BeltSlope best{0, model::never};
-    // // An interval that contains an undeclared jump is halved, so that the jump does not enter the slope before it.
+    // An interval that contains an undeclared jump is halved, so that the jump does not enter the slope before it.
     double h = std::min(stretch, (next - t) / 2);
     for (int look = 0; look < most_looks; ++look) {
         Samples values{};

@@ -91,7 +91,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
         if (bend > most) worst = i, most = bend;
     }
     if (worst == 0) return {};
-    // // Try a jump, or one edge of a narrow pulse, between the two values that differ most.
+    // Try a jump, or one edge of a narrow pulse, between the two values that differ most.
     const bool left = std::fabs(values[worst] - values[worst - 1]) >= std::fabs(values[worst + 1] - values[worst]);
     const std::size_t before = left ? worst - 1 : worst;
     if (std::fabs(values[before + 1] - values[before]) >

@@ -81,7 +81,7 @@ Series<points> fit(const Samples& f) {
 }
 
 Samples at_nodes(const Series<points>& c) {
-    // // Loops over all nodes innermost, so that the compiler vectorises.
+    // Loops over all nodes innermost, so that the compiler vectorises.
     std::array<double, half + 1> even{}, odd{};
     for (std::size_t i = 0; i < half; ++i) {
         for (std::size_t j = 0; j <= half; ++j) {

@@ -1,4 +1,4 @@
-// // The rules of one contact at slip 0: its next state and the event to record. They are pure functions of its pull,
+// The rules of one contact at slip 0: its next state and the event to record. They are pure functions of its pull,
 // its limits and its past. The general engine applies them to each joint (engine/decide.hpp), exact and rk4 to their
 // only contact (lone_contact.hpp).
 #pragma once

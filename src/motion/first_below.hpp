@@ -63,7 +63,7 @@ public:
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
-        // // A dip below zero that is no deeper than the rounding does not count.
+        // A dip below zero that is no deeper than the rounding does not count.
         if (at_left < -slope_floor_ && !(at_left * at_left <= 2 * bend * floor_)) return 0;
         const double by_bend = bend > 0 ? 3 * bend / derivative_bound<3>(f_) : 0;
         return by_slope > by_bend ? by_slope : by_bend;  // false for NaN

@@ -79,7 +79,7 @@ public:
     /// the spring while breakaway friction is larger: such a mass slows down for ever.
     bool creep(const Moment& now);
 
-    // // The following functions return false after too many decisions in a row (chatter).
+    // The following functions return false after too many decisions in a row (chatter).
 
     /// Decides after arrive(), and records the event.
     bool decide(const Moment& now);

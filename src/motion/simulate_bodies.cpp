@@ -1,4 +1,4 @@
-// // Runs any system: the general engine runs everything except one plain body.
+// Runs any system: the general engine runs everything except one plain body.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
             return wrong_method(method, mode, load, window).has_value();
         });
     };
-    // // Collocation resolves every mode slower than one that it resolves. Fixed steps may still be too long for a
+    // Collocation resolves every mode slower than one that it resolves. Fixed steps may still be too long for a
     // damped mode.
     const bool takes_steps = method.cut()->step > 0 || method.cut()->pair != nullptr;
     if (const auto fast = engine::no_slower_than_modes(system); !takes_steps && fast && resolves(*fast)) return {};

@@ -112,13 +112,13 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     if (answer.t > latest_) keep_milestone(answer, states);
     if (!jumped) return true;
     ++jumps_asked_;
-    // // A relay in a closure no longer returns its value from before the switch, and random numbers do not repeat.
+    // A relay in a closure no longer returns its value from before the switch, and random numbers do not repeat.
     return repeats_answer(before_jump_) && repeats_answer(last_);
 }
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
-    // // The repetition comes first, so that side effects that others see are those of the latest call.
+    // The repetition comes first, so that side effects that others see are those of the latest call.
     if (testimony_->found || (asked_ >= next_ && !repeat_one())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
