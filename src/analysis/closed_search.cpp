@@ -11,7 +11,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double to_rounding = 1e-11;  // a residual of differences that no step makes smaller
+constexpr double to_rounding = 1e-11;  // limit of residuals that no step reduces, due to differences
 
 /// The shortest Newton step; it has no component in the null space of I - D.
 VectorXd newton_step(const Eigen::MatrixXd& D, const VectorXd& off) {
@@ -74,7 +74,7 @@ std::optional<Closed> ClosedSearch::closes(double near) {
     return {};
 }
 
-/// The smallest number of returns: slow decay makes more returns look closer.
+/// The motion with the smallest number of returns; slow decay can make a multiple look closer.
 Closed ClosedSearch::shortest(Closed found) {
     for (int m = 1; m < found.returns; ++m) {
         if (found.returns % m != 0) continue;
@@ -99,7 +99,7 @@ bool ClosedSearch::approaches(const VectorXd& x, std::size_t m) const {
     return is_within(now, there) || (now <= close && now < 0.98 * before);
 }
 
-/// Accepts a return within rounding, where differences are useless.
+/// Accepts a return that is exact to rounding, where differences are useless.
 std::optional<Closed> ClosedSearch::itself(const Return& from, int m) {
     const Return back = map_(from.to, from.mode, m);
     maps_ += m;
@@ -128,11 +128,11 @@ std::optional<ClosedSearch::Try> ClosedSearch::nearer(const Try& now, const Vect
 std::optional<Closed> ClosedSearch::newton(const Return& from, int m, double farthest, bool waits) {
     constexpr double exactly = 2e-15;  // smaller residuals and steps are rounding,
     constexpr double nothing = 1e-14;
-    constexpr double enough = 1e-9;  // and this is accepted where rounding prevents smaller ones
+    constexpr double enough = 1e-9;  // acceptable if rounding prevents smaller ones
     auto now = at(from.to, from.mode, m);
     std::optional<Eigen::MatrixXd> D;
     for (int i = 0, most = waits ? 60 : 14; now && i < most && now->residual > exactly; ++i) {
-        const bool kept = !now->back.derivative && D;  // from a place before
+        const bool kept = !now->back.derivative && D;  // whether the derivative is that of an earlier place
         if (now->back.derivative) {
             D = now->back.derivative;
         } else if (!D && now->keeps_mode()) {

@@ -20,7 +20,7 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr std::size_t most_stops = 5;  // stops reported one by one; of more, these:
+constexpr std::size_t most_stops = 5;  // the number of stops reported one by one; if there are more, only these:
 constexpr std::size_t first_stops = 2, last_stops = 2;
 constexpr std::size_t most_turns = 4, most_slides = 3;
 
@@ -76,14 +76,15 @@ public:
             if (s.stuck && s.begun_by) stops_.push_back(&s);
         }
         if ((stretches_.size() == 1 && stuck_ > 0) || (run_.on_belt && run_.course == nullptr))
-            return;  // its turns are unknown
+            return;  // the turns are unknown
         const auto before = [](const model::Event& event, double t) { return event.t < t; };
         for (const Stretch& s : swings_) {
             half_cycles_ += s.stuck ? 0 : 1;
             if (!run_.on_belt || !s.ended_by) continue;
             const double near = 1e-9 * T0_;
             const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
-            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // otherwise it is that event
+            // otherwise the end is that event
+            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);
         }
         std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
     }

@@ -40,10 +40,10 @@ private:
 
     [[nodiscard]] bool stopped() const { return stopped_; }
 
-    /// Searches from the beginning of the motion before, or from the requested start.
+    /// Searches from the start of the previous motion, or from the requested start.
     SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
         SteadyQuestion question = question_.family(p);
-        // The start of a limit cycle is arbitrary and useless for another one: each search uses the requested start.
+        // The start of a limit cycle is arbitrary and useless for another one: so each search uses the requested start.
         if (question.is_timeless()) return motion_of(question, near);
         if (!before && question.is_plain()) question.drive.start_at(question_.start);
         if (before) question = from_motion(std::move(question), *before, false);

@@ -81,8 +81,7 @@ public:
                 -sine_.r * sine_.r * load.imag() + product(root_, rate).real()};
     }
 
-    /// The duration of the slide until the velocity is zero; none if it does not start, or takes longer than `most` (in
-    /// x).
+    /// The time until the velocity is zero; none if the slide does not start, or takes longer than `most` (in x).
     [[nodiscard]] std::optional<double> first_zero(double most) const {
         Complex load = forced_, own = free_;
         double before = 0, v_before = 0;
@@ -110,10 +109,10 @@ public:
 private:
     using Complex = std::complex<double>;
 
-    /// Newton's method between a point of the slide and one behind its end.
+    /// Newton's method between a point of the slide and one after its end.
     [[nodiscard]] double zero_between(double from, double to, double x) const {
         constexpr int most_steps = 60;
-        constexpr double nearly = 1e-6;  // the next step leaves only rounding
+        constexpr double nearly = 1e-6;  // the next step reduces the error to rounding
         const auto newton = [](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
         for (int i = 0; i < most_steps; ++i) {
             const Sliding now = at(x);
@@ -141,7 +140,7 @@ std::optional<model::State> sliding_start(const SingleSine& sine) {
     const double r = sine.r, half = half_load / r;
     const auto motion = theory::DenHartog(r, sine.zeta).without_stops(sine.sliding);
     if (!motion || !(motion->amplitude > 0)) return {};
-    // The load is greatest at a phase of pi/2, theta later by its lag; half a period later the motion is opposite.
+    // The load is greatest at the phase pi/2, theta later by its lag; half a period later the motion is opposite.
     const double crest = half_load / 2 + motion->lag;
     if (sine.sliding > 0 && SineArcs::applies_to(sine)) {
         SineArcs slide(sine);
