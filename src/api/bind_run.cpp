@@ -68,7 +68,7 @@ std::string line_of(const LuaRun& run) {
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const LuaRun& run = *handle;
-    RunCall call(L, run);  // spring, belt and base may be user functions
+    RunCall call(L, run);  // user functions of spring, belt and base may be called
     const std::string text = run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.result, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
