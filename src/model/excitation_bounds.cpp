@@ -1,4 +1,4 @@
-// // Encloses an excitation of native terms over a range of times. Between two breaks, terms with a closed form are
+// Encloses an excitation of native terms over a range of times. Between two breaks, terms with a closed form are
 // evaluated by it.
 #include <algorithm>
 
@@ -37,7 +37,7 @@ public:
     /// The greatest magnitude of an intermediate result, for the rounding error.
     [[nodiscard]] double greatest() const { return greatest_; }
 
-    // // Called by the terms' closed_form().
+    // Called by the terms' closed_form().
     void add_constant(double level) { add(exactly<Number>(level)); }
     void add_line(double at, double level, double slope) {
         add(plus(times(exactly<Number>(slope), since(at)), exactly<Number>(level)));
@@ -54,7 +54,7 @@ public:
     void add_exponential(double amplitude, double rate, double at) {
         add_exponential_of(amplitude, times(exactly<Number>(rate), since(at)));
     }
-    // // Terms without a closed form.
+    // Terms without a closed form.
     void add(const Gaussian& bump) {
         const Number x = of(Op::divide, since(bump.at), exactly<Number>(bump.sigma));
         const Number square = of(Op::power, x, exactly<Number>(2));

@@ -382,7 +382,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
         if (both != 0 && (compares || is_fold(s.op))) {
             double decision = decision_of(s.op, a, b, result);
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
-            // // A value that has jumped by more than one step left its old piece.
+            // A value that has jumped by more than one step left its old piece.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
             if ((all & again) == 0 && before == before && is_beside) decision = before;
             if (std::fabs(decision) < whole_numbers) {
@@ -595,7 +595,7 @@ private:
                 if (fails_) return note(at), true;
                 result.of_motion = a.of_motion || b.of_motion;
                 result.folds = result.folds || a.folds || b.folds;
-                // // The index of the step is mixed in, or equal pieces of both operands would cancel.
+                // The index of the step is mixed in, or equal pieces of both operands would cancel.
                 if (a.piece != 0 || b.piece != 0) {
                     for (const std::uint64_t piece : {at + 1, a.piece, b.piece}) {
                         result.piece = (result.piece ^ piece) * prime;
@@ -728,7 +728,7 @@ double Formula::next_break(double t, Breaks which) {
     constexpr double end_of_time = 1e300;
     if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
     const double found = search(t + 0.0, which);  // not -0
-    // // A long series of breaks with tiny jumps comes from rounding or truncated digits: it counts as roughness, not
+    // A long series of breaks with tiny jumps comes from rounding or truncated digits: it counts as roughness, not
     // as events.
     constexpr int most_alike = 30;
     double last = t, next = found;
@@ -765,14 +765,14 @@ bool Formula::is_of_excitation(double found) const {
     return look.over(before, before) == look.over(found, found);
 }
 
-// // Bisects the interval from t on, the earlier part first, until the program takes the same branches over each part.
+// Bisects the interval from t on, the earlier part first, until the program takes the same branches over each part.
 double Formula::search(double t, Breaks which) {
     constexpr double end_of_time = 1e300, least = 1e-300, rounding = std::numeric_limits<double>::epsilon();
     constexpr int most_looks = 4000, most_unfinished = 20, most_flips = 60;
     std::map<double, double>& known = known_[which == Breaks::all ? 1 : 0];
     const auto behind = known.upper_bound(t);
     if (behind != known.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
-    // // A change within rounding of t counts as past, because rounding can make a comparison flicker near its change.
+    // A change within rounding of t counts as past, because rounding can make a comparison flicker near its change.
     const bool at_break = behind != known.begin() && std::prev(behind)->second == t;
     const double flicker = t + std::max(least, (at_break ? 64 : 4) * rounding * std::fabs(t));
 

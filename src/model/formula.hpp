@@ -147,7 +147,7 @@ public:
     /// The proven period in t; 0 if none is known or the formula is constant.
     [[nodiscard]] double period() const;
 
-    // // The program, for evaluation with other kinds of numbers.
+    // The program, for evaluation with other kinds of numbers.
     [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
     [[nodiscard]] const std::vector<double>& registers() const { return registers_; }
     [[nodiscard]] bool takes_motion() const { return motion_; }

@@ -95,7 +95,7 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
                                       .phase = sign * a.power(0) + quarter}}};
         }
         case Op::exp: {
-            // // A growing exponential with a tiny first value would lose its digits, or underflow.
+            // A growing exponential with a tiny first value would lose its digits, or underflow.
             constexpr double faintest = 1e-200;
             const double first = std::exp(a.power(0)), rate = a.power(1);
             if (!a.is_line() || (rate > 0 && first < faintest)) return {};
@@ -220,7 +220,7 @@ double Formula::period() const {
     };
     lead(0, Registers(registers_.size(), Repeating{}));
     ways[0][0] = Repeating{.slope = 1};
-    // // The type of a constant, float or whole number, is determined by the operation that reads it.
+    // The type of a constant, float or whole number, is determined by the operation that reads it.
     std::vector<char> written(registers_.size(), 0);
     written[0] = 1;
     for (const Step& s : steps_) {
@@ -307,7 +307,7 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         } else if (a && b) {
             made = result_of(s.op, *a, *b);
         }
-        // // A value computed from constants alone is kept bit for bit.
+        // A value computed from constants alone is kept bit for bit.
         if (!made && a && b && a->is_constant() && b->is_constant()) made = TermSum{.powers = {result}};
         registers[s.to] = made;
         r[s.to] = result;

@@ -1,4 +1,4 @@
-// // Writes a body or link as the options that construct it.
+// Writes a body or link as the options that construct it.
 #pragma once
 
 #include "model/laws/coulomb.hpp"
