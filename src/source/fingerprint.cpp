@@ -149,7 +149,8 @@ std::uint64_t Fingerprint::reference(const Visited& piece) {
     return joined_digest(piece.digest, place->second);
 }
 
-/// A digest without object numbers, to order keys that are objects. The order of equal ones is undefined.
+/// A digest that contains no object numbers, used to sort keys that are objects. Keys with equal digests have no
+/// defined order.
 std::uint64_t Fingerprint::sketch(int index, int depth) {
     luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
     index = lua_absindex(L_, index);

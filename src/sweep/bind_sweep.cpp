@@ -133,7 +133,7 @@ void refuse_own_options(lua_State* L, int more) {
     }
 }
 
-/// The function that workers call with a point; upvalues: the user's function, period, skip, keep.
+/// The function that workers call with a point. Its upvalues are the user's function, period, skip and keep.
 int looks_of_point(lua_State* L) {
     lua_settop(L, 1);
     lua_pushvalue(L, lua_upvalueindex(1));
@@ -326,7 +326,7 @@ void register_sweep(lua_State* L) {
 
 namespace {
 
-constexpr double accuracy = 1.5e-8;  // part of the range: closer to the minimum, values differ by rounding only
+constexpr double accuracy = 1.5e-8;  // fraction of the range: closer to the minimum, values differ by rounding only
 
 struct Range {
     std::string name;
