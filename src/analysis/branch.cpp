@@ -108,7 +108,7 @@ private:
 
 class BranchWalk {
 public:
-    /// `values` of the parameter, increasing, two at least; all arguments must outlive the walk.
+    /// `values` of the parameter: increasing, at least two. All arguments must outlive the walk.
     BranchWalk(Circuit& circuit, std::span<const double> values)
         : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
 
@@ -289,8 +289,8 @@ private:
         return spot;
     }
 
-    /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step. A short
-    /// step across a corner that was not rounded stands.
+    /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step.
+    /// `stands`: a short step across a corner that was not rounded is kept.
     enum class Bend { stands, retry, lost };
     Bend meet_bend(Progress& walk, double length, bool close) {
         const bool corner = close && length < corner_step;

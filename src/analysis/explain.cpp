@@ -127,7 +127,7 @@ private:
     [[nodiscard]] double pull_at(double theta, double M, double t) const {
         return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
-    /// -I a - I vb' - C vb, limits from the right.
+    /// The torque of a moving support and belt on a mass at rest, -I a - I vb' - C vb; limits from the right.
     [[nodiscard]] double around(double t) const {
         double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;

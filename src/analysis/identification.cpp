@@ -1257,7 +1257,7 @@ private:
         return {std::max(Rd, k * std::fabs(decay->size_at(rest))), before};
     }
 
-    /// Returns whether neighbours in the residual are more alike than in white noise. For that the mean square of
+    /// Returns whether neighbours in the residual are more alike than in white noise. In white noise the mean square of
     /// differences is twice the mean square, with a standard deviation of 2/sqrt(n).
     [[nodiscard]] bool leaves_pattern(double deviations) const {
         const Eigen::VectorXd& left = best_->residual;

@@ -139,7 +139,7 @@ MapStep PeriodMap::step_of_run(const motion::Run& run, const std::vector<Stretch
             step.t_high = event.t;
         }
     }
-    // A mass that stands at the start has stopped earlier, as it does at the end of the period, even if a jump of M
+    // A mass that rests at the start has stopped earlier, as it does at the end of the period, even if a jump of M
     // releases it at once.
     const bool stands_on = run.motion_at_stop == model::Motion::stuck && !run.events.empty();
     if (stands_on) {

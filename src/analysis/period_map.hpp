@@ -40,7 +40,7 @@ struct MapStep {
     bool differentiable = true;    ///< whether `derivative` is valid; otherwise use differences
     bool finished = true;          ///< whether the run reached its end with finite numbers
     bool moved = true;             ///< whether the mass moved at any time
-    bool on_edge = false;          ///< whether it stands at the limit of friction: the derivative is one-sided
+    bool on_edge = false;          ///< whether the mass rests at the limit of friction: the derivative is one-sided
     double low = 0, high = 0;      ///< the extremes of theta
     double t_low = 0, t_high = 0;  ///< times of the extremes
     std::size_t stops = 0;

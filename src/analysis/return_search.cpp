@@ -77,7 +77,7 @@ private:
     /// The same for a run that has settled up to its end and repeats after facts_.period.
     std::optional<VectorXd> complete_settled(const motion::Run& so_far);
     std::optional<VectorXd> complete_period(const Moment& from, motion::Run run, double period);
-    /// Completes the answer for bodies that rest or rotate steadily; `stands`: friction holds all.
+    /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
     void complete_rest(const motion::Run& run, bool stands);
 
     [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }

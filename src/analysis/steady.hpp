@@ -87,7 +87,7 @@ struct SteadyMotion {
     bool differentiable = false;  ///< whether there are multipliers
     bool stable = false, symmetric = false;
     std::optional<bool> unique;                              ///< none: unknown, search from other starts
-    std::pair<double, double> rest;                          ///< range in which it may stand, if it adheres
+    std::pair<double, double> rest;                          ///< range of angles at which it may rest, if it adheres
     double growth = 0;                                       ///< growth of the amplitude in a period of M
     int maps = 0;                                            ///< number of periods that were run
     double residual = 0;                                     ///< residual of the fixed point, in amplitudes

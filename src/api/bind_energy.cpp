@@ -27,7 +27,7 @@ struct RunEnergy {
     std::vector<analysis::Energy> parts = {};  ///< the energies of which it is the sum
     Eigen::MatrixXd columns = {};              ///< at the rows; computed on first use
 };
-// Shared: a column in Lua is a view that keeps it alive.
+// Shared, because a column in Lua is a view of these values and keeps them alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
 
 bool is_part(const RunEnergy& energy) {

@@ -1014,7 +1014,7 @@ private:
     std::string failure_;         ///< error of the last run
 };
 
-// The answer.
+// The result.
 
 void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;

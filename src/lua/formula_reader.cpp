@@ -324,7 +324,7 @@ private:
         return place;
     }
     int push_kept(int place) { return lua_rawgeti(L_, values_, place); }
-    /// That value as the content of a register.
+    /// The value in this place of the list, as the content of a register.
     Known known(int place) {
         Known made{.kind = Known::Kind::object, .object = place};
         switch (push_kept(place)) {

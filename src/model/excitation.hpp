@@ -1,4 +1,4 @@
-// M(t): a sum of terms, native or scripted. Each term knows its value, its breaks, and whole blocks of values.
+// M(t): a sum of terms, native or scripted. Each term computes its value, its breaks, and whole blocks of values.
 //
 // Terms are continuous from the right: at a break, value(t) is already the new level.
 #pragma once

@@ -26,7 +26,7 @@ inline double limit_of_creep(Motion side, Motion way, double sliding, double apa
     return side == way ? apart + sliding : apart - sliding;
 }
 
-/// Decides about a slip whose velocity has fallen to rounding. It goes on as a creep if sliding friction alone balances
+/// Decides about a slip whose velocity has fallen to rounding. It becomes a creep if sliding friction alone balances
 /// the pull and sticking could hold more. Returns how far the pull may then deviate from the balance; empty if it
 /// sticks. `torques` is the sum of magnitudes of all torques.
 std::optional<double> creeps_within(double pull, Motion way, double sliding, double holding, double torques);

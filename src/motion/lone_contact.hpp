@@ -41,8 +41,8 @@ public:
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Returns whether there is no dry friction: the mass swings through zero, and only turned() records events.
     [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass goes on, or reverses when it has
-    /// stopped.
+    /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass keeps its direction, or reverses when
+    /// it has stopped.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
         const model::Pull pull = pull_of(M, theta);
         return pull.beyond > 0 ? pull.towards : model::Motion::stuck;
@@ -69,7 +69,7 @@ public:
         return feedback_ ? excitation_.value(t, {theta, 0}) : M;
     }
 
-    /// The angle at which an arrived mass stands: theta, or if that exceeds the limit of sticking by no more than
+    /// The angle of a mass that has stopped: theta, or if that exceeds the limit of sticking by no more than
     /// accumulated rounding, the angle at the limit.
     [[nodiscard]] double place_at_stop(const Moment& now) const;
 
@@ -94,7 +94,7 @@ public:
     void set_direction(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: reverses, and records the turn.
     void turned(const Moment& now);
-    /// Ends the run; returns whether the mass stands.
+    /// Ends the run; returns whether the mass is at rest.
     bool finish();
     /// Ends a run of endless decisions: removes their events except the first.
     void forget_chatter();

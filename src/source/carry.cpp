@@ -237,7 +237,7 @@ bool Carrier::c_function(int index) {
     const bool plain = lua_getupvalue(from_, index, 1) == nullptr;
     if (!plain) lua_pop(from_, 1);
     if (!plain || lua::documented(from_, index).member == nullptr) return fail(index);
-    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours taken out of its object
+    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of dinal without its object
     return true;
 }
 

@@ -187,7 +187,7 @@ void Fingerprint::content(int index) {
 }
 
 void Fingerprint::table(int index) {
-    if (lua::documented(L_, index).owner != nullptr) return;  // a class of ours
+    if (lua::documented(L_, index).owner != nullptr) return;  // a class of dinal
     struct Entry {
         std::uint64_t key_sketch, value_sketch;
         Visited key, value;

@@ -24,7 +24,7 @@ public:
     [[nodiscard]] bool any() const { return any_; }
     /// Returns whether a function of the motion has unknown pieces, so that it may jump anywhere.
     [[nodiscard]] bool samples() const { return samples_; }
-    /// Starts slides of loads that jump at the surface on which the motion stands.
+    /// Starts slides of loads that jump at the surface on which the motion rests.
     void start(Now& now) {
         mechanics_.for_each_piecewise(now.t.hi, [&](Piecewise& function) { slides_.start(function, now); });
         forgotten_ = forgotten_ && !slides_.any();

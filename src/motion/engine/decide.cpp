@@ -45,7 +45,7 @@ private:
     struct BothSides {
         double backward = 0, forward = 0;  ///< pull with the loads of each side
         bool drive_back = false;
-        double beyond = -model::never;  ///< excess over the limit of that side
+        double beyond = -model::never;  ///< greatest excess over a limit, on the side `towards`
         Motion towards = Motion::forward;
     };
     struct Box;

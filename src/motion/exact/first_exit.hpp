@@ -1,8 +1,8 @@
-// Finds the first exit of a curve from a band, with proof: a bound of the fourth derivative limits the curve between
-// its looks.
+// Finds the first exit of a curve from a band, with proof: a bound of the fourth derivative limits the curve within a
+// step, called a look.
 //
-// On a look of length h the curve is within max|f''''| h^4/384 of the cubic through values and slopes at both ends, and
-// a cubic is within the hull of its Bernstein coefficients.
+// Within a look of length h the curve is within max|f''''| h^4/384 of the cubic through values and slopes at both ends,
+// and a cubic is within the hull of its Bernstein coefficients.
 #pragma once
 
 #include <algorithm>
