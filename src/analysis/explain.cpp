@@ -188,7 +188,7 @@ private:
         const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
         if (std::find(redundant.begin(), redundant.end(), own) != redundant.end()) {
             say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
-                "with the least sum of squares are told.");
+                "with the least sum of squares are given.");
         }
         end_paragraph();
         return std::move(text_);

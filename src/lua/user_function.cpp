@@ -298,7 +298,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
         return true;
     }
     if (good) {
-        wrong = fmt::format("{} left a state that is not a finite number at t = {:.14g}", name_, t);
+        wrong = fmt::format("{} gave a state a value that is not a finite number at t = {:.14g}", name_, t);
     }
     push(L);
     const std::string message = definition(L) + wrong;
