@@ -34,8 +34,8 @@ double size_of_step(const VectorXd& step) {
 }
 
 std::optional<Closed> ClosedSearch::at_once(const Return& from, int returns, bool waits) {
-    constexpr double anywhere = 1e6;
-    return newton(from, returns, anywhere, waits);
+    constexpr double any_distance = 1e6;
+    return newton(from, returns, any_distance, waits);
 }
 
 std::optional<Closed> ClosedSearch::follow(Return first, const std::vector<int>& counts) {
@@ -65,8 +65,8 @@ std::optional<Closed> ClosedSearch::closes(double near) {
         const double off = size_of_step(seen_[last].to - seen_[last - m].to);
         if (!is_within(off, near)) continue;
         ++tries;
-        constexpr double beside = 1;
-        auto found = newton(seen_[last], static_cast<int>(m), beside, false);
+        constexpr double short_distance = 1;
+        auto found = newton(seen_[last], static_cast<int>(m), short_distance, false);
         if (found && approaches(found->x, m)) return shortest(*found);
         if (found || !is_within(off, to_rounding)) continue;
         return itself(seen_[last], static_cast<int>(m));
@@ -80,9 +80,9 @@ Closed ClosedSearch::shortest(Closed found) {
         if (found.returns % m != 0) continue;
         const Return back = map_(found.x, found.mode, m);
         maps_ += m;
-        constexpr double there = 1e-10;
+        constexpr double same_point = 1e-10;
         const double off = back.finished ? size_of_step(back.to - found.x) : 1;
-        if (!back.finished || back.mode != found.mode || !is_within(off, std::max(there, 10 * found.residual))) {
+        if (!back.finished || back.mode != found.mode || !is_within(off, std::max(same_point, 10 * found.residual))) {
             continue;
         }
         found.returns = m, found.period = back.time, found.residual = off;
@@ -95,8 +95,8 @@ Closed ClosedSearch::shortest(Closed found) {
 bool ClosedSearch::approaches(const VectorXd& x, std::size_t m) const {
     const std::size_t last = seen_.size() - 1;
     const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
-    constexpr double there = 1e-7, close = 0.3;
-    return is_within(now, there) || (now <= close && now < 0.98 * before);
+    constexpr double arrived = 1e-7, close = 0.3;
+    return is_within(now, arrived) || (now <= close && now < 0.98 * before);
 }
 
 /// Accepts a return that is exact to rounding, where differences are useless.

@@ -31,7 +31,7 @@ bool several(const RunToTell& whole) {
     return whole.system.joints.size() > 1;
 }
 
-bool tells_all(const RunToTell& whole) {
+bool covers_all_bodies(const RunToTell& whole) {
     return several(whole) && !whole.joint;
 }
 
@@ -258,7 +258,7 @@ private:
         }
         tell_law();
         tell_walls();
-        if (!tells_all(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
+        if (!covers_all_bodies(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
         if (!is_link_) tell_load();
         tell_surroundings();
         if (own_rule_) say("{}", own_rule_->setting);
@@ -671,11 +671,11 @@ private:
     void tell_step(const Swings& last) {
         if (last.trend == Trend::irregular) return;
         const auto& [a, b, c] = last.amplitudes;
-        constexpr double rule = 1e-3;
+        constexpr double most_irregular = 1e-3;
         const char* more = c > b ? "more" : "less";
-        if (std::fabs((c - b) - (b - a)) <= rule * std::fabs(c - b)) {
+        if (std::fabs((c - b) - (b - a)) <= most_irregular * std::fabs(c - b)) {
             add(", {:.5g} {} each time", std::fabs(c - b), more);
-        } else if (std::fabs(c / b - b / a) <= rule * std::fabs(c / b - 1)) {
+        } else if (std::fabs(c / b - b / a) <= most_irregular * std::fabs(c / b - 1)) {
             add(", {:.5g} times as much each time", c / b);
         }
     }
@@ -706,7 +706,7 @@ public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
     std::string build_text(const std::vector<Energy>& energies) {
-        const bool all = tells_all(whole_);
+        const bool all = covers_all_bodies(whole_);
         if (all) tell_setting();
         end_paragraph();
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {

@@ -57,7 +57,7 @@ constexpr double suspected = 3;
 constexpr double least_noise = 1e-7;
 
 /// The weight in FitScale::hold that fixes a parameter.
-constexpr double firmly = 1e8;
+constexpr double firm_weight = 1e8;
 
 /// A fit of a free decay with a prescribed turn of rest; without one, friction stops the mass.
 struct Rest {
@@ -110,8 +110,8 @@ std::optional<Decay> decay_of(const Parameters& p) {
                                                  .stiffness = at(p, Unknown::k),
                                                  .damping = at(p, Unknown::C),
                                                  .kinetic_friction = at(p, Unknown::Rd)});
-    constexpr double swings = 0.99;
-    if (!system || system->damping_ratio() > swings) return {};
+    constexpr double most_damping = 0.99;
+    if (!system || system->damping_ratio() > most_damping) return {};
     const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
     return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
 }
@@ -137,8 +137,8 @@ struct Record {
     }
     /// The natural frequency of one full swing per sample.
     [[nodiscard]] double highest_omega0() const {
-        constexpr double a_sample = 2 * std::numbers::pi;
-        return a_sample * static_cast<double>(theta.size() - 1) / span;
+        constexpr double whole_turn = 2 * std::numbers::pi;
+        return whole_turn * static_cast<double>(theta.size() - 1) / span;
     }
 
     Eigen::VectorXd theta;
@@ -285,7 +285,7 @@ private:
         FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
                        Eigen::VectorXd::Zero(count())};
         const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
-        constexpr double loosely = 3;
+        constexpr double loose_factor = 3;
         for (Eigen::Index i = 0; i < count(); ++i) {
             const Unknown which = unknowns_[static_cast<std::size_t>(i)];
             switch (which) {
@@ -311,7 +311,7 @@ private:
                 case Unknown::theta0:
                 case Unknown::offset:
                     scale.typical[i] = 0.1 * record_.range;
-                    scale.hold[i] = record_.noise / (loosely * record_.range);
+                    scale.hold[i] = record_.noise / (loose_factor * record_.range);
                     scale.whole[i] = record_.range;
                     break;
                 case Unknown::velocity0:
@@ -354,7 +354,7 @@ private:
             at(base_, Unknown::velocity0) = 0;
             const FitScale scale = scale_of(base_);
             FitScale held = scale;
-            held.hold[place] = firmly * record_.range / scale.typical[place];
+            held.hold[place] = firm_weight * record_.range / scale.typical[place];
             const auto let_go = fit(fitted_of(base_), question_.t.size(), held, 40);
             const auto all = let_go ? fit(let_go->parameters, question_.t.size(), scale, 40) : std::nullopt;
             if (all && all->sum < best_->sum) moving_ = all->parameters;
@@ -611,7 +611,7 @@ private:
         const double seen = std::max(0.0, static_cast<double>(record_.turns.size()) - 2);
         const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 + turns_before(filled_best()) : seen;
         // Tries turns to both sides as far as the record permits, and a few more.
-        constexpr double open = 12;
+        constexpr double clearly_worse = 12;
         constexpr int most_tries = 25;
         try_rest_at(middle, true);
         for (const double way : {1.0, -1.0}) {
@@ -620,7 +620,7 @@ private:
                 const double turn = middle + way * tries;
                 if (turn < 0) break;
                 const double sum = try_rest_at(turn);
-                beyond = sum > best_->sum + open * deviation() * deviation() ? beyond + 1 : 0;
+                beyond = sum > best_->sum + clearly_worse * deviation() * deviation() ? beyond + 1 : 0;
                 if (beyond > 1 && (way > 0 || turn < seen)) break;
             }
         }
@@ -889,15 +889,15 @@ private:
         base_ = best_base_;
         const Eigen::Index place = place_of(which);
         FitScale scale = best_scale_;
-        scale.hold[place] = firmly * record_.range / scale.typical[place];
+        scale.hold[place] = firm_weight * record_.range / scale.typical[place];
         Eigen::VectorXd start = best.parameters;
         start[place] = 0;
         const auto without = fit(start, question_.t.size(), scale, 40);
         if (!without) return;
         seen_.emplace_back(without->sum, filled(without->parameters));
         const double variance = deviation() * deviation(), rise = without->sum - best.sum;
-        constexpr double telling = 4;  // two standard errors
-        if (rise > telling * variance) return;
+        constexpr double significant = 4;  // two standard errors
+        if (rise > significant * variance) return;
         constexpr double same = 1e-8;
         Eigen::VectorXd more = without->parameters;
         more[place] = little * scale.typical[place];
@@ -1033,10 +1033,10 @@ private:
             best.slopes = std::move(held.slopes);
         }
         if (rests_.empty() || !(noise > 0)) return best;
-        constexpr double unlikely = 40;
+        constexpr double clearly_worse = 40;
         std::vector<Rest> ways{best};
         for (Rest& rest : rests_) {
-            if (rest.fit.sum > least + unlikely * noise * noise || is_same(rest.fit, *best_)) continue;
+            if (rest.fit.sum > least + clearly_worse * noise * noise || is_same(rest.fit, *best_)) continue;
             find_covariance(rest, noise);
             ways.push_back(rest);
         }
@@ -1206,9 +1206,9 @@ private:
         if (which == Unknown::Re && !question_.M) {
             std::tie(low, high) = breakaways();
         } else if (tells_nothing_[i]) {
-            constexpr double as_well = 4;  // two standard errors
+            constexpr double equally_good = 4;  // two standard errors
             for (const auto& [sum, p] : seen_) {
-                if (sum > best_->sum + as_well * spread * spread) continue;
+                if (sum > best_->sum + equally_good * spread * spread) continue;
                 low = std::min(low, at(p, which)), high = std::max(high, at(p, which));
             }
             if (which != Unknown::Re) low = std::min(low, reach(which, -1, spread));

@@ -157,8 +157,8 @@ private:
 
     /// The significance of a column in the residual, in standard deviations.
     [[nodiscard]] double score(Eigen::Index i) const {
-        constexpr double imitated = 0.02, least_spare = 8;
-        if (!(products_.own(i) > imitated)) return 0;
+        constexpr double least_own_share = 0.02, least_spare = 8;
+        if (!(products_.own(i) > least_own_share)) return 0;
         const double along = products_(i, last_), square = along * along / products_(i, i);
         const double spare = static_cast<double>(size_ - products_.taken() - 1),
                      left = products_(last_, last_) - square;
@@ -254,8 +254,8 @@ bool has_only_memory(std::span<const double> residual) {
     const double memory = correlated(residual, 1) / correlated(residual, 0);
     std::vector<double> filtered;
     for (std::size_t i = 1; i < residual.size(); ++i) filtered.push_back(residual[i] - memory * residual[i - 1]);
-    constexpr double very = 4;
-    return memory > 0 && is_white(filtered, very);
+    constexpr double very_unusual = 4;
+    return memory > 0 && is_white(filtered, very_unusual);
 }
 
 double smallest_step(std::span<const double> values) {

@@ -65,8 +65,8 @@ private:
         step_ = h;
         const double decay = C_ / (2 * I_), q = omega0_ * omega0_ - decay * decay, rate = std::sqrt(std::fabs(q));
         double c = 0, s = 0;
-        constexpr double hardly = 1e-6;
-        if (rate * h < hardly) {
+        constexpr double least_decay = 1e-6;
+        if (rate * h < least_decay) {
             c = std::exp(-decay * h), s = h * c;
         } else if (q > 0) {
             const double kept = std::exp(-decay * h);

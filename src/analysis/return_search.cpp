@@ -147,15 +147,15 @@ VectorXd ReturnSearch::units_of(const Reach& reach) const {
 std::optional<Map::Return> ReturnSearch::begin() {
     const double period = question().repeats.period;
     // An action at the very beginning of a run would be lost, so returns begin at a quiet phase.
-    constexpr double nowhere = 0.3819660112501051;
+    constexpr double irrational_part = 0.3819660112501051;
     start_ = question().repeats.start;
     Reach reach;
     Moment now = runs_.first();
     if (has_acts(question().drive)) {
-        const auto run = stretch(now, start_, nowhere * period, reach);
+        const auto run = stretch(now, start_, irrational_part * period, reach);
         if (!run) return {};
         now = Runs::at_stop(*run);
-        start_ += nowhere * period;
+        start_ += irrational_part * period;
     }
     return measured_at(now);
 }
@@ -251,7 +251,7 @@ private:
         sizes_.push_back(size);
         constexpr double dead = 1e-11;  // relative to the greatest motion: a smaller one dies out
         small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
-        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
+        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return try_other_section(reach);
         t_ = run_.t_stop;
         times_.push_back(t_);
         seen_.push_back(seen(t_ - start));
@@ -278,14 +278,14 @@ private:
 
     /// Chooses another section after a stretch without a passage; returns false if the motion rests or the tries are
     /// used up.
-    bool looks_elsewhere(const Reach& reach) {
-        constexpr int most_looks = 40, most_longer = 24;
+    bool try_other_section(const Reach& reach) {
+        constexpr int most_tries = 40, most_longer = 24;
         const bool rests = small_ > 0 && s_.question().drive.states.empty();
         if (rests) s_.note_rest(run_, false);
-        if (rests || ++looks_ > most_looks) return false;
+        if (rests || ++tried_ > most_tries) return false;
         const Index widest = widest_of(reach, s_.chart_, s_.n());
         if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
-        if (looks_ <= most_longer) stretch_ *= 1.3;
+        if (tried_ <= most_longer) stretch_ *= 1.3;
         seen_.clear();
         times_.clear();
         return true;
@@ -367,7 +367,7 @@ private:
     bool timeless_;
     double t_;
     std::optional<model::WantedEvent> passage_;
-    int looks_ = 0;               // number of sections tried
+    int tried_ = 0;               // number of sections tried
     motion::Run run_;             // the last run
     std::vector<double> sizes_;   // sizes of all runs
     std::size_t small_ = 0;       // number of successive runs, up to the last, with hardly any motion

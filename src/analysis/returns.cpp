@@ -48,14 +48,14 @@ HeldMode opposite(HeldMode held) {
 
 /// Returns whether a shift of the start only shifts the whole run.
 bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
-    constexpr double by = 0.73;
+    constexpr double part_of_shift = 0.73;
     const double start = runs.question().repeats.start;
     Moment plain = runs.first(), shifted = plain;
-    shifted.y += by * shift;
+    shifted.y += part_of_shift * shift;
     const auto end = [&](const Moment& from) {
         return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
     };
-    const Eigen::VectorXd off = end(shifted) - by * shift - end(plain);
+    const Eigen::VectorXd off = end(shifted) - part_of_shift * shift - end(plain);
     return off.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, plain.y.cwiseAbs().maxCoeff());
 }
 

@@ -16,8 +16,8 @@ std::optional<ShortSlides> ShortSlides::closed(const SteadyQuestion& question) {
     const auto sine = single_sine(question);
     if (!sine || sine->holding != sine->sliding || !(sine->spare > 0)) return {};
     const double turns = sine->r * sine->omega0 * question.repeats.period / (2 * half_load);
-    constexpr double once = 1e-12;
-    if (std::fabs(turns - 1) > once) return {};
+    constexpr double rounding_of_turns = 1e-12;
+    if (std::fabs(turns - 1) > rounding_of_turns) return {};
     ShortSlides slides(*sine);
     if (!slides.slide(0)) return {};
     slides.unit_ = slides.way(slides.end_) / 2;

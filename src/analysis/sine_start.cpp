@@ -57,8 +57,8 @@ public:
           free_turn_(std::exp(-sine.zeta * step_) * phasor(root_.imag() * step_)),
           answer_(theory::magnification(sine.r, sine.zeta) * phasor(-theory::phase_lag(sine.r, sine.zeta))) {}
     static bool applies_to(const SingleSine& sine) {
-        constexpr double heavy = 0.99, resonant = 1e-6;  // beyond these, other closed forms would be needed
-        return sine.zeta < heavy && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
+        constexpr double most_damping = 0.99, resonant = 1e-6;  // beyond these, other closed forms would be needed
+        return sine.zeta < most_damping && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
     }
 
     /// Starts from velocity 0 at this place and phase of the load; way is +1 or -1.
@@ -189,8 +189,8 @@ public:
             sticks[i] = *next;
             for (std::size_t n = 1; n <= i; ++n) {
                 const Stick &a = sticks[i - n], &b = sticks[i];
-                constexpr double about = 0.3;  // close enough for the secant method
-                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < about)) continue;
+                constexpr double near_enough = 0.3;  // close enough for the secant method
+                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < near_enough)) continue;
                 if (const auto y = place_of_rest(a, b, n)) return at_start(*y, n);
                 break;
             }

@@ -305,7 +305,7 @@ void Walk::begin(const Formula& formula, const terms::Piece* piece, bool ranges)
 }
 
 Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
-    constexpr double worth = 1e-12;
+    constexpr double least_gain = 1e-12;
     const double c = at(op, a.disc.c, b.disc.c);
     Slot result{image(op, a.disc, b.disc, c), {}, 0, false};
     if (!ranges_) return result;
@@ -322,7 +322,7 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
     const double way = std::max(result.range.hi - c, c - result.range.lo);
     if (std::isnan(way)) {
         result.disc.r = 0, result.apart = never;
-    } else if (!(result.disc.r * worth + result.apart <= way)) {
+    } else if (!(result.disc.r * least_gain + result.apart <= way)) {
         result.disc.r = 0, result.apart = way;
     }
     return result;

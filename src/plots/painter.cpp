@@ -123,12 +123,12 @@ void outline(cairo_t* to, Shape shape, Point middle, double radius) {
     if (!shape.spokes) cairo_close_path(to);
 }
 
-constexpr double bar = 0.3 * em;           // height of the bars for dead zone and sticking
-constexpr double below_ticks = 0.45 * em;  // distance of the sticking bars from the axis
-constexpr double density = 0.25;           // opacity of an area's colour
-constexpr std::size_t crowd = 500;         // number of points whose shapes would hide each other
+constexpr double bar = 0.3 * em;                   // height of the bars for dead zone and sticking
+constexpr double below_ticks = 0.45 * em;          // distance of the sticking bars from the axis
+constexpr double density = 0.25;                   // opacity of an area's colour
+constexpr std::size_t most_separate_points = 500;  // number of points whose shapes would hide each other
 // resolution of images, in pixels per pixel of the sheet; lines are wider than two of them
-constexpr double fineness = 2;
+constexpr double resolution = 2;
 
 enum class Align { left, centre, right };
 
@@ -224,7 +224,7 @@ private:
 
     [[nodiscard]] Image image() const {
         constexpr double most = 4e6;  // pixels
-        return {{panel_.left, panel_.top}, size_, std::min(fineness, std::sqrt(most / (size_.width * size_.height)))};
+        return {{panel_.left, panel_.top}, size_, std::min(resolution, std::sqrt(most / (size_.width * size_.height)))};
     }
 
     void add_grid() const {
@@ -299,7 +299,7 @@ private:
 
     /// Draws curves; those with too many corners for an SVG become images.
     void add_curves() {
-        const Paper paper{panel_.view, {size_.width * fineness, size_.height * fineness}};
+        const Paper paper{panel_.view, {size_.width * resolution, size_.height * resolution}};
         std::vector<std::vector<std::size_t>> traces;
         double corners = 0;
         bool any = figure_.shades != nullptr || !figure_.marks.empty();
@@ -320,7 +320,9 @@ private:
         if (too_many && page_.go_on()) dense.put(page_.to);
     }
 
-    static bool is_crowd(const Curve& curve) { return curve.style == Style::points && curve.size() > crowd; }
+    static bool is_crowd(const Curve& curve) {
+        return curve.style == Style::points && curve.size() > most_separate_points;
+    }
 
     [[nodiscard]] std::uint32_t colour_of(std::size_t curve) const {
         const int own = figure_.curves[curve].colour;
@@ -527,7 +529,7 @@ private:
     }
 
     void add_hatched_sample(const LegendEntry& entry, double end) const {
-        Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, fineness);
+        Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, resolution);
         for (int row = 0; row < sample.height; ++row) {
             for (int column = 0; column < sample.width; ++column) {
                 sample.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(sample.width) +

@@ -124,16 +124,16 @@ struct Ending {
 };
 
 Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
-    constexpr int looks_a_second = 500, looks_between_sizes = 50;
+    constexpr int checks_a_second = 500, checks_between_sizes = 50;
     const auto latest = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     int status = 0;
     Ending ending;
-    for (int look = 1; !ending.status && !ending.filled && std::chrono::steady_clock::now() < latest; ++look) {
+    for (int check = 1; !ending.status && !ending.filled && std::chrono::steady_clock::now() < latest; ++check) {
         if (::waitpid(child, &status, WNOHANG) == child) {
             ending.status = status;
         } else {
-            std::this_thread::sleep_for(std::chrono::seconds(1) / looks_a_second);
-            ending.filled = look % looks_between_sizes == 0 && size_of_files(desk) > largest_desk;
+            std::this_thread::sleep_for(std::chrono::seconds(1) / checks_a_second);
+            ending.filled = check % checks_between_sizes == 0 && size_of_files(desk) > largest_desk;
         }
     }
     ::kill(-child, SIGKILL);  // with all processes it has started

@@ -110,8 +110,8 @@ private:
     enum class Told { unknown, strays, all };
     /// Decides whether the functions of the angle follow the series between its nodes.
     Told by_series(const Series& series, double from, double h) {
-        constexpr double clearly = 64, hair = 16;
-        constexpr int thorough = 64;
+        constexpr double clearly = 64, roundings_inside = 16;
+        constexpr int search_budget = 64;
         const double late = std::max(std::fabs(from), std::fabs(from + 2 * h));
         Told told = Told::all;
         for (const model::Component& c : angle_.components()) {
@@ -123,12 +123,12 @@ private:
                 continue;
             }
             unseen_.begin(*formula, nullptr);
-            unseen_.give(0, {from + h - script->delay, h - hair * rounding * late});
+            unseen_.give(0, {from + h - script->delay, h - roundings_inside * rounding * late});
             const double size = cheb::size(series);
             const double allowed =
                 (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
             if (unseen_.is_told(allowed, 0)) continue;
-            const auto found = unseen_.search({}, thorough, [=](const Series&) { return allowed; });
+            const auto found = unseen_.search({}, search_budget, [=](const Series&) { return allowed; });
             if (found.place) told = Told::strays;
             if (!found.place && !found.proven) told = Told::unknown;
         }

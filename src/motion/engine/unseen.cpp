@@ -218,10 +218,10 @@ private:
 
 /// The series of the time minus a delay. A stretch next to a break is shortened so as not to touch it.
 Series StretchProof::time(double delay) const {
-    constexpr double hair = 16;
+    constexpr double roundings_inside = 16;
     Series t{};
     t[0] = s_.start.hi + s_.h * (1 + middle_) - delay, t[1] = s_.h * half_;
-    if (s_.from_break || s_.to_break) t[1] -= hair * rounding * late_;
+    if (s_.from_break || s_.to_break) t[1] -= roundings_inside * rounding * late_;
     return t;
 }
 
@@ -382,10 +382,11 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
 }  // namespace
 
 bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside, double until) {
-    constexpr int thorough = 64, tired = 4;
+    constexpr int search_budget = 64, many_failures = 4;
     const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
     if (!any_ || s.h <= 64 * rounding * late) return true;
-    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < tired ? thorough : 1, until);
+    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < many_failures ? search_budget : 1,
+                       until);
     proof.loads();
     proof.rates();
     proof.events();
