@@ -39,7 +39,7 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
 struct Covariance {
     Eigen::MatrixXd matrix;
     std::vector<bool> silent;
-    std::vector<bool> open;  ///< silent parameters that are practically unbounded
+    std::vector<bool> open;  ///< whether the error exceeds half of the prior one, so that it is practically unbounded
     double log_volume = 0;   ///< log of the square root of the determinant, in units of `whole`
 };
 /// Computes the covariance from the derivatives J. As prior knowledge each parameter has an error of ten times `whole`,

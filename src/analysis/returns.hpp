@@ -99,8 +99,8 @@ public:
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     /// The first return from a moment that need not be on the section.
     [[nodiscard]] Return arrival(const Moment& from);
-    /// Order 4 reduces its step if the motions on both sides have different events; none if that fails and the slopes
-    /// differ.
+    /// If the motions on both sides of a difference have different events, order 4 reduces its step; empty if that does
+    /// not help and the slopes differ.
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
     [[nodiscard]] double start() const { return start_; }

@@ -17,7 +17,7 @@ struct ErrorMemory {
     std::deque<text::Error> facts;  // the latest first
     Witness witness = nullptr;
     Remarks remarks;            // about the error value stored as the userdata's user value
-    bool is_witnessed = false;  // whether there is such a value, which may be nil
+    bool is_witnessed = false;  // whether an error value is stored, which may be nil
     bool raised_again = false;
 };
 

@@ -101,7 +101,7 @@ private:
         T* values;
         std::size_t room, columns;
         std::size_t used;       ///< rows claimed by any table
-        std::vector<T> list{};  // the owner in case of a list
+        std::vector<T> list{};  // owns `values` if they were given as a vector
 
         [[nodiscard]] T* column(std::size_t i) const { return values + i * room; }
         static std::shared_ptr<Store> with_room(std::size_t rows, std::size_t columns) {

@@ -34,9 +34,9 @@ enum class Cursor { name, member, option, value, string, nothing };
 struct OpenCall {
     std::span<const lua::Token> function;       ///< tokens before the bracket: sys : simulate
     bool options = false;                       ///< whether the cursor is in a table of options,
-    help::Braces braces = help::Braces::alone;  ///< passed in this way
-    /// The names from the call's options to the table with the cursor, "" in a list: events, "" in f{ events = { { ...
-    /// } } }.
+    help::Braces braces = help::Braces::alone;  ///< how this table is passed
+    /// The path of names from the call's options to the table that contains the cursor, with "" for a list: `events`,
+    /// "" in f{ events = { { ... } } }.
     std::vector<std::string_view> path = {};
     std::vector<std::string_view> given = {};  ///< options already given
     std::string_view option = {};              ///< the option whose value contains the cursor

@@ -221,7 +221,7 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
         constexpr double between_nodes = 3;  // bound of a series relative to its greatest value at the nodes
         if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * of_.walls.reach[joint]) continue;
         for (double& way : change) way *= -wall;
-        // If the motion begins at the wall, the gap is as accurate as the displacement.
+        // A motion that begins at the wall has a gap equal to its displacement, so it is as accurate.
         const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
         const double far =
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));

@@ -158,7 +158,8 @@ public:
     void watch_others(const Moment& one_side, const Moment& other_side, double near);
     [[nodiscard]] bool slides() const { return slide_ != nullptr; }
     [[nodiscard]] Slide& sliding() { return *slide_; }
-    /// Ends the slide at one of its conditions.
+    /// Ends the slide at the crossed condition: 0 or 1 for a limit of the fraction, otherwise a condition of both
+    /// sides.
     void leave(std::size_t condition);
     /// The margin of the condition along which it slides, and the rate of this margin for the given rates of y.
     [[nodiscard]] std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
