@@ -1,18 +1,22 @@
 // The guards of a stretch: quantities whose zero ends it early.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "motion/engine/balance.hpp"
+#include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/ending.hpp"
 #include "motion/engine/torque_sizes.hpp"
+#include "motion/engine/user_events.hpp"
 #include "motion/engine/walls.hpp"
 
 namespace dinal::motion::engine {
 
-/// Finds the first end of one stretch. Makes no decision, but notes the signs of normal loads and which contacts creep.
+/// Searches one stretch for its first end, by a table of all kinds of ends: a new kind is a row there, and a case of
+/// Engine::handle(). Makes no decision, but notes the signs of watched values and which contacts creep.
 class Guards {
 public:
     struct Of {
@@ -25,24 +29,38 @@ public:
         const Flow& solver;
         Balances& balances;
         Contacts& contacts;
+        Conditions& conditions;
+        UserEvents& users;
         std::vector<Half>& normal_halves;  ///< for each joint: sign of its normal load, or of the slip of its bristles
     };
     explicit Guards(const Of& of)
         : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}
 
-    /// Returns the first end caused by a contact, a wall or a relay.
+    /// Returns the first end.
     Ending first();
     /// The released joints that do not move: they stick again, and need a clearly larger pull.
     [[nodiscard]] const std::vector<std::size_t>& stay() const { return stay_; }
-    /// Returns false if a limit was not finite.
+    /// Returns false if a limit, or the value of a user's event, was not finite.
     [[nodiscard]] bool good() const { return good_; }
+    /// The user event that would be thrown back again at once; empty if there is none.
+    [[nodiscard]] std::optional<std::size_t> thrown_back() const { return thrown_back_; }
 
 private:
-    /// Ends the stretch at x if nothing ends it earlier.
-    void see(std::optional<double> x, By by, std::size_t which, int side = 0);
+    enum class Per { joint, slider, load, motion };
+    /// A row of the table: a kind of end, watched for each joint, slider or load, or once for the motion.
+    struct Row {
+        Per per;
+        By by;
+        void (Guards::*watch)(std::size_t which);  ///< calls see() with the first such end, if there can be one
+    };
+    static const std::array<Row, 11> table;
+    [[nodiscard]] std::size_t count(Per per) const;
+
+    /// Ends the stretch at x by what is being watched, if nothing ends it earlier.
+    void see(std::optional<double> x, int side = 0);
     /// Ends the stretch at the first zero of a curve that is positive, or starts from a known `zero`. `floor` is its
     /// rounding.
-    void watch(const Series& left, double floor, bool zero, By by, std::size_t which, int side);
+    void watch(const Series& left, double floor, bool zero, int side);
     /// Returns the point at which a function of the moment, given its values at the nodes, leaves its half.
     template <class Value>
     std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
@@ -50,18 +68,24 @@ private:
     }
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
     [[nodiscard]] double fastest(std::size_t joint) const;
-    void watch_slip(std::size_t joint);
+    [[nodiscard]] bool slides(std::size_t joint) const;
     [[nodiscard]] bool may_creep(std::size_t joint) const;
-    void watch_release(std::size_t joint);
     [[nodiscard]] Nodes limit(std::size_t joint, model::Motion side) const;
-    void watch_walls(std::size_t joint, const model::Walls& walls, By by);
-    void watch_stop(std::size_t joint);
-    void watch_slider(std::size_t slider);
+    void watch_walls(std::size_t joint, const model::Walls& walls);
+    [[nodiscard]] std::optional<double> switches(double sign, double level, std::size_t k) const;
+
+    // The functions of the table's rows.
+    void watch_release(std::size_t joint);
+    void watch_slip(std::size_t joint);
     void watch_corner(std::size_t joint);
+    void watch_wall(std::size_t joint);
+    void watch_stop(std::size_t joint);
     void watch_normal(std::size_t joint);
     void watch_bristles(std::size_t joint);
-    [[nodiscard]] std::optional<double> switches(double sign, double level, std::size_t k) const;
-    void watch_relays();
+    void watch_slider(std::size_t slider);
+    void watch_relays(std::size_t load);
+    void watch_conditions(std::size_t /*motion*/);
+    void watch_users(std::size_t /*motion*/);
 
     [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return mechanics_.system().joints[joint]; }
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
@@ -72,7 +96,10 @@ private:
     const Now& now_;
     const Of& of_;
     Ending ending_;
+    By by_ = By::nobody;     ///< cause in the row that is being watched
+    std::size_t which_ = 0;  ///< index of the joint, slider or load that is being watched
     std::vector<std::size_t> stay_;
+    std::optional<std::size_t> thrown_back_;
     bool good_ = true;
     std::vector<double> point_;
 };
